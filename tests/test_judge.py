@@ -14,7 +14,10 @@ from __future__ import annotations
 import argparse
 import copy
 import dataclasses
+import importlib.machinery
+import importlib.util
 import os
+import random
 import shutil
 import subprocess
 import sys
@@ -152,11 +155,63 @@ SCENES = {
                                    "guide.piston_com": "-0.034, 0.002", "guide.exponent": "1", "guide.contact_law": "'hertz'",
                                    "initial.piston_offset": "1.7e-6", "initial.piston_tilt": "1.2e-4", "initial.piston_offset_rate": "7.8e-5",
                                    "initial.piston_tilt_rate": "-0.009"}),
+    # axial shapes of a rod that is hardly loaded: at most 3e-21 m
+    "unexcited": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "1e-9", "drive.kind": "'constant_speed'", "drive.ramp_time": "0.29", "drive.ramp_from": "0.001",
+                                        "elastic_rod.youngs_modulus": "1e13", "elastic_rod.section_area": "0.01", "elastic_rod.section_inertia": "1.7e-8",
+                                        "elastic_rod.transverse_modes": "0", "elastic_rod.axial_shapes": "8", "elastic_rod.damping_ratio": "0",
+                                        "elastic_rod.axial_damping_ratio": "0.999", "mechanism.rod_com": "0.06, 0", "elastic_rod.shank_mass": "6.770427831142613e-05"}),
+    # a film that vanishes within 6 nm, in a row that is the event
+    "vanishing": ("sim_V_oscillating", {
+        "integrator.method": "'auto'", "integrator.revolutions": "0.52", "combustion.compression_ratio": "1.01", "friction.law": "'brown_mcphee'",
+        "friction.coefficient": "0.003511238350332956", "friction.transition_speed": "10", "lubrication.transition": "'weighted'",
+        "lubrication.transition_depth": "6.1335016555588155e-09", "lubrication.transition_shape": "'linear'",
+        "lubrication.least_film_ratio": "0.02386501152501811", "lubrication.law": "'pinkus_sternlicht'", "lubrication.variant": "'closed_form'",
+        "lubrication.viscosity": "0", "lubrication.kinematic_viscosity": "0", "lubrication.viscosity_law": "'vogel'",
+        "lubrication.temperature": "690.1075805773098", "lubrication.known_temperatures": "313.15, 373.15", "lubrication.density": "1485.9958429449339",
+        "lubrication.known_viscosities": "2.2519402354257648e-05, 2.251940235425765e-06", "combustion.cycle": "'compressor'",
+        "combustion.dead_space": "0.0001", "combustion.suction_pressure": "1094.3432460567346", "combustion.discharge_pressure": "1094.343247151078",
+        "combustion.polytropic_exponent": "0.1", "combustion.crankcase_pressure": "1094.3432460567346", "guide.law": "'brown_mcphee'",
+        "guide.coefficient": "0.0022202365980267", "guide.transition_speed": "0.01328424062907412", "guide.viscous": "156.74371735244947",
+        "guide.kind": "'clearance'", "guide.bore_clearance": "3.57554633696415e-06", "guide.skirt_top": "0.009980214649986368",
+        "guide.skirt_bottom": "0.2", "guide.piston_radius": "0.004711212066419684", "guide.piston_inertia": "1e-08", "guide.stiffness": "1e12",
+        "guide.piston_com": "0, 0", "guide.exponent": "2.1768060770871935", "guide.contact_law": "'lankarani_nikravesh'",
+        "guide.restitution": "0.9445339501958341", "initial.piston_offset": "3.933100970660565e-06"}),
+    # a corner that leaves the wall: its damping cancels its elastic force up to a depth of 9e-12 m
+    "leaving": ("sim_I", {
+        "integrator.method": "'auto'", "integrator.revolutions": "1", "mechanism.crank_mass": "0", "guide.law": "'threlfall'", "guide.coefficient": "0", "guide.v1": "10",
+        "guide.viscous": "0", "guide.kind": "'clearance'", "guide.bore_clearance": "9.355995606964534e-06", "guide.skirt_top": "0.03371482011696212",
+        "guide.skirt_bottom": "0.0019440315368506403", "guide.piston_radius": "0.001", "guide.piston_inertia": "1", "guide.stiffness": "60370577684.152954",
+        "guide.piston_com": "0.035854252724698735, 0.008044996321147678", "guide.exponent": "1.5", "guide.contact_law": "'impact'",
+        "guide.damping": "7.626816356900431", "guide.full_damping_depth": "1.3967762099789478e-08", "initial.piston_offset": "9.355995606964534e-06",
+        "initial.piston_tilt": "-0.0005247502470239622", "initial.piston_offset_rate": "0.5873025102089904"}),
+    # errors of the start that hardly grow, in two directions of four
+    "thick": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "1.0", "output.ideal_twin": ".false.", "integrator.max_evaluations": "20000",
+                                    "lubrication.kinematic_viscosity": "1.0", "contact.law": "'hertz'", "friction": "none", "lubrication.elastic_film": ".true.",
+                                    "lubrication.pressure_viscosity": "1e-12", "lubrication.law": "'pinkus_sternlicht'", "lubrication.variant": "'closed_form'"}),
+    "massless": ("friction/lugre", {"integrator.revolutions": "0.05", "mechanism.rod_mass": "0"}),
+    "loose": ("flores/friction_050", {"integrator.revolutions": "0.3", "integrator.relative_tolerance": "1e-3"}),
+    # at rest at first, where no film has a force
+    "still": ("sim_V_oscillating", {"integrator.method": "'auto'", "integrator.revolutions": "0", "integrator.end_time": "1.5e-5", "output.interval": "1.5e-7",
+                                    "initial.eccentricity": "3.575570906243101e-05, -7.704206510968281e-06", "initial.eccentricity_rate": "0, 0",
+                                    "initial.crank_angle_deg": "180", "initial.crank_speed": "0", "mechanism.gravity": "101.3",
+                                    "lubrication.transition": "'weighted'", "lubrication.transition_depth": "3.26090332549357e-09",
+                                    "lubrication.transition_shape": "'linear'", "lubrication.least_film_ratio": "1e-06",
+                                    "lubrication.law": "'pinkus_sternlicht'", "lubrication.variant": "'closed_form'"}),
+    # an oscillating film so wide that its force is less than 1e-13 N
+    "wide": ("sim_V", {"integrator.method": "'radau'", "integrator.revolutions": "0", "integrator.end_time": "0.026", "joint.clearance": "0.005",
+                       "combustion.wiebe_form": "0.1", "drive.kind": "'free'", "initial.crank_speed": "96.1128866560898", "output.interval": "0.0003487293603932208",
+                       "drive.torque": "-553.9213311866381", "lubrication.law": "'oscillating_film'", "lubrication.variant": "''",
+                       "lubrication.kinematic_viscosity": "1.38e-5", "friction.law": "'stribeck'", "friction.coefficient": "0.0016770691976616676",
+                       "friction.static_coefficient": "0.0016770691976616676", "friction.transition_speed": "2.473881475586106e-08",
+                       "friction.viscous_coefficient": "1", "friction.stribeck_speed": "2.5006445615549477", "friction.stribeck_exponent": "3.826614389130299",
+                       "combustion.cycle": "'compressor'", "combustion.dead_space": "0.0001", "combustion.suction_pressure": "145008.25701383664",
+                       "combustion.discharge_pressure": "9313790.420172257", "combustion.polytropic_exponent": "1.0",
+                       "combustion.crankcase_pressure": "145008.25701383664"}),
     "ideal": ("flores/ideal", {"drive.kind": "'free'", "drive.damping": "0.03", "mechanism.gravity": "9.8", "initial.crank_angle_deg": "20"}),
 }
 
-PHASES = {**dict.fromkeys(("twisted", "thin", "sharp", "walls", "rigid", "held", "thickening", "printed", "half", "short", "finite", "gumbel", "full", "direct", "rough", "warm"), {1}),
-          "start": {0, 2}, "dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "lugre": {0, 2},
+PHASES = {**dict.fromkeys(("still", "unexcited", "leaving", "thick", "twisted", "thin", "sharp", "walls", "rigid", "held", "thickening", "printed", "half", "short", "finite", "gumbel", "full", "direct", "rough", "warm"), {1}),
+          "wide": {1, 2}, "vanishing": {1, 2}, "massless": {0, 2}, "loose": {0, 2}, "start": {0, 2}, "dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "lugre": {0, 2},
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
           "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2}, "elastic": {1},
           "inertia": {1, 2}, "compressor": {1}, "two_stroke": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1},
@@ -280,6 +335,10 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("amplitude of a fast shape wrong", "rigid", "rod_mode_2", lambda v, i: v * 1.001, "Lagrange, rod_mode_2"),
     ("rate of a slower shape wrong", "rigid", "rod_mode_1_rate", lambda v, i: v * 1.001, "is not the integral of its rate"),
     ("small force of the crank pin wrong", "held", "crankpin_force_x", lambda v, i: v + 1e-6, "crank pin: film force on the pin"),
+    ("force of a corner that leaves the wall too large", "leaving", "guide_1_force", lambda v, i: v * (1 + 1e-5), "contact law of a corner"),
+    ("film force beyond the place where it vanishes", "vanishing", "film_force_x", lambda v, i: v + 1e-3, "film law"),
+    ("acceleration of an axial shape that is hardly loaded wrong", "unexcited", "rod_axial_2_acceleration", lambda v, i: v * 1.001, "Lagrange, rod_axial_2"),
+    ("rod speed wrong by 5 % at a loose tolerance", "loose", "rod_speed", lambda v, i: v * 1.05, "is not the integral of its rate"),
     ("one value that is not a number", "dry", "crank_speed", lambda v, i: float("nan") if i == 50 else v, "Newton, crank"),
 ]
 
@@ -339,7 +398,7 @@ LIARS = [
 ]
 
 #: Scenes whose states must be within the allowed distance of a run by the other method.
-COMPARED = ("twisted",)
+COMPARED = ("twisted", "thick")
 
 #: (wrong line, file, text of the line, its text in the mutant, scene, text that the verdict must contain)
 MUTANTS = [
@@ -530,11 +589,27 @@ def test_judge(program: Path, folder: Path, jobs: int | None) -> None:
 
 
 def test_quadrature() -> None:
-    """The error of an integral over a piece of one row is within its bound."""
+    """The error of an integral over a piece of one row is within its bound; an interval much longer than those before it."""
     times, pieces = [0.0, 1.0, 2.0, 3.0], [[0, 1, 2], [3]]
     found = integral(times, stencils(times, pieces, joined=False))
     check(abs(found.value[-1] - 4.5) <= SAFETY * found.bound[-1], "an integral over a piece of one row is within its bound",
           f"{found.value[-1]} +- {found.bound[-1]}, 4.5 expected")
+    times = [i * 1e-16 for i in range(10)] + [5e-10 * 2**i for i in range(6)]
+    values = [1e-4 * (-1)**i if i < 10 else 0.0 for i in range(16)]   # a vibration that is not resolved, and then none
+    found = integral(values, stencils(times, [list(range(16))], joined=False))
+    check(max(map(abs, found.value)) <= 1e-13, "rows that are very close to each other do not make the next integral wrong", f"{found.value[-1]}, 0 expected")
+
+
+def test_draw() -> None:
+    """The scenes of scripts/extremes wear at the pin, at the bore or at both."""
+    loader = importlib.machinery.SourceFileLoader("extremes", str(ROOT / "scripts" / "extremes"))
+    spec = importlib.util.spec_from_loader("extremes", loader)
+    assert spec
+    extremes = sys.modules["extremes"] = importlib.util.module_from_spec(spec)
+    loader.exec_module(extremes)
+    rates = [extremes.wear(random.Random(i), {"integrator.revolutions": "1.0"}, True)["wear.rate"] for i in range(500)]
+    check("0.0,0.0" not in rates and any("0.0" in rate for rate in rates), "extreme scenes wear at the pin, at the bore or at both",
+          f"{rates.count('0.0,0.0')} of {len(rates)} do not wear")
 
 
 def test_options(program: Path) -> None:
@@ -630,6 +705,7 @@ def main() -> int:
             test_mutants(Path(folder), options.mutants, options.jobs)
         else:
             test_quadrature()
+            test_draw()
             test_options(program)
             test_judge(program, Path(folder), options.jobs)
     return assertions.report()

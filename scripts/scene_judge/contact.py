@@ -160,14 +160,22 @@ class Contact:
         return root(lambda chi: math.log1p(chi) - math.log1p(-chi * e) - chi * (1 + e), (1 - e) / 2, (1 - 1e-15) / e)
 
     def force(self, depth: float, rate: float, time: float) -> float:
+        return max(0.0, sum(self.terms(depth, rate, time)))
+
+    def size(self, depth: float, rate: float, time: float) -> float:
+        """Sum of the magnitudes of the elastic and the damping force, which may cancel each other."""
+        return sum(map(abs, self.terms(depth, rate, time)))
+
+    def terms(self, depth: float, rate: float, time: float) -> tuple[float, float]:
+        """Elastic and damping force."""
         if depth <= 0:
-            return 0.0
+            return 0.0, 0.0
         elastic = self.geometry.force(depth)
         if self.law == "impact":
             s = min(1.0, depth / self.full)
-            return max(0.0, elastic + self.damper * (3 * s**2 - 2 * s**3) * rate)
+            return elastic, self.damper * (3 * s**2 - 2 * s**3) * rate
         if self.dissipation:
-            return elastic * max(0.0, 1 + self.dissipation * rate)
+            return elastic, elastic * self.dissipation * rate
         began = bisect.bisect_right(self.begin, time * (1 + 1e-9)) - 1
         first = max(self.speed[began] if began >= 0 else 0.0, self.least)
-        return elastic * max(0.0, 1 + self.loss * min(rate / first, self.MOST))
+        return elastic, elastic * self.loss * min(rate / first, self.MOST)

@@ -14,6 +14,7 @@ BLURRED = 1e-2   # of a size: if the quadrature error exceeds this, the rows are
 RESOLVED = 0.25   # largest angle [rad] by which the oscillation of a shape may proceed between two rows
 SAFETY = 4.0   # the difference of two quadratures bounds the error of the better one if the rows resolve the motion; if
 #                they hardly do, four times the difference
+DEFLECTED = 0.2   # smallest size of a rod's shape, in static deflections under the forces of inertia and gravity
 
 
 @dataclasses.dataclass
@@ -79,6 +80,15 @@ def sizes(run: Run) -> dict[str, float]:
             "crank_angle": 1.0, "piston_position": way, **bore_sizes(run, speed), **elastic_sizes(run, speed)}
 
 
+def drive_speed(run: Run) -> float:
+    """Speed of the crank by which the program's absolute tolerances are chosen [rad/s]: that of the case or the speed reached; for
+    a crank at rest one radian in the time simulated."""
+    reached = max(map(abs, run.columns["crank_speed"]))
+    ramp = run.number("drive.ramp_time")
+    speed = reached if ramp > run.times[-1] else max(abs(run.number("initial.crank_speed")), reached)
+    return speed or 1 / max(run.times[-1] - run.times[0], 1e-300)
+
+
 def bore_sizes(run: Run, speed: float) -> dict[str, float]:
     """The same sizes for a piston with clearance in its bore."""
     if not run.has_loose_guide:
@@ -89,13 +99,21 @@ def bore_sizes(run: Run, speed: float) -> dict[str, float]:
 
 
 def elastic_sizes(run: Run, speed: float) -> dict[str, float]:
-    """The same sizes for elastic members: for each shape the largest value of all shapes of its kind."""
+    """The same sizes for elastic members: for each shape the largest value of all shapes of its kind, at least a part of its static
+    deflection under the forces of inertia and gravity, or of the one by a pin that crosses its clearance in the time simulated,
+    because the error of a shape is a small part of these, even if the shape itself is not excited."""
     found = {"crankshaft_twist": 1.0, "flywheel_speed": speed}
-    for what in ("", "_rate"):
-        for kind in (("rod_mode",), ("rod_stretch", "rod_axial")):
-            names = [name for name in run.columns if name.startswith(kind) and name.endswith(what or tuple("h12345678"))]
-            size = max((abs(value) for name in names for value in run.columns[name]), default=0.0)
-            found |= {name: size + 1e-300 for name in names}
+    bodies = Bodies.of(run)
+    if not bodies.elastic:
+        return found
+    load = sum(bodies.mass[1:]) * (bodies.crank_length * drive_speed(run)**2 + abs(bodies.gravity))
+    crossing = 0.01 * run.number("joint.clearance") / max(run.times[-1] - run.times[0], 1e-300)   # slow for a pin in its bearing
+    for name, stiffness in zip(bodies.elastic.names, bodies.elastic.stiffness):
+        kind = ("rod_mode",) if name.startswith("rod_mode") else ("rod_stretch", "rod_axial")
+        least = DEFLECTED * max(load / stiffness, crossing / bodies.elastic.frequencies[name])
+        for what, floor in (("", least), ("_rate", least * bodies.elastic.frequencies[name])):
+            names = [one + what for one in bodies.elastic.names if one.startswith(kind)]
+            found[name + what] = max(1e-300, floor, *(abs(value) for one in names for value in run.columns[one]))
     return found
 
 
@@ -126,9 +144,9 @@ def bristle_drift(checks: RowChecks, pieces: list[list[int]]) -> tuple[float, fl
     """The same for the deflection of bristles, integrated from the first row of each piece, divided by ten times the break-away
     deflection. Where sliding reverses, the rate has a kink, and rows within such a step have errors of about 5e-4 at a tolerance of
     1e-6. Rows so far apart that the deflection relaxes by more than a quarter from one to the next are not judged, nor those between
-    which the bodies, of half the mass of the lightest one or more, may vibrate on the bristles by more than a quarter of a radian."""
+    which the bodies, of half the mass of the lightest one that has mass or more, may vibrate on the bristles by more than a quarter of a radian."""
     columns, friction = checks.run.columns, checks.friction
-    springs = friction.stiffness / (0.5 * min(checks.bodies.mass[1:]))   # per normal force
+    springs = friction.stiffness / (0.5 * min(mass for mass in checks.bodies.mass[1:] if mass > 0))   # per normal force
     z = columns["bristle"]
     touching = [phase == CONTACT for phase in columns["phase"]]
     rate = [friction.bristle_rate(v, bent) if on else 0.0 for v, bent, on in zip(columns["sliding_speed"], z, touching)]

@@ -160,9 +160,10 @@ class Film:
 
         return over_arc(part, alpha - 0.5 * math.pi, alpha + 0.5 * math.pi, math.sqrt(gap))
 
-    def oscillating(self, row: Row, eps: float, gap: float) -> float:
-        """Its tangential force [N]: the gap's flow under i w rho V = -P'/R + mu V'', V = U at the pin, 0 at the bearing, is the same all
-        round, and P comes back to itself. U follows the rod of the mechanism with ideal joints."""
+    def oscillating(self, row: Row, eps: float, gap: float) -> tuple[complex, float]:
+        """Its tangential force [N] is the real part, the magnitude is the largest force in a period at this place; and the sum of
+        the magnitudes of its parts, whose rounding it contains. The gap's flow under i w rho V = -P'/R + mu V'', V = U at the pin, 0
+        at the bearing, is the same all round, and P comes back to itself. U follows the rod of the mechanism with ideal joints."""
         turn = self.lever * math.sin(row.q)
         slope = math.sqrt(1 - turn**2)
         speed = -self.lever * math.cos(row.q) * row.turn / slope
@@ -182,12 +183,13 @@ class Film:
             held_back.append(h * slow_rest(half) / (1j * w * rho * self.radius))     # and against a gradient of 1
             shares.append((weight, theta, h, half, slow))
         flow = sum(s[0] * m / r for s, m, r in zip(shares, moved, held_back)) / sum(s[0] / r for s, r in zip(shares, held_back))
-        total = 0.0
+        total, size = 0j, 0.0
         for (weight, theta, h, half, slow), m, r in zip(shares, moved, held_back):
             gradient = (m - flow) / r
             shear = -self.viscosity * surface * 2 * half / h / cmath.tanh(2 * half) - gradient * h * slow / (2 * self.radius)
-            total += weight * math.cos(theta) * (shear - gradient).real
-        return self.radius * self.length * total
+            total += weight * math.cos(theta) * (shear - gradient)
+            size += weight * (abs(shear) + abs(gradient))
+        return self.radius * self.length * total, self.radius * self.length * size
 
 
 def slow_rest(half: complex) -> complex:

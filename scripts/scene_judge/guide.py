@@ -92,11 +92,12 @@ class Guide:
             normal, friction = get[f"guide_{k}_force"], get[f"guide_{k}_friction"]
             low, high = (self.contacts[k - 1].force(depth, rate + d, t) for d in (-give, give))
             low, high = min(low, high), max(low, high)
+            size_of_law = self.contacts[k - 1].size(depth, rate, t)
             blur = 4e-15 * (self.radius + self.clearance) / depth * self.contacts[k - 1].geometry.exponent if depth > 0 else 0.0
             near = 1e-15 * (self.radius + self.clearance + abs(self.height[(k - 1) % 2] * row.tilt)) + 1e-9 * self.clearance
             # a row where the contact begins or ends, written before or after this event
             at_wall = abs(self.contacts[k - 1].force(2 * near, rate, t)) if abs(depth) <= near else 0.0
-            checks.take("contact law of a corner", max(low - normal, normal - high, 0.0), (LAW + blur) * max(abs(high), abs(normal)) + at_wall, t)
+            checks.take("contact law of a corner", max(low - normal, normal - high, 0.0), (LAW + blur) * max(abs(normal), size_of_law) + at_wall, t)
             low, high = (one * normal for one in self.friction.range(along, give))
             checks.take("friction law of a corner", max(low - friction, friction - high, 0.0), LAW * (abs(low) + abs(high)) / 2 + 1e-300, t)
             total += friction

@@ -5,6 +5,7 @@ import dataclasses
 import math
 
 NODES = 6   # number of rows through which the polynomial of an interval passes
+CLOSEST = 1e-3   # smallest distance of its rows, over the length of the interval: through closer rows a polynomial swings
 GAUSS = ((0.0, 4 / 9), (-math.sqrt(0.15), 5 / 18), (math.sqrt(0.15), 5 / 18))   # points, weights on [-1/2, 1/2]; exact
 
 
@@ -43,10 +44,31 @@ def weights(nodes: list[float], a: float, b: float) -> list[float]:
     return found
 
 
-def nearest(rows: list[int], position: int, count: int) -> list[int]:
-    """The `count` rows nearest to the interval that ends with the row at `position` of the list."""
+def nearest(rows: list[int], position: int, count: int, times: list[float]) -> list[int]:
+    """The `count` rows nearest to the interval that ends with the row at `position` of the list, without those that are very close
+    to the next one."""
     first = min(max(position - count // 2, 0), max(len(rows) - count, 0))
-    return rows[first:first + count]
+    found = rows[first:first + count]
+    if position < 1 or position >= len(rows):
+        return found
+    least = CLOSEST * (times[rows[position]] - times[rows[position - 1]])
+    if all(times[b] - times[a] >= least for a, b in zip(found, found[1:])):
+        return found
+    before = spaced(rows[position - 1::-1], count, times, least)
+    after = spaced(rows[position:], count, times, least)
+    taken = min(len(before), max(count // 2, count - len(after)))
+    return before[:taken][::-1] + after[:count - taken]
+
+
+def spaced(rows: list[int], count: int, times: list[float], least: float) -> list[int]:
+    """The first `count` rows of a list, at least so far apart."""
+    found = rows[:1]
+    for row in rows[1:]:
+        if len(found) == count:
+            break
+        if abs(times[row] - times[found[-1]]) >= least:
+            found.append(row)
+    return found
 
 
 def stencils(times: list[float], pieces: list[list[int]], joined: bool) -> list[list[Stencil]]:
@@ -64,8 +86,8 @@ def stencils(times: list[float], pieces: list[list[int]], joined: bool) -> list[
             if row < max(own[0], 1):
                 continue
             a, b = times[row - 1], times[row]
-            fine = nearest(piece, position, NODES)
-            coarse = nearest(half, (position + 1) // 2, NODES) if len(piece) > NODES else fine[:max(1, len(fine) - 1)]
+            fine = nearest(piece, position, NODES, times)
+            coarse = nearest(half, (position + 1) // 2, NODES, times) if len(piece) > NODES else fine[:max(1, len(fine) - 1)]
             if len(fine) == 1:   # one row only: the row before it bounds the error, although there may be a jump between them
                 coarse = [row - 1]
             ours.append(Stencil(fine, weights([times[k] for k in fine], a, b), coarse, weights([times[k] for k in coarse], a, b)))

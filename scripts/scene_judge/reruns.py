@@ -22,6 +22,7 @@ from .trace import Run, run_case
 ROWS = 400            # number of rows at which states are compared
 LIMIT = 100.0         # allowed error in grown tolerances, for each revolution begun
 LATE = 3              # rows for which the run may be in another contact than its reference and is not compared
+MORE = 4              # number of neighbours in addition where the state is beyond the allowed distance
 HORIZON = 0.2         # states are not compared if the allowed error exceeds this part of the coordinates' sizes
 FINEST = 1e-13        # smallest tolerance of a reference
 MOST_EVALUATIONS = 2_000_000_000   # largest value that a case may have
@@ -187,6 +188,8 @@ class Reruns:
         if isinstance(runs, str):
             return Comparison(unjudged=runs)
         found = compare_states(*runs, self.tolerance, self.revolutions())
+        if not found.share <= 1:   # how far an error grows depends on its direction; both neighbours may have hardly grown
+            found = self.compare_with_more(*runs)
         if found.horizon < self.span and self.turn > 0 and loose_joints(self.judged):
             self.compare_statistics(found)
         return found
@@ -201,12 +204,23 @@ class Reruns:
             if run.status or len(run.times) < 10:
                 return f"{name}: {run.summary.get('status', run.message)[:120]}"
         scales = scales_of(reference, states(reference))
-        changes = self.neighbour_start(scales, off), {**self.neighbour_start(scales, off), **self.neighbour_laws(off, reference)}
-        neighbours = [self.reference(span, rows, change) for change in changes]
+        neighbours = self.neighbours(span, rows, off, reference, scales)
         for run in neighbours:   # at the edge of what is possible a neighbour may be refused
             if run.status:
                 return f"a neighbour of the reference: {run.summary.get('status', run.message)[:120]}"
         return again, reference, neighbours
+
+    def neighbours(self, span: float, rows: int, off: float, reference: Run, scales: Scales) -> list[Run]:
+        """Two runs near the reference: with errors of the start, and also of the laws' constants."""
+        changes = self.neighbour_start(scales, off), {**self.neighbour_start(scales, off), **self.neighbour_laws(off, reference)}
+        return [self.reference(span, rows, change) for change in changes]
+
+    def compare_with_more(self, run: Run, reference: Run, neighbours: list[Run]) -> Comparison:
+        """Compare states again, with more neighbours."""
+        scales = scales_of(reference, states(reference))
+        while len(neighbours) < 2 + MORE:
+            neighbours = neighbours + self.neighbours(self.span, ROWS, max(self.tolerance, 10 * FINEST), reference, scales)
+        return compare_states(run, reference, [one for one in neighbours if not one.status], self.tolerance, self.revolutions())
 
     def revolutions(self) -> float:
         travel = self.judged.columns["crank_angle"]

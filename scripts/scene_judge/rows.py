@@ -27,6 +27,7 @@ ASPERITIES = 1e-5  # allowed relative error of the series of F52 and of the spli
 CLEAR = 0.01       # largest relative uncertainty of a force, from the film's velocity between rows
 MOVING = 2e-4, 2000  # allowed error of a rate in rows between two steps, relative and in tolerances: there the positions of the film
                      # are as accurate as in the steps, but not their differences
+EVENT = 1e-10     # error of the time of an event, of the distance to the row before it
 LEAST_BEND = 5e-9  # [m] if the break-away deflection is smaller, break-away is within a step and cannot be checked between steps
 BENT = 1000       # allowed excess over static friction in rows between the steps, in tolerances of the static friction
 
@@ -193,7 +194,7 @@ class RowChecks:
         # the depth is the difference of two lengths
         exponent = self.contact.geometry.exponent + 2 * self.weighted
         blur = exponent * 1e-15 * self.run.number("joint.clearance") / depth if depth > 0 else 0.0
-        self.take("contact law", inside(normal, low, high), (LAW + blur) * max(abs(high), abs(normal)), t)
+        self.take("contact law", inside(normal, low, high), (LAW + blur) * max(abs(normal), share * self.contact.size(depth, rate, t)), t)
         if "contact_half_angle" in get:
             self.check_arc(row, depth, normal, blur, t)
         want = -normal * n[0] - friction * n[1], -normal * n[1] + friction * n[0]
@@ -305,10 +306,10 @@ class RowChecks:
         if self.film == "oscillating_film":
             self.check_oscillating(row, n, force, share, eps, gap, i)
             return
-        if not self.is_judged(i) or eps <= 1e-3 or size < 1e6 * give:
+        if not self.is_judged(i) or eps <= 1e-3 or size <= 1e6 * give:
             return
         along, across = n[0] * row.slip[0] + n[1] * row.slip[1], n[0] * row.slip[1] - n[1] * row.slip[0]
-        if law.law == "pinkus_sternlicht" and law.variant != "half_film" and abs(along) < 1e6 * give:
+        if law.law == "pinkus_sternlicht" and law.variant != "half_film" and abs(along) <= 1e6 * give:
             return
         if self.asperities:
             mean, slope = self.asperities.mean_gap(get["film_thickness"])
@@ -326,16 +327,17 @@ class RowChecks:
         if not law.is_solved:   # a thin film's force can be the small difference of much larger ones of wedge and squeeze
             other = law.force(eps - 1e-15, gap + 1e-15, along, across, turn)
             blur += math.hypot(other[0] - want[0], other[1] - want[1])
-        blur += self.blur_of_share(row) * math.hypot(*want)
+        blur += self.blur_of_share(row, i) * math.hypot(*want)
         miss = math.hypot(n[0] * force[0] + n[1] * force[1] - share * want[0], n[0] * force[1] - n[1] * force[0] - share * want[1])
         self.take("film law", miss, (LAW + law.margin) * share * math.hypot(*want) + 10 * blur, t)
 
-    def blur_of_share(self, row: Row) -> float:
-        """Rounding of the share of a film in transition to contact: a quotient of two differences of lengths, at a time that is
-        rounded as well."""
+    def blur_of_share(self, row: Row, i: int) -> float:
+        """Error of the share of a film in transition to contact: a quotient of two differences of lengths, at a time that is
+        rounded as well, and may be that of an event."""
         if not self.weighted:
             return 0.0
-        rounding = 4e-15 * self.run.number("joint.clearance") + 4e-16 * abs(row.get["time"]) * math.hypot(*row.slip)
+        late = 4e-16 * abs(row.get["time"]) + (EVENT * (row.get["time"] - self.run.times[i - 1]) if i else 0.0)
+        rounding = 4e-15 * self.run.number("joint.clearance") + late * math.hypot(*row.slip)
         return rounding / self.run.number("lubrication.transition_depth")
 
     def check_oscillating(self, row: Row, n: tuple[float, float], force: tuple[float, float], share: float, eps: float, gap: float,
@@ -346,9 +348,10 @@ class RowChecks:
             self.take("no load along the line of centres", abs(force[0] * n[0] + force[1] * n[1]), SUM * math.hypot(*force) + row.law_noise, t)
         if self.joint != "piston_pin" or not self.film_law.is_known or not self.is_judged(i) or not (abs(row.turn) > 1e-3 and eps > 1e-3):
             return
-        whole = self.film_law.oscillating(row, eps, gap)
+        whole, size = self.film_law.oscillating(row, eps, gap)
         found = n[0] * force[1] - n[1] * force[0]
-        self.take("film law", abs(found - share * whole), (OSCILLATING * share + self.blur_of_share(row)) * abs(whole) + row.law_noise, t)
+        allowed = (OSCILLATING * share + self.blur_of_share(row, i)) * abs(whole) + ROUNDING * share * size + row.law_noise
+        self.take("film law", abs(found - share * whole.real), allowed, t)
 
     def check_moving_film(self, row: Row, force: tuple[float, float], i: int) -> None:
         """Check a film between elastic walls, whose pressure takes long to find, with the rate of its place from the rows around this
