@@ -62,7 +62,7 @@ contains
   !> Initialise the visitor.
   subroutine begin(self)
     class(schema_t), intent(inout) :: self
-    allocate (self%groups(50), self%keys(300))
+    allocate (self%groups(50), self%keys(600))
     self%law_name = ''
     self%difference = ''
   end subroutine begin
