@@ -83,10 +83,7 @@ contains
     if (.not. allocated(self%cycles)) allocate (self%cycles(16))
     if (self%has_strobe .and. .not. allocated(self%strobe_values)) &
       allocate (self%strobe_values(size(self%strobe_list%id), 16))
-    if (allocated(self%y)) then
-      if (size(self%y) /= size(y)) deallocate (self%y)
-    end if
-    if (.not. allocated(self%y)) allocate (self%y(size(y)))
+    self%y = y
   end subroutine begin
 
   !> Discard the revolutions so far, and count those that begin after the given number of revolutions.

@@ -57,7 +57,6 @@ module period_watch
     procedure :: exchange
     procedure, private :: close_revolution
     procedure, private :: look_for_period
-    procedure, private :: difference_at
   end type period_watch_t
 
 contains
@@ -174,28 +173,16 @@ contains
 
   contains
 
-    !> Largest difference of states `first` to `last` from those one period earlier.
+    !> Largest difference of states `first` to `last` from those one period earlier, relative to the ranges of their components.
     real(dp) function largest(first, last)
       integer, intent(in) :: first, last
       integer :: j
       largest = 0
       do j = first, last
-        largest = max(largest, self%difference_at(j, p, range))
+        largest = max(largest, maxval(abs(self%states(:, mod(j, depth)) - self%states(:, mod(j - p, depth)))/range))
       end do
     end function largest
   end subroutine look_for_period
-
-  !> Largest difference between the components of states k and k - p, relative to their ranges.
-  pure real(dp) function difference_at(self, k, p, range)
-    class(period_watch_t), intent(in) :: self
-    integer, intent(in) :: k, p
-    real(dp), intent(in) :: range(:)
-    integer :: i
-    difference_at = 0
-    do i = 1, size(self%at)
-      difference_at = max(difference_at, abs(self%states(i, mod(k, depth)) - self%states(i, mod(k - p, depth)))/range(i))
-    end do
-  end function difference_at
 
   !> Write the results so far to an archive, or read them from it.
   subroutine exchange(self, archive)

@@ -48,6 +48,8 @@ contains
     type(scene_t), allocatable, intent(out) :: scene
     type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: without_tables   !! the films compute no tables: the scene is not to be integrated
+    type(piston_t) :: piston
+    real(dp) :: gravity(2)   ! along the axis of the cylinder towards the crank, rotated towards -y [m/s^2]
     logical :: makes_tables
     integer :: i
 
@@ -56,9 +58,13 @@ contains
     if (present(without_tables)) makes_tables = .not. without_tables
     call prepare_joints(case, makes_tables, scene)
     associate (m => case%mechanism)
+      piston = piston_t(m%piston_mass)
+      if (case%has_loose_guide() .and. .not. ideal_joint) &
+        piston = piston_t(m%piston_mass, .true., case%guide%piston_inertia, case%guide%piston_com)
+      gravity = [-m%gravity*cos(m%gravity_angle_deg*degree), 0 - m%gravity*sin(m%gravity_angle_deg*degree)]   ! no negative zero
       scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, &
         m%crank_inertia + case%drive%flywheel_inertia, m%crank_com), &
-        rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_of(case, scene), gravity_of(case))
+        rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston, gravity)
     end associate
     if (scene%chain%has_elastic_rod()) call scene%chain%elastic%rod%prepare(scene%chain%bodies%rod)
     scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping, 0.0_dp)
@@ -83,25 +89,6 @@ contains
     end do
     call scene%prepare_start()
   end subroutine build_scene
-
-  !> The piston, with its moment of inertia if it has clearance in its bore.
-  pure type(piston_t) function piston_of(case, scene) result(piston)
-    type(case_t), intent(in) :: case
-    type(scene_t), intent(in) :: scene
-    piston = piston_t(case%mechanism%piston_mass)
-    if (.not. allocated(scene%guide)) return
-    if (scene%guide%is_loose) piston = piston_t(case%mechanism%piston_mass, .true., case%guide%piston_inertia, &
-      case%guide%piston_com)
-  end function piston_of
-
-  !> Gravity (x, y) [m/s^2]: along the axis of the cylinder towards the crank, rotated towards -y.
-  pure function gravity_of(case) result(gravity)
-    type(case_t), intent(in) :: case
-    real(dp) :: gravity(2)
-    associate (g => case%mechanism%gravity, angle => case%mechanism%gravity_angle_deg*degree)
-      gravity = [-g*cos(angle), 0 - g*sin(angle)]   ! avoids a negative zero
-    end associate
-  end function gravity_of
 
   !> Assemble the parts of a scene from the case: joints with clearance, their laws, and the gas. Nothing is prepared for a run.
   subroutine assemble_scene(case, ideal_joint, scene)
