@@ -29,9 +29,8 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%add('exponent', self%exponent, 'exponent of the penetration', range='>= 1', default='1.5', only_here=.true.)
     call self%material_parameters(list)
-    call list%add('stiffness', self%given_stiffness, &
-      'contact stiffness; 0: from geometry and materials', 'N/m^exponent', '> 0', default='0.0', &
-      only_here=.true.)
+    call list%add('stiffness', self%given_stiffness, 'contact stiffness; 0: from geometry and materials', 'N/m^exponent', '> 0', &
+      default='0.0', only_here=.true.)
   end subroutine parameters
 
   !> The stiffness given in the case, or Hertz's from (4.2) and (4.3), both corrected: K = 4/(3(sigma_i + sigma_j)) sqrt(Rb Rj/(Rb -

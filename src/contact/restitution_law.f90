@@ -41,9 +41,8 @@ contains
     call list%add('dissipation', self%dissipation, &
       'factor a in force = elastic force (1 + a rate), instead of restitution; 0: from restitution', &
       's/m', '> 0', default='0.0', family='loss')
-    call list%add('least_impact_speed', self%least_impact_speed, &
-      'impacts slower than this are damped as if they had this speed', 'm/s', &
-      '>= 1e-9 and <= 1', default='1.0e-5')
+    call list%add('least_impact_speed', self%least_impact_speed, 'impacts slower than this are damped as if they had this speed', &
+      'm/s', '>= 1e-9 and <= 1', default='1.0e-5')
   end subroutine parameters
 
   subroutine prepare(self, bearing)

@@ -52,9 +52,8 @@ contains
   subroutine add_static(self, list)
     class(static_friction_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('static_coefficient', self%static_coefficient, &
-      'coefficient of friction at rest; 0: equal to coefficient', range='>= 0', &
-      default='0.0')
+    call list%add('static_coefficient', self%static_coefficient, 'coefficient of friction at rest; 0: equal to coefficient', &
+      range='>= 0', default='0.0')
   end subroutine add_static
 
   !> Declare the viscous coefficient.

@@ -29,8 +29,7 @@ contains
     class(compressor_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call self%add_bore(list)
-    call list%add('dead_space', self%dead_space, 'clearance volume over displacement', range='>= 1e-4 and <= 100', &
-      example='0.05')
+    call list%add('dead_space', self%dead_space, 'clearance volume over displacement', range='>= 1e-4 and <= 100', example='0.05')
     call list%add('suction_pressure', self%suction_pressure, &
       'pressure while the suction valve is open', 'Pa', '> 0', default='101325.0')
     call list%add('discharge_pressure', self%discharge_pressure, 'pressure while the discharge valve is open', 'Pa', '> 0', &

@@ -24,9 +24,8 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call self%wiebe_parameters(list)
     call list%add('port_opens_deg', self%port_opens_deg, &
-      'crank angle after the firing dead centre at which the ports open; they close as much before it', &
-      'degrees', '> 0 and <= 180', &
-      example='105.0')
+      'crank angle after the firing dead centre at which the ports open; they close as much before it', 'degrees', &
+      '> 0 and <= 180', example='105.0')
   end subroutine parameters
 
   pure subroutine conflict(self, key, wanted)

@@ -52,9 +52,8 @@ contains
     call list%add('wiebe_form', self%form, 'parameter n of the Wiebe function', range='>= 0.05 and <= 100', example='3.0')
     call list%add('start_deg', self%start_deg, 'crank angle at which combustion starts; the firing dead centre is 360', 'degrees', &
       '>= 180 and < 540', example='340.0')
-    call list%add('duration_deg', self%duration_deg, &
-      'duration of combustion; it must end before the cylinder opens', 'degrees', '> 0', &
-      example='40.0')
+    call list%add('duration_deg', self%duration_deg, 'duration of combustion; it must end before the cylinder opens', 'degrees', &
+      '> 0', example='40.0')
     call list%add('intake_pressure', self%intake_pressure, 'pressure in the open cylinder', 'Pa', '> 0', default='101325.0')
     call self%add_crankcase_pressure(list)
   end subroutine wiebe_parameters

@@ -4,8 +4,7 @@ module case_values
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, suggestion
-  use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, &
-    real_kind, integer_kind, text_kind
+  use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, real_kind, integer_kind, text_kind
   use namelist_reader, only: token_t, read_values
   use value_reader, only: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals, is_within
   implicit none

@@ -15,8 +15,7 @@ module certificate
   use gudgeon_columns, only: column_list_t, choose_columns
   use gudgeon_simulation, only: run_report_t
   use trace_sink, only: trace_event_t
-  use run_witness, only: witness_t, run, has_coarse_table, figures_of, means_of, n_statistics, n_figures, &
-    loss_figure
+  use run_witness, only: witness_t, run, has_coarse_table, figures_of, means_of, n_statistics, n_figures, loss_figure
   implicit none
   private
   public :: certificate_t, make_certificate, is_state

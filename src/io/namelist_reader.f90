@@ -4,8 +4,7 @@
 module namelist_reader
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text
-  use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, &
-    digits, shown
+  use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, digits, shown
   implicit none
   private
   public :: namelist_t, entry_t, token_t, read_namelist, read_values

@@ -5,9 +5,8 @@ module result_file
   use, intrinsic :: iso_c_binding, only: c_long
   use gudgeon_errors, only: error_t, fail, status_output
   use text_tools, only: printable
-  use gudgeon_posix, only: open_for_writing, open_file, to_append, write_all, truncate_file, reserve_file, &
-    synchronise_file, close_file, rename_file, remove_file, error_text, error_interrupted, &
-    error_no_entry, error_is_directory
+  use gudgeon_posix, only: open_for_writing, open_file, to_append, write_all, truncate_file, reserve_file, synchronise_file, &
+    close_file, rename_file, remove_file, error_text, error_interrupted, error_no_entry, error_is_directory
   implicit none
   private
   public :: result_file_t, write_text, remove_result, fail_with_file

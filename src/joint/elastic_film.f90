@@ -45,8 +45,7 @@ contains
     class(elastic_film_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%add('elastic_film', self%is_wanted, &
-      'elastic walls in series with the film; &contact with law = ''hertz'' gives their stiffness', &
-      '.false.')
+      'elastic walls in series with the film; &contact with law = ''hertz'' gives their stiffness', '.false.')
     call list%add('pressure_viscosity', self%pressure_viscosity, &
       'elastic_film: exponential growth of the viscosity with the mean pressure (Barus)', &
       '1/Pa', '>= 0 and <= 1e-6', default='0.0')

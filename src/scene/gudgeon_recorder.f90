@@ -10,8 +10,7 @@ module gudgeon_recorder
   use ode_method, only: ode_method_t, limit_stability
   use gudgeon_solver, only: observer_t
   use chain_motion, only: crank_pin, piston_pin, most_pins => n_pins
-  use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide, of_wear, &
-    phase_contact
+  use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide, of_wear, phase_contact
   use inside_step, only: look_inside
   use joint_events, only: penetration_and_rate, may_lose_force, force_share
   use gudgeon_columns, only: column_list_t, row_values

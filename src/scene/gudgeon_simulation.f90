@@ -8,8 +8,7 @@ module gudgeon_simulation
   use gudgeon_solver, only: integrate, silent_observer_t, integration_done, integration_stopped, integration_interrupted, &
     step_limit_reached, evaluation_limit_reached, unreadable_archive
   use gudgeon_scene, only: scene_t
-  use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, &
-    crank_creeps
+  use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, crank_creeps
   use scene_builder, only: build_scene, simulated_time, latest_end, longest_turn, sample_interval, settings_for
   use crank_turns, only: all_made, turned_back
   use gudgeon_columns, only: choose_columns, column_list_t

@@ -39,9 +39,8 @@ contains
     call list%add('bore_clearance', self%bore_clearance, &
       'half of bore diameter minus piston diameter; required with kind = ''clearance'', as the next five keys', &
       'm', '> 0', default='0.0')
-    call list%add('skirt_top', self%skirt_top, &
-      'height of the upper corners of the skirt above the pin, along the piston', 'm', '> 0', &
-      default='0.0')
+    call list%add('skirt_top', self%skirt_top, 'height of the upper corners of the skirt above the pin, along the piston', 'm', &
+      '> 0', default='0.0')
     call list%add('skirt_bottom', self%skirt_bottom, &
       'depth of the lower corners of the skirt below the pin, along the piston', 'm', '> 0', default='0.0')
     call list%add('piston_radius', self%piston_radius, 'distance of the skirt corners from the piston axis', &
@@ -50,8 +49,7 @@ contains
       'moment of inertia of the piston about its centre of mass', 'kg m^2', '> 0', default='0.0')
     call list%add('stiffness', self%stiffness, 'contact stiffness of a corner of the skirt', 'N/m^exponent', '> 0', default='0.0')
     call list%add('piston_com', self%piston_com, &
-      'centre of mass of the piston from the pin, along and across the piston (pin offset)', 'm', &
-      default='0.0')
+      'centre of mass of the piston from the pin, along and across the piston (pin offset)', 'm', default='0.0')
     call list%add('exponent', self%exponent, 'exponent of the penetration', range='>= 1', default='1.0')
   end subroutine parameters
 

@@ -9,8 +9,7 @@ module study_runner
   use command_line, only: command_line_t
   use gudgeon_progress, only: rate_text, clock
   use case_runner, only: tell_warning
-  use gudgeon_posix, only: make_directory, synchronise_folder, interrupted, signal_set_t, hold_interrupts, &
-    restore_interrupts
+  use gudgeon_posix, only: make_directory, synchronise_folder, interrupted, signal_set_t, hold_interrupts, restore_interrupts
   use text_file, only: read_text_file
   use study_sweep, only: sweep_t, read_sweep, check_rows, study_checksum, file_cycles, file_strobes, file_runs
   use study_worker, only: study_worker_t
