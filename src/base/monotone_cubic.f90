@@ -21,7 +21,6 @@ module monotone_cubic
     procedure :: value
     procedure :: slope
     procedure :: finest
-    procedure, private :: find
   end type monotone_cubic_t
 
 contains
@@ -148,7 +147,7 @@ contains
     real(dp), intent(in) :: x
     real(dp) :: s
     integer :: i
-    call self%find(x, i, s)
+    call find(self, x, i, s)
     associate (c => self%coefficient)
       value = c(0, i) + s*(c(1, i) + s*(c(2, i) + s*c(3, i)))
     end associate
@@ -162,7 +161,7 @@ contains
     integer :: i
     slope = 0
     if (.not. self%period > 0 .and. (x < self%first .or. x > self%last)) return
-    call self%find(x, i, s)
+    call find(self, x, i, s)
     associate (c => self%coefficient)
       slope = c(1, i) + s*(2*c(2, i) + s*3*c(3, i))
     end associate

@@ -38,8 +38,6 @@ module valve_gas
     procedure :: events
     procedure :: pass
     procedure :: exchange
-    procedure, private :: close_valves
-    procedure, private :: open_valve
   end type valve_gas_t
 
 contains
@@ -51,18 +49,18 @@ contains
     real(dp) :: volume, largest, least, most
     volume = self%cylinder%volume(q)
     if (.not. abs(crank_speed) > 0) then
-      call self%close_valves(self%suction_pressure, volume)
+      call close_valves(self, self%suction_pressure, volume)
       return
     end if
     largest = self%cylinder%dead_volume + self%cylinder%displacement
     least = self%cylinder%dead_volume
     most = min(self%discharge_pressure, self%suction_pressure*(largest/least)**self%exponent)   ! pressure at the inner dead centre
     if (self%cylinder%volume_slope(q)*crank_speed < 0 .or. volume >= largest) then
-      call self%close_valves(self%suction_pressure, largest)
-      if (volume <= self%discharge_volume) call self%open_valve(discharge_open, q, crank_speed)
+      call close_valves(self, self%suction_pressure, largest)
+      if (volume <= self%discharge_volume) call open_valve(self, discharge_open, q, crank_speed)
     else
-      call self%close_valves(most, least)
-      if (volume >= self%suction_volume) call self%open_valve(suction_open, q, crank_speed)
+      call close_valves(self, most, least)
+      if (volume >= self%suction_volume) call open_valve(self, suction_open, q, crank_speed)
     end if
   end subroutine find_state
 
@@ -114,9 +112,9 @@ contains
     integer, intent(in) :: event
     real(dp), intent(in) :: q, crank_speed
     if (self%state == both_closed) then
-      call self%open_valve(merge(discharge_open, suction_open, event == 1), q, crank_speed)
+      call open_valve(self, merge(discharge_open, suction_open, event == 1), q, crank_speed)
     else
-      call self%close_valves(self%pressure(q), self%cylinder%volume(q))
+      call close_valves(self, self%pressure(q), self%cylinder%volume(q))
     end if
   end subroutine pass
 

@@ -23,7 +23,6 @@ module case_loader
     procedure :: group => load_group
     procedure :: choice => load_choice
     procedure :: law => load_law
-    procedure, private :: place_of
   end type loader_t
 
 contains
@@ -94,7 +93,7 @@ contains
     character(len=*), intent(in) :: key, default, says
     associate (unused => default, unused_too => says)
     end associate
-    if (self%sets) self%law_name = self%values%values(self%place_of(key))%text
+    if (self%sets) self%law_name = self%values%values(place_of(self, key))%text
     if (allocated(self%chosen)) deallocate (self%chosen)
   end subroutine load_choice
 
@@ -108,7 +107,7 @@ contains
     if (.not. (self%sets .and. self%is_present) .or. allocated(self%chosen)) return
     if (name /= self%law_name) return
     if (present(variant)) then
-      if (self%values%values(self%place_of('variant'))%text /= variant) return
+      if (self%values%values(place_of(self, 'variant'))%text /= variant) return
     end if
     allocate (self%chosen, source=law)
     self%chosen%name = name
@@ -134,7 +133,7 @@ contains
     character(len=:), allocatable, intent(inout), optional :: text
     integer :: place
     if (.not. self%sets) return
-    place = self%place_of(trim(key%name))
+    place = place_of(self, trim(key%name))
     associate (value => self%values%values(place))
       if (present(reals)) reals = value%reals(:size(reals))
       if (present(whole)) whole = value%whole

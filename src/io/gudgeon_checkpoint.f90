@@ -44,7 +44,6 @@ module gudgeon_checkpoint
   contains
     procedure :: save => save_checkpoint
     procedure :: load
-    procedure, private :: exchange
   end type checkpoint_t
 
   !> Where a run begins: at its start, unless one of the first two components is true.
@@ -68,7 +67,7 @@ contains
     integer :: ignored
 
     call archive%begin_writing()
-    call self%exchange(archive)
+    call exchange(self, archive)
     call archive%contents(bytes)
     bytes = title//bytes
     call write_text(self%path, bytes//mark_of(bytes), error)
@@ -98,7 +97,7 @@ contains
       wrong = 'damaged'//restart_hint
     else
       call archive%begin_reading(bytes(len(title) + 1:last))
-      call self%exchange(archive)
+      call exchange(self, archive)
       if (archive%failed .or. .not. archive%is_at_end()) wrong = 'written by another version of gudgeon'//restart_hint
     end if
     if (allocated(wrong)) call fail(error, printable(self%path, 200)//': '//wrong, status_case_file)

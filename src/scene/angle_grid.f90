@@ -22,8 +22,6 @@ module angle_grid
     procedure :: next_passage
     procedure :: is_due
     procedure :: exchange
-    procedure, private :: angle
-    procedure, private :: find_target
   end type angle_grid_t
 
 contains
@@ -43,9 +41,9 @@ contains
     real(dp) :: place
     place = (crank_angle - self%origin)/two_pi*self%per_revolution
     self%last = anint(place)
-    is_there = abs(crank_angle - self%angle(self%last)) <= 4*epsilon(1.0_dp)*max(1.0_dp, abs(crank_angle), abs(self%origin))
+    is_there = abs(crank_angle - angle(self, self%last)) <= 4*epsilon(1.0_dp)*max(1.0_dp, abs(crank_angle), abs(self%origin))
     self%side = 0
-    if (.not. is_there) self%side = sign(1.0_dp, crank_angle - self%angle(self%last))
+    if (.not. is_there) self%side = sign(1.0_dp, crank_angle - angle(self, self%last))
   end subroutine begin
 
   !> Find the next time between t_from and t_to at which the crank is at an angle of the grid. Both times must lie inside the last
@@ -61,14 +59,14 @@ contains
     real(dp) :: target, sense, crank_angle
     call method%interpolate(t_to, y)
     crank_angle = scene%crank_angle(t_to, y)
-    call self%find_target(crank_angle, target, sense, is_found)
+    call find_target(self, crank_angle, target, sense, is_found)
     t = t_to
     if (is_found) then
-      call find_passage(method, scene, self%angle(target), sense, t_from, t_to, 0.0_dp, t, y)
+      call find_passage(method, scene, angle(self, target), sense, t_from, t_to, 0.0_dp, t, y)
       self%last = target
       self%side = sense
-    else if (.not. abs(self%side) > 0 .and. abs(crank_angle - self%angle(self%last)) > 0) then
-      self%side = sign(1.0_dp, crank_angle - self%angle(self%last))
+    else if (.not. abs(self%side) > 0 .and. abs(crank_angle - angle(self, self%last)) > 0) then
+      self%side = sign(1.0_dp, crank_angle - angle(self, self%last))
     end if
   end subroutine next_passage
 
@@ -81,14 +79,14 @@ contains
     target = self%last
     if (self%side >= 0) target = target + 1
     sense = 1
-    is_found = crank_angle >= self%angle(target)
-    if (self%side < 0) is_found = crank_angle > self%angle(target)   ! it has turned back, and is not at the angle any more
+    is_found = crank_angle >= angle(self, target)
+    if (self%side < 0) is_found = crank_angle > angle(self, target)   ! it has turned back, and is not at the angle any more
     if (is_found) return
     target = self%last
     if (self%side <= 0) target = target - 1
     sense = -1
-    is_found = crank_angle <= self%angle(target)
-    if (self%side > 0) is_found = crank_angle < self%angle(target)
+    is_found = crank_angle <= angle(self, target)
+    if (self%side > 0) is_found = crank_angle < angle(self, target)
   end subroutine find_target
 
   !> Whether the crank is at the next angle of the grid, within `rounding`, and the value of that angle.
@@ -100,7 +98,7 @@ contains
     real(dp), intent(out) :: grid_angle   !! [rad]
     real(dp) :: nearest_one
     nearest_one = anint((crank_angle - self%origin)/two_pi*self%per_revolution)
-    grid_angle = self%angle(nearest_one)
+    grid_angle = angle(self, nearest_one)
     is_there = abs(nearest_one - self%last) > 0 .and. abs(crank_angle - grid_angle) <= rounding
   end subroutine is_due
 

@@ -70,7 +70,6 @@ module gudgeon_recorder
     procedure :: exchange => exchange_recorder
     procedure :: take_archive
     procedure :: wear
-    procedure, private :: write_row
   end type recorder_t
 
 contains
@@ -454,7 +453,7 @@ contains
     if (self%angles%per_revolution > 0) then
       call put_last_angle(self, scene, t, y)
     else if (abs(self%first_sample + self%next_row*self%interval - t) <= 1e-9_dp*self%interval) then
-      call self%write_row(scene, t, y)
+      call write_row(self, scene, t, y)
     end if
     self%sink%expected_end = t
     call self%sink%take_progress(t)
@@ -472,7 +471,7 @@ contains
     if (.not. is_due .or. t < self%first_sample) return
     self%y = y
     if (scene%crank_moves) self%y(scene%crank%position) = crank_angle
-    call self%write_row(scene, t, self%y)
+    call write_row(self, scene, t, self%y)
   end subroutine put_last_angle
 
   !> Write the results so far to an archive, or read them from it. Settings are not archived.

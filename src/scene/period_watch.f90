@@ -55,8 +55,6 @@ module period_watch
     procedure :: take_point
     procedure :: follow
     procedure :: exchange
-    procedure, private :: close_revolution
-    procedure, private :: look_for_period
   end type period_watch_t
 
 contains
@@ -114,7 +112,7 @@ contains
       end if
       if (self%direction*(scene%crank_angle(t_to, self%y) - target) < 0) exit
       call find_passage(method, scene, target, self%direction, method%t_old, t_to, 0.0_dp, self%t, self%y)
-      call self%close_revolution()
+      call close_revolution(self)
     end do
   end subroutine follow
 
@@ -134,7 +132,7 @@ contains
       if (self%period > 0) self%has_ended = self%made >= self%window_after + self%period
       return
     end if
-    call self%look_for_period()
+    call look_for_period(self)
     if (.not. self%keeps_one_more) then
       self%has_ended = self%period > 0
     else if (self%period > 0 .or. self%made >= self%most_revolutions - self%longest) then
