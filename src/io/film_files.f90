@@ -44,23 +44,19 @@ contains
     type(case_t), intent(inout) :: case
     logical, intent(in) :: shows_progress
     type(error_t), allocatable, intent(out) :: error
-    logical :: was_stopped
-    call provide_table(case%joint, case, shows_progress, was_stopped, error)
-    if (.not. (was_stopped .or. allocated(error))) call provide_table(case%crank_pin, case, shows_progress, was_stopped, error)
-    if (was_stopped) call fail(error, 'interrupted before it began, while its film table was computed', status_integration)
+    call provide_table(case%joint, case, shows_progress, error)
+    if (.not. allocated(error)) call provide_table(case%crank_pin, case, shows_progress, error)
   end subroutine provide_tables
 
-  subroutine provide_table(joint, case, shows_progress, was_stopped, error)
+  subroutine provide_table(joint, case, shows_progress, error)
     type(joint_case_t), intent(inout) :: joint
     type(case_t), intent(in) :: case
     logical, intent(in) :: shows_progress
-    logical, intent(out) :: was_stopped
     type(error_t), allocatable, intent(out) :: error
     type(progress_watch_t) :: watch
     type(bearing_t) :: bearing
     character(len=:), allocatable :: key, path
     logical :: is_there, is_named, is_foreign
-    was_stopped = .false.
     if (.not. (allocated(joint%film) .and. joint%has_clearance())) return
     bearing = joint%bearing(case%mechanism%rod_length)
     associate (tolerance => case%integrator%relative_tolerance)
@@ -81,9 +77,12 @@ contains
         call watch%progress%start(case%name//': film table', shows_progress)
         call joint%film%make_table(bearing, tolerance, watch)
         call watch%progress%finish()
-        was_stopped = watch%wants_to_stop
-        if (.not. was_stopped) call save(path, key, joint%film, error)
-        if (allocated(error) .and. .not. is_named) deallocate (error)
+        if (watch%wants_to_stop) then
+          call fail(error, 'interrupted before it began, while its film table was computed', status_integration)
+        else
+          call save(path, key, joint%film, error)
+          if (allocated(error) .and. .not. is_named) deallocate (error)
+        end if
       end if
       !$omp end critical (film_tables)
     end associate
