@@ -9,7 +9,7 @@ module command_line
 
   !> The contents of the command line.
   type :: command_line_t
-    integer, private :: override_count = 0, case_count = 0, option_count = 0
+    integer, private :: option_count = 0
     logical, private :: has_interval = .false.    !! the interval of checkpoints is given
     character(len=:), allocatable :: out          !! folder for results
     character(len=:), allocatable :: overrides(:) !! GROUP.KEY=VALUE or GROUP=none in the given order, padded with blanks
@@ -58,7 +58,7 @@ contains
     line%accuracy = ''
     line%progress = 'auto'
     line%reference = ''
-    allocate (character(len=len(arguments)) :: line%overrides(size(arguments)), line%cases(size(arguments)))
+    allocate (character(len=len(arguments)) :: line%overrides(0), line%cases(0))
     only_cases = .false.
     i = 0
     do while (i < size(arguments) .and. .not. allocated(error))
@@ -66,11 +66,10 @@ contains
       text = trim(arguments(i))
       if (text == '') then
         call refuse('an empty argument is no case file')
-      else if (text == 'sweep' .and. .not. (line%sweep .or. only_cases) .and. line%case_count == 0) then
+      else if (text == 'sweep' .and. .not. (line%sweep .or. only_cases) .and. size(line%cases) == 0) then
         line%sweep = .true.
       else if (only_cases .or. index(text, '-') /= 1) then
-        line%case_count = line%case_count + 1
-        line%cases(line%case_count) = text
+        line%cases = [character(len=len(arguments)) :: line%cases, text]
       else if (text == '--') then
         only_cases = .true.
       else if (index(text, '--') == 1) then
@@ -79,8 +78,6 @@ contains
         call take_short()
       end if
     end do
-    call shorten(line%overrides, line%override_count)
-    call shorten(line%cases, line%case_count)
     if (allocated(error) .or. line%help .or. line%version) return
     if (line%template .or. line%reference /= '') then
       if (line%option_count > 1 .or. size(line%cases) > 0) &
@@ -175,8 +172,7 @@ contains
         if (value == '') wanted = 'must name a folder'
       case ('set')
         if (.not. is_override(value)) wanted = 'must have the form GROUP.KEY=VALUE or GROUP=none'
-        line%override_count = line%override_count + 1
-        line%overrides(line%override_count) = value
+        line%overrides = [character(len=len(arguments)) :: line%overrides, value]
       case ('accuracy')
         line%accuracy = value
         if (all(value /= ['draft    ', 'standard ', 'reference'])) wanted = 'must be draft, standard or reference'
@@ -262,17 +258,6 @@ contains
     read (value(colon + 1:), *) last
     if (first < 1 .or. first > last) last = 0
   end subroutine read_rows
-
-  !> Shorten a list to its first `count` elements.
-  subroutine shorten(list, count)
-    character(len=:), allocatable, intent(inout) :: list(:)
-    integer, intent(in) :: count
-    character(len=len(list)) :: kept(count)
-    kept = list(:count)
-    deallocate (list)
-    allocate (character(len=len(kept)) :: list(count))
-    list(:) = kept
-  end subroutine shorten
 
   !> The arguments of this program.
   function program_arguments() result(arguments)
