@@ -23,21 +23,29 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: text
     type(namelist_t) :: list
-    type(case_values_t), allocatable :: groups(:)
 
     call read_text_file(path, 1, 'study file', text, error)
     if (allocated(error)) return
     call read_namelist(text, path, list, error)
     if (allocated(error)) return
-    call take_groups(path, list, groups, error)
-    if (allocated(error)) return
     study%file = path
     study%name = case_name(path)
+    call fill_study(list, study, error)
+  end subroutine read_study
+
+  !> Set a study from the groups of its file.
+  subroutine fill_study(list, study, error)
+    type(namelist_t), intent(inout) :: list
+    type(study_t), intent(inout) :: study
+    type(error_t), allocatable, intent(out) :: error
+    type(case_values_t), allocatable :: groups(:)
+    call take_groups(study%file, list, groups, error)
+    if (allocated(error)) return
     call take_study(groups(1), study)
     call check_study(groups(1), study, size(groups) - 1, error)
     if (allocated(error)) return
     call take_parameters(groups(2:), study, error)
-  end subroutine read_study
+  end subroutine fill_study
 
   !> The values of each group of the file: first those of &study, then those of each &parameter.
   subroutine take_groups(path, list, groups, error)
