@@ -26,9 +26,11 @@ HREF = re.compile(r'(?:href|src)="([^"]+)"')
 
 
 def pages() -> list[Path]:
-    names = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md"], cwd=ROOT, check=True,
-                           capture_output=True, text=True).stdout.split()
-    return [ROOT / name for name in names]
+    """All pages of the checkout, also where it is not a repository."""
+    found = [*ROOT.glob("*.md")]
+    for folder in ("src", "tests", "data", "cases", "scripts"):
+        found += (ROOT / folder).rglob("*.md")
+    return sorted(page for page in found if "build" not in page.relative_to(ROOT).parts)
 
 
 def anchors(page: Path) -> set[str]:
