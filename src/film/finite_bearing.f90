@@ -23,7 +23,7 @@ module finite_bearing
     character(len=:), allocatable :: variant, cavitation
     integer :: table_points = 0      !! number of table values in each direction; 0: chosen from the tolerance
     integer :: film_points = 0       !! number of grid nodes round the film; 0: chosen from the tolerance
-    type(film_map_t) :: map          !! table of the variant `table`; if it is empty, the equation is solved at every evaluation
+    type(film_map_t) :: map = film_map_t()   !! of the variant `table`; empty: the equation is solved at every evaluation
     real(dp) :: half_length = 0      !! L/(2R)
     real(dp) :: pin_radius = 0       !! R [m]
     integer :: condition = 0         !! the cavitation condition, one of the constants of finite_film

@@ -21,7 +21,7 @@ module oscillating_film
   type, extends(film_law_t) :: oscillating_film_t
     character(len=:), allocatable :: variant   !! bearing_frame or as_printed
     integer :: quadrature_points = 0      !! number of points around the film; 0: chosen from the tolerance
-    type(oscillating_response_t) :: response
+    type(oscillating_response_t) :: response = oscillating_response_t()
     real(dp) :: pin_radius = 0            !! R [m]
     real(dp) :: inertia_scale = 0         !! c^2/(4 nu), the ratio of Q to the frequency [s]
     real(dp) :: largest_ratio = 1  !! eccentricity ratio beyond which the film does not change: the film between real surfaces is at

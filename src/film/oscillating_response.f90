@@ -51,7 +51,7 @@ module oscillating_response
 
   type :: oscillating_response_t
     logical :: as_printed = .false.       !! with the second acceleration term of (5.4), which subtracts 4iQ from P*'
-    type(inertia_series_t) :: series      !! for small Q
+    type(inertia_series_t) :: series = inertia_series_t()   !! for small Q
     type(rule_t), allocatable :: rule(:)  !! for larger Q; the rule with the fewest points first
   contains
     procedure, non_overridable :: respond

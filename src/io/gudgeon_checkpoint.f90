@@ -29,7 +29,7 @@ module gudgeon_checkpoint
   type :: file_mark_t
     integer(int64) :: length = 0
     integer(int64) :: checksum = 0
-    type(checksum_t), private :: sum
+    type(checksum_t), private :: sum = checksum_t()
   contains
     procedure :: move_to
   end type file_mark_t

@@ -24,13 +24,13 @@ module cycle_statistics
   type :: cycle_t
     real(dp) :: duration = 0                          !! [s]
     real(dp) :: dissipated_energy = 0                 !! energy taken from the bodies by the joints [J]
-    type(pin_cycle_t) :: pin(skirt)
+    type(pin_cycle_t) :: pin(skirt) = pin_cycle_t()
   end type cycle_t
 
   !> Sums and extremes over the revolutions.
   type :: cycle_statistics_t
     integer :: cycles = 0
-    type(cycle_t) :: total                            !! sums of times, counts and energies; extremes of the other quantities
+    type(cycle_t) :: total = cycle_t()   !! sums of times, counts and energies; extremes of the other quantities
     !> Sums of extremes, for means over the revolutions: the smallest film thickness [m] and the largest force [N] at each place.
     real(dp) :: film_sum(skirt) = 0, force_sum(skirt) = 0
   contains
