@@ -32,7 +32,7 @@ module film_map
     integer :: film_points = 0             !! number of grid nodes round the film; Richardson's extrapolation uses half as many too
     integer :: points = 0                  !! number of values in each direction; 0: the table is empty
     real(dp) :: largest_error = 0          !! largest relative error of the force, against solutions between the values of the table
-    real(dp) :: mean_error = 0             !! root-mean-square of that error
+    real(dp) :: mean_error = 0             !! root-mean-square of that error, evenly over tau and chi
     real(dp), private :: per_tau = 0, per_chi = 0   !! intervals per radian
     real(dp), allocatable, private :: c(:, :, :)    !! spline coefficients of G_r and G_t: (function, chi, tau)
     real(dp), allocatable, private :: more(:, :, :) !! spline coefficients of G_p and G_q
@@ -53,7 +53,9 @@ module film_map
   end type place_t
 
   real(dp), parameter :: last_gap = 1e-4_dp     !! 1 - eps of the last row; beyond it the functions G keep their values
-  integer, parameter :: sample_rows = 16, sample_directions = 12   !! numbers of points at which the error is measured
+  integer, parameter :: even_rows = 16, thin_rows = 6           !! rows of the sample over all eccentricities, and in thin gaps
+  integer, parameter :: sample_rows = even_rows + thin_rows, sample_directions = 12   !! points at which the error is measured
+  real(dp), parameter :: thin_gap = 7e-3_dp                     !! 1 - eps below which a gap of the sample is thin
 
 contains
 
@@ -148,16 +150,25 @@ contains
   end subroutine solve_row
 
   !> Position of a sample point, at which the table is compared with a solution. It does not depend on the size of the table: tau
-  !> and chi are distributed by the golden section, so that they are nodes of no table.
+  !> and chi are distributed by the golden section, so that they are nodes of no table. In thin gaps, the last twentieth of tau, the
+  !> errors are largest: rows of their own are there, evenly in the logarithm of the gap down to the last row of the table. Their
+  !> directions are those of withdrawal, in which the force is smallest.
   pure subroutine place_sample(i, j, gap, alpha)
     integer, intent(in) :: i, j   !! number of the row (of one eccentricity ratio), and of the direction
     real(dp), intent(out) :: gap  !! 1 - eps
     real(dp), intent(out) :: alpha
     real(dp), parameter :: golden = 0.61803398874989485_dp
-    real(dp) :: tau
-    tau = modulo(golden*i, 1.0_dp)*tau_of(last_gap)
-    gap = gap_at(tau)
-    alpha = direction_at(pi*(j - 1 + modulo(golden*golden*i, 1.0_dp))/sample_directions, cos(tau))
+    real(dp) :: tau, chi
+    chi = (j - 1 + modulo(golden*golden*i, 1.0_dp))/sample_directions
+    if (i <= even_rows) then
+      tau = modulo(golden*i, 1.0_dp)*tau_of(last_gap)
+      gap = gap_at(tau)
+    else
+      gap = thin_gap*(last_gap/thin_gap)**((i - even_rows - 0.25_dp)/thin_rows)
+      tau = tau_of(gap)
+      chi = 0.5_dp*(1 + chi)
+    end if
+    alpha = direction_at(pi*chi, cos(tau))
   end subroutine place_sample
 
   !> The forces along n and t for all directions of a row of the sample, from the solver.
@@ -191,7 +202,7 @@ contains
       end do
     end do
     self%largest_error = maxval(errors)
-    self%mean_error = sqrt(sum(errors**2)/size(errors))
+    self%mean_error = sqrt(sum(errors(:, :even_rows)**2)/(even_rows*sample_directions))
   end subroutine find_errors
 
   !> V Phi_r and V Phi_t [1/s] for a velocity (B, T) [1/s] and a given eps^2 (< 1).

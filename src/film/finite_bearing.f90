@@ -130,7 +130,7 @@ contains
     key = ''
     if (self%variant /= 'table') return
     call choose_points(self, tolerance, table_points, film_points)
-    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 4 '//self%cavitation//' ', 0.5_dp*bearing%length/bearing%pin_radius(), &
+    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 5 '//self%cavitation//' ', 0.5_dp*bearing%length/bearing%pin_radius(), &
       ' ', table_points, ' ', film_points
     key = trim(text)
   end function table_key

@@ -66,7 +66,7 @@ module summary_quantities
   type(quantity_t), parameter :: of_joints(*) = [ &
     quantity_t('viscosity', 'Pa s', 'dynamic viscosity of the oil at the temperature of the film'), &
     quantity_t('film_table_error', '1', &
-      'largest relative error of the force in the table of the film against its solver, at sample points when it was made'), &
+      'largest relative error of the force in the table of the film against its solver, at gaps from 1e-4 of the clearance on'), &
     quantity_t('film_table_mean_error', '1', 'root mean square of the same'), &
     quantity_t('min_film_thickness', 'm', 'smallest film thickness; negative: deepest penetration'), &
     quantity_t('contacts', '1', 'contacts that began'), &
