@@ -329,7 +329,7 @@ class RowChecks:
             blur += math.hypot(other[0] - want[0], other[1] - want[1])
         blur += self.blur_of_share(row, i) * math.hypot(*want)
         miss = math.hypot(n[0] * force[0] + n[1] * force[1] - share * want[0], n[0] * force[1] - n[1] * force[0] - share * want[1])
-        self.take("film law", miss, (LAW + law.margin) * share * math.hypot(*want) + 10 * blur, t)
+        self.take("film law", miss, (LAW + law.margin(eps, gap, along, across, turn)) * share * math.hypot(*want) + 10 * blur, t)
 
     def blur_of_share(self, row: Row, i: int) -> float:
         """Error of the share of a film in transition to contact: a quotient of two differences of lengths, at a time that is
@@ -375,10 +375,8 @@ class RowChecks:
             x, y = (slope([times[k] for k in rows], [column[k] for k in rows]) for column in columns)
             return n[0] * x + n[1] * y, n[0] * y - n[1] * x
 
-        def at_rate(reach: int) -> tuple[float, float]:
-            return law.force(size / c, row.get["film_thickness"] / c, *rate(reach), turn)
-
-        want, coarse = at_rate(2), at_rate(1)
+        where = size / c, row.get["film_thickness"] / c
+        want, coarse = (law.force(*where, *rate(reach), turn) for reach in (2, 1))
         blur = thicker * math.hypot(want[0] - coarse[0], want[1] - coarse[1])
         if blur > CLEAR * load:
             return
@@ -389,7 +387,7 @@ class RowChecks:
         # the force is that of the walls, whose deflection is known to the tolerance of the eccentricity
         deflection = abs(row.get["wall_deflection"])
         walls = min(1.0, self.run.number("integrator.relative_tolerance") * c / deflection) if deflection > 0 else 1.0
-        self.take("film law", miss, (between + law.margin + walls) * load + 3 * blur + row.law_noise, row.get["time"])
+        self.take("film law", miss, (between + law.margin(*where, *rate(2), turn) + walls) * load + 3 * blur + row.law_noise, row.get["time"])
 
     def check_gas(self, row: Row, i: int, t: float) -> None:
         get, gas = row.get, self.gas
