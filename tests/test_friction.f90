@@ -108,6 +108,8 @@ contains
       end do
       if (law%name == 'threlfall') call check%relative(law%friction_ratio(5e-3_dp, 1), -0.0621495871881_dp, 1e-11_dp, &
         'threlfall at half v1')
+      if (law%name == 'threlfall') call check%relative(law%friction_ratio(1e-15_dp, 1), -2.4e-14_dp, 1e-12_dp, &
+        'threlfall at 1e-13 of v1')
       if (law%name == 'brown_mcphee') call check%relative(law%friction_ratio(-0.05_dp, 1), 0.0841816326531_dp, 1e-11_dp, &
         'brown_mcphee at five transition speeds')
       if (law%name == 'stribeck') call check%relative(law%friction_ratio(0.01_dp, 1), -0.111172030865_dp, 1e-11_dp, &

@@ -34,12 +34,15 @@ contains
     if (.not. self%v1 > 0) key = 'v1'
   end subroutine conflict
 
-  !> Ratio of friction to normal force: continuous, with a kink at v1.
+  !> Ratio of friction to normal force: continuous, with a kink at v1. 1 - e^-3x is 2 t/(1 + t) with t = tanh(3x/2), which keeps its
+  !> digits at small speeds.
   pure function sliding_ratio(self, sliding_speed) result(ratio)
     class(threlfall_t), intent(in) :: self
     real(dp), value, intent(in) :: sliding_speed
     real(dp) :: ratio
-    ratio = -sign(self%coefficient*(1 - exp(-3*min(abs(sliding_speed)/self%v1, 1.0_dp))), sliding_speed)
+    associate (t => tanh(1.5_dp*min(abs(sliding_speed)/self%v1, 1.0_dp)))
+      ratio = -sign(self%coefficient*2*t/(1 + t), sliding_speed)
+    end associate
   end function sliding_ratio
 
   pure function friction_ratio_slope(self, sliding_speed) result(slope)
