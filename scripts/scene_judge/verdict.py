@@ -50,6 +50,10 @@ def judge_energy(checks: RowChecks, verdict: Verdict) -> None:
     angle = run.columns["crank_angle"]
     whole = ENERGY * tolerance * max(1.0, abs(angle[-1] - angle[0]) / (2 * math.pi))
     allowed, drifts = (max(FLOOR, min(ceiling, whole)) for ceiling in (CEILING, DRIFT))
+    found = verdict.energy = balances(checks)
+    if found.bound > BLURRED:
+        verdict.notes.append(f"integrals not judged: the quadrature is only known to {found.bound:.1g}")
+        return
     for joint, prefix in ((checks, ""), (checks.crank_pin, "crank_pin_")):
         if joint and joint.elastic and joint.film_law and not joint.film_law.is_solved:
             drift, _, name = moving_film_drift(joint)
@@ -57,10 +61,6 @@ def judge_energy(checks: RowChecks, verdict: Verdict) -> None:
             if not drift <= allowed:
                 verdict.faults.append(f"film law: {prefix}{name} is not the integral of the rate by the film's force: {drift:.3g} of the clearance "
                                       f"off, {allowed:.1g} allowed")
-    found = verdict.energy = balances(checks)
-    if found.bound > BLURRED:
-        verdict.notes.append(f"integrals not judged: the quadrature is only known to {found.bound:.1g}")
-        return
     if found.plain > allowed and not found.residual > allowed:
         verdict.notes.append(f"energy not judged: {found.plain:.1g} of it is missing, but the quadrature is only known to {found.bound:.1g}")
     if not found.residual <= allowed:
