@@ -7,8 +7,8 @@
     scripts/report.py sim_IV --cycles crank_speed guide_force
 
 The page is one file and needs no network. It shows the pressure around the pin in a film of finite length if the run has written
-it (&output film_times = 'from:to:count'), and the worn surfaces of a run with &wear. Traces are searched in results/ of the current folder, then in results/ of the
-checkout. If the result of a shipped case or of a case file is missing, the case is run with the release build.
+it (&output film_times = 'from:to:count'), and the worn surfaces of a run with &wear. Traces are searched in results/ of the current
+folder, then in results/ of the checkout. If the result of a shipped case or of a case file is missing, the case is run with the release build.
 """
 
 import argparse
