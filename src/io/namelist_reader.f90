@@ -7,7 +7,7 @@ module namelist_reader
   use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, digits, shown
   implicit none
   private
-  public :: namelist_t, entry_t, token_t, read_namelist, read_values
+  public :: namelist_t, token_t, read_namelist, read_values
 
   !> One value as written, `repeat` times.
   type :: token_t

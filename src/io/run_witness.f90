@@ -17,7 +17,7 @@ module run_witness
   implicit none
   private
   public :: witness_t, run, has_coarse_table, means_of, figures_of, n_statistics, statistic_names, &
-    n_figures, figure_names, wear_figures, loss_figure
+    n_figures, figure_names, loss_figure
 
   integer, parameter :: n_statistics = 4
   character(len=*), parameter :: statistic_names(n_statistics) = [character(len=23) :: 'mean_pin_force', 'contact_time_fraction', &
