@@ -191,9 +191,10 @@ class RowChecks:
         share = self.share(depth)
         low, high = (share * self.contact.force(depth, rate + d, t) for d in (-give, give))
         normal, friction = get["normal_force"], get["friction_force"]
-        # the depth is the difference of two lengths
+        # the depth is the difference of two lengths, and the force may have ended in a row at the rounded time of this event
         exponent = self.contact.geometry.exponent + 2 * self.weighted
-        blur = exponent * 1e-15 * self.run.number("joint.clearance") / depth if depth > 0 else 0.0
+        rounding = 1e-15 * self.run.number("joint.clearance") + 4e-16 * abs(t * rate)
+        blur = exponent * rounding / depth if depth > 0 else 0.0
         self.take("contact law", inside(normal, low, high), (LAW + blur) * max(abs(normal), share * self.contact.size(depth, rate, t)), t)
         if "contact_half_angle" in get:
             self.check_arc(row, depth, normal, blur, t)
