@@ -19,7 +19,8 @@ BLURRED = 1e-3    # of the clearance: if the quadrature error exceeds this, the 
 LEAST_RATIO = 1e-3    # smallest eccentricity ratio at which the line of centres is known
 FULL_TURN = 48    # directions in which the force of a film is looked for
 HALVINGS = 100    # at most
-MOST = 8_000      # number of rows for which the rate is found if the film's pressure is integrated
+MOST = 8_000      # number of rows for which the rate is found if the film's pressure is integrated: in blocks over the whole run
+BLOCK = 500       # rows one after the other
 
 
 def rate_for(film: Film, eps: float, gap: float, pin_speed: float, force: Vector, near: float | None) -> tuple[Vector, float]:
@@ -74,12 +75,15 @@ def bracket(off, near: float | None) -> tuple[float, float]:
 
 
 def film_rates(checks: RowChecks) -> dict[int, Vector]:
-    """Rate of the film's place along x and y by its force, in all rows where there is one, or in some of them if it takes long."""
+    """Rate of the film's place along x and y by its force, in all rows where there is one, or in some blocks of them if it takes
+    long."""
     law, columns = checks.film_law, checks.run.columns
     every = 1 if law.law == "pinkus_sternlicht" and law.variant != "half_film" else max(1, len(checks.run.times) // MOST)
     found: dict[int, Vector] = {}
     near = None
-    for i in range(0, len(checks.run.times), every):
+    for i in range(len(checks.run.times)):
+        if i // BLOCK % every:
+            continue
         place = columns["film_eccentricity_x"][i], columns["film_eccentricity_y"][i]
         force = columns["film_force_x"][i], columns["film_force_y"][i]
         size, load = math.hypot(*place), math.hypot(*force)
