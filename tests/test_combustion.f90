@@ -28,6 +28,11 @@ contains
     call energy_of_the_gas(check, 3.0_dp)
     call energy_of_the_gas(check, 2.37_dp)
     call energy_of_the_gas(check, 0.4_dp)
+    call short_release(check, 1.0_dp, 5.0_dp)
+    call short_release(check, 14.0_dp, 470.0_dp)
+    call short_release(check, 20.0_dp, 5.0_dp)
+    call short_release(check, 87.3_dp, 0.01_dp)
+    call short_release(check, 100.0_dp, 1000.0_dp)
   end subroutine run_test_combustion
 
   subroutine volume_is_consistent(check)
@@ -196,6 +201,24 @@ contains
       /(gas%heat_capacity_ratio - 1)
     call check%relative(inner + work, 165*(1 - exp(-5.0_dp)), 1e-9_dp, 'first law over the combustion')
   end subroutine energy_of_the_gas
+
+  !> A release within a thousandth of a degree about the dead centre is one at constant volume, also if nearly all of it comes in a
+  !> small part of its duration (exponents up to 100).
+  subroutine short_release(check, form, efficiency)
+    class(checks_t), intent(inout) :: check
+    real(dp), intent(in) :: form, efficiency
+    type(gas_cycle_t) :: gas
+    type(error_t), allocatable :: error
+    real(dp) :: compressed, released
+    gas = engine(165.0_dp, form)
+    gas%release = heat_release_t(165.0_dp, efficiency, form, (360 - 5e-4_dp)*degree, 1e-3_dp*degree)
+    call new_gas_cycle(gas, 1e-10_dp, error)
+    call check%that(.not. allocated(error), 'integration of a short release')
+    compressed = 101325*(gas%cylinder%volume(pi)/gas%cylinder%volume(2*pi))**1.4_dp
+    released = 0.4_dp*165*(1 - exp(-efficiency))/gas%cylinder%volume(2*pi)
+    call check%relative(gas%pressure(gas%bound(2), part_expansion, 0.0_dp), compressed + released, 1e-8_dp, &
+      'a short release of heat')
+  end subroutine short_release
 
   !> Tables for four tolerances against the most accurate one, at angles between the points of both; and the most accurate table
   !> against p V^gamma, which is constant without heat release. The tables' own error estimates are not used.
