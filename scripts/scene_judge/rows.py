@@ -28,6 +28,7 @@ CLEAR = 0.01       # largest relative uncertainty of a force, from the film's ve
 MOVING = 2e-4, 2000  # allowed error of a rate in rows between two steps, relative and in tolerances: there the positions of the film
                      # are as accurate as in the steps, but not their differences
 EVENT = 1e-10     # error of the time of an event, of the distance to the row before it
+LANDING = 0.1     # error of a position where a step lands on an event, in tolerances of the clearance
 LEAST_BEND = 5e-9  # [m] if the break-away deflection is smaller, break-away is within a step and cannot be checked between steps
 BENT = 1000       # allowed excess over static friction in rows between the steps, in tolerances of the static friction
 
@@ -194,7 +195,7 @@ class RowChecks:
         # the depth is the difference of two lengths, and the force may have ended in a row at the rounded time of this event
         exponent = self.contact.geometry.exponent + 2 * self.weighted
         rounding = 1e-15 * self.run.number("joint.clearance") + 4e-16 * abs(t * rate)
-        blur = exponent * rounding / depth if depth > 0 else 0.0
+        blur = exponent * rounding / depth + self.blur_of_share(row, i) if depth > 0 else 0.0
         self.take("contact law", inside(normal, low, high), (LAW + blur) * max(abs(normal), share * self.contact.size(depth, rate, t)), t)
         if "contact_half_angle" in get:
             self.check_arc(row, depth, normal, blur, t)
@@ -334,12 +335,16 @@ class RowChecks:
 
     def blur_of_share(self, row: Row, i: int) -> float:
         """Error of the share of a film in transition to contact: a quotient of two differences of lengths, at a time that is
-        rounded as well, and may be that of an event."""
+        rounded as well, and may be that of an event. A step that lands on the event of a kink ends within its own error of it, and
+        the share goes on linearly until the kink is reached."""
         if not self.weighted:
             return 0.0
+        clearance, depth = self.run.number("joint.clearance"), self.run.number("lubrication.transition_depth")
+        landing = LANDING * self.run.number("integrator.relative_tolerance") * clearance
+        near = min(abs(row.get["film_thickness"] + kink) for kink in (0.0, depth)) <= landing
         late = 4e-16 * abs(row.get["time"]) + (EVENT * (row.get["time"] - self.run.times[i - 1]) if i else 0.0)
-        rounding = 4e-15 * self.run.number("joint.clearance") + late * math.hypot(*row.slip)
-        return rounding / self.run.number("lubrication.transition_depth")
+        rounding = 4e-15 * clearance + late * math.hypot(*row.slip)
+        return (rounding + near * landing) / depth
 
     def check_oscillating(self, row: Row, n: tuple[float, float], force: tuple[float, float], share: float, eps: float, gap: float,
                           i: int) -> None:
