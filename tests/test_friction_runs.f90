@@ -24,6 +24,7 @@ contains
     class(checks_t), intent(inout) :: check
     call surfaces_stick_above_the_sliding_friction(check)
     call coulomb_is_the_limit_of_smooth_curves(check)
+    call static_friction_is_not_passed_over(check)
     call closed_jacobian(check)
     call methods_agree(check)
     call bristles_live_in_contact(check)
@@ -80,6 +81,36 @@ contains
     end do
     call check%that(error(2) < 0.3_dp*error(1) .and. error(3) < 0.3_dp*error(2), 'Stribeck''s curve converges to static friction')
   end subroutine coulomb_is_the_limit_of_smooth_curves
+
+  !> Static friction in a narrow range of speeds, over which a step could pass: the surfaces stick, as with Coulomb's law, where
+  !> sticking is an event.
+  subroutine static_friction_is_not_passed_over(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: file = 'cases/sim_I_oscillating.nml'
+    character(len=long), parameter :: common(5) = [character(len=long) :: 'integrator.revolutions=0.33', &
+      'contact.youngs_modulus=2771028467,272870190852', 'friction.coefficient=0.1', 'friction.static_coefficient=1.0', &
+      'friction.v0=0']
+    character(len=long), parameter :: laws(3) = [character(len=long) :: 'friction.law=brown_mcphee', 'friction.law=brown_mcphee', &
+      'friction.law=stribeck']
+    character(len=long), parameter :: methods(3) = [character(len=long) :: 'integrator.method=auto', 'integrator.method=radau', &
+      'integrator.method=radau']
+    character(len=long), parameter :: speeds(3) = [character(len=long) :: 'friction.transition_speed=1e-5', &
+      'friction.transition_speed=1e-5', 'friction.transition_speed=1e-7']
+    type(trace_t) :: coulomb, narrow
+    real(dp) :: error
+    integer :: i
+    coulomb = run_case(file, [character(len=long) :: common, 'integrator.relative_tolerance=1e-9', 'friction.law=coulomb', &
+      'friction.v1=0'])
+    call check%that(size(coulomb%event) >= 6, 'contacts with static friction')
+    do i = 1, size(laws)
+      narrow = run_case(file, [character(len=long) :: common, 'integrator.relative_tolerance=1e-6', methods(i), laws(i), &
+        speeds(i), 'friction.stribeck_speed=1e-5', 'friction.viscous_coefficient=0'])
+      error = huge(error)
+      if (all(shape(narrow%values) == shape(coulomb%values))) error = maxval(abs( &
+        narrow%values(column(narrow, 'eccentricity_ratio[-]'), :) - coulomb%values(column(coulomb, 'eccentricity_ratio[-]'), :)))
+      call check%close_to(error, 0.0_dp, 0.02_dp, 'motion with narrow static friction: '//trim(laws(i))//', '//trim(methods(i)))
+    end do
+  end subroutine static_friction_is_not_passed_over
 
   !> The closed form of the Jacobian against finite differences, for every law, at constant crank speed and with a free crank.
   subroutine closed_jacobian(check)

@@ -70,7 +70,7 @@ contains
       motion%rod_end_speed = -40 + a%rod_end*t
       joint_after%eccentricity = [3e-4_dp, -4e-4_dp] + [0.02_dp, 0.01_dp]*t + 0.5_dp*a%pin(:, place)*t**2
       joint_after%eccentricity_rate = [0.02_dp, 0.01_dp] + a%pin(:, place)*t
-      call find_speeds(place, motion, joint_after)
+      call find_speeds(place, .false., motion, joint_after)
       call find_polar(1e-4_dp, joint_after)
       call find_sliding(radius, joint_after)
     end function joint_after

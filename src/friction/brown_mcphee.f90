@@ -15,6 +15,7 @@ module brown_mcphee
     procedure :: parameters
     procedure :: sliding_ratio
     procedure :: friction_ratio_slope
+    procedure :: static_speed
   end type brown_mcphee_t
 
 contains
@@ -57,4 +58,10 @@ contains
     end if
     slope = -(self%coefficient*4*(1 - tanh(4*u)**2) + self%static_part*peak_slope)/self%transition_speed - self%viscous_coefficient
   end function friction_ratio_slope
+
+  !> See `static_speed` of friction_law_t: that of the largest friction.
+  pure real(dp) function static_speed(self)
+    class(brown_mcphee_t), intent(in) :: self
+    static_speed = merge(self%transition_speed, 0.0_dp, self%static_part > 0)
+  end function static_speed
 end module brown_mcphee

@@ -22,6 +22,7 @@ module friction_law
     procedure, non_overridable :: friction_ratio
     procedure(sliding_ratio), deferred :: sliding_ratio
     procedure :: friction_ratio_slope
+    procedure :: static_speed => no_static_speed
     procedure :: holding_ratio
     procedure :: touch_down_limit => no_limit
     procedure :: state_friction => steady_friction
@@ -63,6 +64,15 @@ contains
       ratio = self%sliding_ratio(sliding_speed)
     end if
   end function friction_ratio
+
+  !> Sliding speed up to which the friction of a law that depends on the speed alone clearly exceeds that of faster sliding [m/s].
+  !> The default, 0, is for laws without such static friction.
+  pure real(dp) function no_static_speed(self)
+    class(friction_law_t), intent(in) :: self
+    associate (unused_self => self)
+    end associate
+    no_static_speed = 0
+  end function no_static_speed
 
   !> Derivative of the ratio with respect to the sliding speed [s/m], for implicit integration. The default, 0, is for laws that do
   !> not depend on the magnitude of the speed.

@@ -18,6 +18,7 @@ module stribeck
     procedure :: parameters
     procedure :: sliding_ratio
     procedure :: friction_ratio_slope
+    procedure :: static_speed
   end type stribeck_t
 
 contains
@@ -57,4 +58,10 @@ contains
     end if
     slope = slope - (self%coefficient + fall)*(1 - eased**2)/self%transition_speed - self%viscous_coefficient
   end function friction_ratio_slope
+
+  !> See `static_speed` of friction_law_t: that at which the static part has fallen to 1/e.
+  pure real(dp) function static_speed(self)
+    class(stribeck_t), intent(in) :: self
+    static_speed = merge(self%stribeck_speed, 0.0_dp, self%static_part > 0)
+  end function static_speed
 end module stribeck

@@ -19,7 +19,9 @@ module summary_quantities
     quantity_t('wall_time', 's', 'time that the run took by the clock'), &
     quantity_t('method', '', 'integration method of the case: auto, adams or radau'), &
     quantity_t('steps_accepted', '1', 'accepted steps of the integrator'), &
-    quantity_t('steps_rejected_error', '1', 'steps rejected because their estimated error was above the tolerance'), &
+    quantity_t('steps_rejected_error', '1', &
+      'steps rejected because their estimated error was above the tolerance, or because they passed over the static friction of &
+      &a pin that reverses its sliding'), &
     quantity_t('steps_rejected_penetration', '1', &
       'steps rejected because they entered contact deeper than `max_penetration` (step_rejection only)'), &
     quantity_t('steps_rejected_domain', '1', 'steps rejected because a film would have had no thickness'), &

@@ -92,6 +92,7 @@ module clearance_joint
     procedure :: n_states
     procedure :: complete
     procedure :: look
+    procedure :: static_speed
     procedure :: slopes
     procedure :: reach
     procedure :: state_slopes
@@ -275,8 +276,7 @@ contains
     own%power = 0
     force = 0
     if (self%phase /= phase_free) then
-      call find_speeds(self%place, motion, joint)
-      if (self%bearing_turns .and. self%place == piston_pin) joint%bearing_speed = motion%tilting%tilt_rate
+      call find_speeds(self%place, self%bearing_turns, motion, joint)
       if (self%phase == phase_contact) then
         call find_contact(self, y, joint, own)
         force = own%contact
@@ -476,8 +476,7 @@ contains
     if (allocated(self%worn)) call find_worn(self, joint, normal_force)
     if (allocated(self%elastic)) call find_elastic_thickness(self, joint)
     if (.not. is_known) return
-    call find_speeds(self%place, motion, joint)
-    if (self%bearing_turns .and. self%place == piston_pin) joint%bearing_speed = motion%tilting%tilt_rate
+    call find_speeds(self%place, self%bearing_turns, motion, joint)
     call find_sliding(self%pin_radius, joint)
   end subroutine complete
 
@@ -498,6 +497,13 @@ contains
       normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
     if (allocated(self%transition)) normal_force = normal_force*self%contact_weight(joint%penetration)
   end subroutine look
+
+  !> See `static_speed` of friction_law_t; 0 without friction or without contact.
+  elemental real(dp) function static_speed(self)
+    class(clearance_joint_t), intent(in) :: self
+    static_speed = 0
+    if (allocated(self%friction) .and. self%phase == phase_contact) static_speed = self%friction%static_speed()
+  end function static_speed
 
   !> The motion on which the film force depends. If both bodies rotate, the film is entrained with the sum of their angular speeds.
   pure function film_motion(self, bodies, motion, joint) result(film)

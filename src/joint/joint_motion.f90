@@ -45,9 +45,10 @@ contains
     end associate
   end subroutine find_polar
 
-  !> Angular speeds of the bodies on both sides of a pin of the chain, for a piston in an ideal guide.
-  pure subroutine find_speeds(place, motion, joint)
-    integer, intent(in) :: place   !! crank_pin or piston_pin
+  !> Angular speeds of the bodies on both sides of a pin of the chain.
+  pure subroutine find_speeds(place, bearing_turns, motion, joint)
+    integer, intent(in) :: place           !! crank_pin or piston_pin
+    logical, intent(in) :: bearing_turns   !! the bearing of the piston pin rotates: the piston has clearance in its bore
     type(motion_t), intent(in) :: motion
     type(joint_motion_t), intent(inout) :: joint
     if (place == crank_pin) then
@@ -56,6 +57,7 @@ contains
     else
       joint%journal_speed = motion%rod_end_speed(piston_pin)
       joint%bearing_speed = 0
+      if (bearing_turns) joint%bearing_speed = motion%tilting%tilt_rate
     end if
   end subroutine find_speeds
 

@@ -20,7 +20,7 @@ module ode_method
   integer, parameter :: limit_stability = 2   !! stability of the method: the fastest mode has decayed but still limits the step
   integer, parameter :: limit_max_step = 3    !! largest step of the settings
   integer, parameter :: limit_start = 4       !! order and step size were rising after a start
-  integer, parameter :: limit_refusal = 5     !! the problem refused a longer step (penetration, domain)
+  integer, parameter :: limit_refusal = 5     !! the problem refused a longer step (penetration, reversal, domain)
   integer, parameter :: n_limits = 5
   character(len=9), parameter :: limit_names(n_limits) = [character(len=9) :: 'error', 'stability', 'max_step', 'start', &
     'refusal']

@@ -9,7 +9,7 @@ module ode_problem
   implicit none
   private
   public :: ode_problem_t, difference_jacobian
-  public :: step_admitted, step_too_deep
+  public :: step_admitted, step_too_deep, step_too_far
   public :: event_continue, event_stop, max_events
 
   integer, parameter :: max_events = 24   !! largest number of event functions
@@ -17,6 +17,7 @@ module ode_problem
   !> Verdicts of `judge_step`.
   integer, parameter :: step_admitted = 0   !! the step is accepted
   integer, parameter :: step_too_deep = 1   !! the penetration is larger than allowed: shorten the step
+  integer, parameter :: step_too_far = 2    !! forces that no evaluation of the step shows lie within it: shorten the step
 
   !> Actions after an event.
   integer, parameter :: event_continue = 0  !! restart the method at the event

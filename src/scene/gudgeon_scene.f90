@@ -72,6 +72,7 @@ module gudgeon_scene
     logical :: measures_loss = .false.   !! the last of them is the energy taken by the joints
     logical :: is_plain = .true.    !! rigid bodies, an ideal guide and a drive that does not vary
     logical :: may_stick = .false.  !! a joint has set-valued friction
+    logical :: enters_at_step_end = .false.   !! contacts begin at the ends of steps, and steps that enter too deep are rejected
     logical :: has_more_rates = .false.  !! there are rates of integrals on request, of elastic members, of a guide, or of the law
                                          !! of a joint
     real(dp) :: entry_time = -huge(1.0_dp)          !! beginning of the last contact [s]
@@ -135,7 +136,8 @@ module gudgeon_scene
       integer, intent(in) :: index
     end function reported_event
 
-    !> Reject a step whose penetration at its end exceeds the limit of a joint.
+    !> Reject a step whose penetration at its end exceeds the limit of a joint, or in which a pin reverses its sliding and passes
+    !> over the static friction.
     pure module subroutine judge_step(self, t_old, y_old, t, y, verdict, fraction)
       class(scene_t), intent(in) :: self
       real(dp), intent(in) :: t_old, y_old(:), t, y(:)
@@ -168,6 +170,16 @@ module gudgeon_scene
       type(evaluation_t), intent(inout) :: now
       logical, intent(out) :: inside
     end subroutine find_general_accelerations
+
+    !> Set the motion of the bodies and of the journals in their bearings, as far as it follows from the state. `inside` is false if
+    !> it is not admissible.
+    pure module subroutine move_bodies(self, joints, t, y, now, inside)
+      class(scene_t), intent(in) :: self
+      type(clearance_joint_t), intent(in) :: joints(:)
+      real(dp), intent(in) :: t, y(self%n)
+      type(evaluation_t), intent(inout) :: now
+      logical, intent(out) :: inside
+    end subroutine move_bodies
 
     !> Claim the states of the elastic members.
     module subroutine claim_elastic(self)

@@ -148,7 +148,7 @@ contains
     close%integrator%relative_tolerance = tolerance
     close%integrator%absolute_tolerance = 0
     allocate (companion%scene, source=scene)
-    companion%scene%refuses_steps = .false.   ! contacts are entered at the root of the event function
+    companion%scene%enters_at_step_end = .false.   ! contacts are entered at the root of the event function
     if (allocated(companion%scene%turns)) companion%scene%turns%wanted = 1e30_dp   ! never reached
     call new_method('auto', companion%method, ignored)
     companion%method%settings = settings_for(close, companion%scene)

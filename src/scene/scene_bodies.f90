@@ -12,12 +12,7 @@ contains
 
   module procedure find_general_accelerations
     logical :: solvable
-    call self%read_crank(t, y, now%motion)
-    call self%place_journals(self%n_joints, joints, y, now, inside)
-    if (.not. inside) return
-    call place_more_bodies(self, t, y, now, inside)
-    if (.not. inside) return
-    call self%chain%move_rod(now%motion, inside)
+    call move_bodies(self, joints, t, y, now, inside)
     if (.not. inside) return
     call self%find_loads(self%n_joints, joints, y, now)
     call load_guide(self, now)
@@ -29,6 +24,13 @@ contains
       now%crank_moment, now%power)
     call add_power(self, now)
   end procedure find_general_accelerations
+
+  module procedure move_bodies
+    call self%read_crank(t, y, now%motion)
+    call self%place_journals(self%n_joints, joints, y, now, inside)
+    if (inside) call place_more_bodies(self, t, y, now, inside)
+    if (inside) call self%chain%move_rod(now%motion, inside)
+  end procedure move_bodies
 
   !> Set the position of a piston with clearance in its bore, of the shapes of the rod and of the flywheel. `inside` is false if
   !> they are not admissible.

@@ -7,6 +7,7 @@ module scene_builder
   use ode_method, only: ode_settings_t
   use chain_motion, only: piston_pin, crank_pin
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
+  use joint_events, only: may_pass_static
   use clearance_joint, only: clearance_joint_t
   use gudgeon_scene, only: scene_t
   use monotone_cubic, only: new_monotone_cubic
@@ -170,6 +171,7 @@ contains
     type(scene_t), intent(inout) :: scene
     integer :: i
     if (allocated(scene%guide)) call scene%guide%prepare()
+    scene%enters_at_step_end = .false.
     scene%refuses_steps = .false.
     do i = 1, size(scene%joints)
       associate (joint => scene%joints(i))
@@ -182,7 +184,8 @@ contains
         if (allocated(joint%transition)) call joint%transition%prepare(joint%bearing, joint%film%least_film_ratio)
         if (allocated(joint%elastic)) call joint%elastic%prepare(joint%bearing)
         if (allocated(joint%asperities)) call joint%asperities%prepare(joint%bearing)
-        if (allocated(joint%contact) .and. case%integrator%contact_entry == 'step_rejection') scene%refuses_steps = .true.
+        if (allocated(joint%contact) .and. case%integrator%contact_entry == 'step_rejection') scene%enters_at_step_end = .true.
+        scene%refuses_steps = scene%refuses_steps .or. scene%enters_at_step_end .or. may_pass_static(joint)
         if (makes_tables .and. allocated(joint%film)) &
           call joint%film%make_table(joint%bearing, case%integrator%relative_tolerance)
       end associate

@@ -2,8 +2,8 @@
 submodule (gudgeon_scene) scene_events
   use ode_problem, only: step_admitted, event_continue
   use joint_events, only: n_events, may_stick, may_lose_force, contact_changes, sliding_changes, film_held_changes, &
-    film_gone_changes, force_changes, contact_event, sliding_event, force_event, force_share, transition_events, judge_entry, &
-    rough_end, begin_contact, end_contact, pass_kink, choose_sliding
+    film_gone_changes, force_changes, contact_event, sliding_event, force_event, force_share, transition_events, &
+    judge_entry, judge_reversal, rough_end, begin_contact, end_contact, pass_kink, choose_sliding
   use joint_motion, only: outward_acceleration
   use guide_events, only: n_guide_events, corner_events, corner_force_events, corner_share, change_contact, &
     begin_corner_contact, contact_is_rough, rough_corner_end, inward_acceleration
@@ -198,20 +198,29 @@ contains
   end procedure reported_event
 
   module procedure judge_step
-    integer :: i, judged
+    type(evaluation_t) :: now
     real(dp) :: part
+    integer :: i, judged
+    logical :: inside
     verdict = step_admitted
     fraction = 1
-    do i = 1, self%n_joints
+    do i = 1, merge(self%n_joints, 0, self%enters_at_step_end)
       call judge_entry(self%joints(i), t_old, y_old, t, y, judged, part)
-      if (judged == step_admitted) cycle
-      verdict = judged
+      verdict = max(verdict, judged)
+      fraction = min(fraction, part)
+    end do
+    if (verdict /= step_admitted .or. .not. any(self%joints%static_speed() > 0)) return
+    call move_bodies(self, self%joints, t, y, now, inside)
+    do i = 1, merge(self%n_joints, 0, inside)
+      if (.not. self%joints(i)%static_speed() > 0) cycle
+      call judge_reversal(self%joints(i), now%motion, y_old, now%relative(i), judged, part)
+      verdict = max(verdict, judged)
       fraction = min(fraction, part)
     end do
   end procedure judge_step
 
   module procedure lands_on_step_end
-    lands_on_step_end = self%refuses_steps .and. self%event_of(index)%joint > 0 .and. &
+    lands_on_step_end = self%enters_at_step_end .and. self%event_of(index)%joint > 0 .and. &
       self%reported_event(index) == event_contact_begins
   end procedure lands_on_step_end
 

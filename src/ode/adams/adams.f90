@@ -21,7 +21,7 @@
 !> The error of a step is its weighted Euclidean norm, as in the published code.
 module adams
   use gudgeon_kinds, only: dp
-  use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
+  use ode_problem, only: ode_problem_t, step_admitted, step_too_far
   use ode_method, only: ode_method_t, highest_order, step_done, step_too_small, tolerance_too_small, left_domain, limit_start
   use adams_coefficients, only: adams_coefficients_t
   use adams_differences, only: extrapolate, correct
@@ -31,7 +31,7 @@ module adams
   public :: adams_t
 
   !> Reasons to repeat a step.
-  integer, parameter :: try_accepted = 0, try_error = 1, try_outside = 2, try_too_deep = 3
+  integer, parameter :: try_accepted = 0, try_error = 1, try_outside = 2, try_too_deep = 3, try_too_far = 4
 
   !> Squares of the estimated errors of the present trial at neighbouring orders, relative to the tolerance.
   type :: error_estimates_t
@@ -265,7 +265,7 @@ contains
     end if
     if (problem%refuses_steps) then
       call problem%judge_step(self%t, self%y, t_new, self%y_new, verdict, fraction)
-      if (verdict == step_too_deep) outcome = try_too_deep
+      outcome = merge(try_too_far, try_too_deep, verdict == step_too_far)
       if (verdict /= step_admitted) return
     end if
     self%statistics%evaluations = self%statistics%evaluations + 1

@@ -66,6 +66,9 @@ contains
     case (try_too_deep)
       self%limit = limit_refusal
       self%statistics%rejected_penetration = self%statistics%rejected_penetration + 1
+    case (try_too_far)
+      self%limit = limit_refusal
+      self%statistics%rejected_error = self%statistics%rejected_error + 1
     case default
       self%limit = limit_refusal
       self%statistics%rejected_domain = self%statistics%rejected_domain + 1

@@ -4,7 +4,7 @@
 !> Each step is solved by `collocation`. If that does not converge, or leaves the model, the step is halved.
 module radau
   use gudgeon_kinds, only: dp
-  use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
+  use ode_problem, only: ode_problem_t, step_admitted, step_too_far
   use ode_method, only: ode_method_t, step_done, step_too_small, tolerance_too_small, left_domain
   use gudgeon_archive, only: archive_t
   use collocation, only: collocation_t, n_formulas, newton_converged, newton_diverged, newton_outside, guess_ahead
@@ -14,7 +14,7 @@ module radau
 
   !> Reasons to repeat a step, besides those of Newton's method.
   integer, parameter :: try_accepted = newton_converged, try_outside = newton_outside
-  integer, parameter :: try_error = 11, try_too_deep = 12
+  integer, parameter :: try_error = 11, try_too_deep = 12, try_too_far = 13
 
   real(dp), parameter :: tight_tolerance = 5e-9_dp   !! at smaller tolerances the formula of 7 stages is used
   real(dp), parameter :: safety = 0.9_dp
@@ -227,7 +227,7 @@ contains
     verdict = step_admitted
     if (problem%refuses_steps) call problem%judge_step(self%t, self%y, self%t + self%h, self%y_new, verdict, fraction)
     if (verdict /= step_admitted) then
-      outcome = merge(try_too_deep, try_outside, verdict == step_too_deep)
+      outcome = merge(try_too_far, try_too_deep, verdict == step_too_far)
       return
     end if
     self%statistics%evaluations = self%statistics%evaluations + 1

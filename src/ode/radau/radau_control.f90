@@ -63,6 +63,9 @@ contains
     case (try_too_deep)
       self%statistics%rejected_penetration = self%statistics%rejected_penetration + 1
       factor = fraction
+    case (try_too_far)
+      self%statistics%rejected_error = self%statistics%rejected_error + 1
+      factor = fraction
     case (try_outside)
       self%statistics%rejected_domain = self%statistics%rejected_domain + 1
     case default
@@ -70,7 +73,7 @@ contains
       self%since_change = 0
       if (self%stages%contraction > 0.8_dp .and. .not. self%first) self%stages%level = max(1, self%stages%level - 1)
     end select
-    if (outcome /= try_error .and. outcome /= try_too_deep) self%cautious = cautious_steps
+    if (all(outcome /= [try_error, try_too_deep, try_too_far])) self%cautious = cautious_steps
     self%failed = .true.
     self%h = factor*self%h
     call weigh(self)
