@@ -21,6 +21,7 @@ contains
     call held_crank_with_film(check)
     call long_periods(check)
     call chaos(check)
+    call skirt_in_the_window(check)
     call gas_takes_two_revolutions(check)
     call free_crank(check)
     call exponent_is_the_decay(check)
@@ -106,6 +107,21 @@ contains
       call check%that(trace%report%exponent%is_known .and. trace%report%exponent%mean < -0.1_dp, what//': negative exponent')
     end do
   end subroutine long_periods
+
+  !> A piston with clearance in its bore: the events of the corners of its skirt too are those of the rows' revolutions alone.
+  subroutine skirt_in_the_window(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace, plain
+    real(dp) :: turn
+    turn = two_pi/261.79938779914943_dp
+    trace = run_case('cases/joints/piston_slap.nml', [character(len=long) :: until, window, 'run.most_revolutions=4', &
+      'run.period_revolutions=2', 'drive.kind=constant_speed', 'output.samples_per_revolution=20'])
+    plain = run_case('cases/joints/piston_slap.nml', [character(len=long) :: 'integrator.revolutions=4', &
+      'drive.kind=constant_speed', 'output.samples_per_revolution=20'])
+    call check%that(count(plain%event%pin > 2 .and. plain%event%time >= 2*turn) > 4, 'piston slap: contacts of the skirt')
+    call check%that(all(trace%event%time >= 2*turn) .and. size(trace%event) == count(plain%event%time >= 2*turn), &
+      'piston slap: events of the last two revolutions')
+  end subroutine skirt_in_the_window
 
   !> With 0.5 mm clearance the motion does not repeat; the run ends at most_revolutions, with the rows and events of the last of
   !> them.

@@ -424,8 +424,7 @@ contains
     type(evaluation_t), intent(in) :: now
     type(trace_event_t) :: event
     call pin%take_contact(kind, t, now, self%figures, event, self%cycles)
-    if (self%periods%keeps_one_more .and. self%periods%window_after < 0) return
-    call self%sink%take_event(event)
+    call pass_on(self, event)
   end subroutine take_contact
 
   !> Record that a contact of corner i of the skirt begins or ends at time t; `now` is evaluated before that event.
@@ -437,8 +436,16 @@ contains
     type(trace_event_t) :: event
     call self%guide%take_contact(i, kind, t, now, self%figures, event)
     if (allocated(self%cycles) .and. kind == event_contact_begins) call self%cycles%take_impact(skirt)
-    call self%sink%take_event(event)
+    call pass_on(self, event)
   end subroutine take_corner_contact
+
+  !> Pass an event on, unless only those of a last period are wanted, which has not begun.
+  subroutine pass_on(self, event)
+    class(recorder_t), intent(inout) :: self
+    type(trace_event_t), intent(in) :: event
+    if (self%periods%keeps_one_more .and. self%periods%window_after < 0) return
+    call self%sink%take_event(event)
+  end subroutine pass_on
 
   !> End the run at (t, y). Writes the last row if rows are written at every step, or if rounding left out the last row of the grid.
   subroutine finish(self, scene, t, y)
