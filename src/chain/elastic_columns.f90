@@ -1,6 +1,5 @@
 !> The columns of elastic members: shapes of the rod and twist of the crankshaft.
 module elastic_columns
-  use gudgeon_kinds, only: dp
   use trace_row, only: trace_row_t
   use chain_motion, only: motion_t, accelerations_t
   use elastic_rod, only: elastic_rod_t

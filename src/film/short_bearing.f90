@@ -2,7 +2,6 @@
 module short_bearing
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
-  use gudgeon_bearing, only: bearing_t
   use film_law, only: film_motion_t, angles_of_film
   use finite_bearing, only: finite_bearing_t
   implicit none

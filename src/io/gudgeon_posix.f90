@@ -1,7 +1,7 @@
 !> Thin bindings for Linux to calls of the C library that Fortran does not offer. Error numbers are returned and not stored, so that
 !> they are safe in several threads.
 module gudgeon_posix
-  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_short, c_null_char, c_ptr, &
+  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_short, c_null_char, &
     c_size_t, c_loc, c_f_pointer, c_associated
   use posix_calls, only: file_status_t, poll_t, c_open, c_read, c_pread, c_realpath, c_write, c_fsync, c_ftruncate, c_flock, &
     c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_isatty, c_errno_location, c_strerror_r

@@ -1,6 +1,5 @@
 !> The columns of the piston's guide.
 module guide_columns
-  use gudgeon_kinds, only: dp
   use trace_row, only: trace_row_t
   use chain_motion, only: motion_t, accelerations_t
   use piston_guide, only: piston_guide_t, guide_loads_t, n_corners, corner_names

@@ -13,7 +13,6 @@ module piston_guide
   use gudgeon_bearing, only: bearing_t, crossing_speed
   use state_layout, only: layout_t, coordinates_t
   use chain_motion, only: motion_t, tilting_t
-  use chain_bodies, only: piston_t
   use chain_loads, only: loads_t
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t

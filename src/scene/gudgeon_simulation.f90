@@ -1,7 +1,7 @@
 !> Runs one case: builds its scene, integrates it, and hands rows, events and results to a sink.
 module gudgeon_simulation
   use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_integration, status_internal
+  use gudgeon_errors, only: error_t, fail, status_integration
   use case_definition, only: case_t
   use ode_method, only: ode_method_t, step_statistics_t, limit_stability
   use gudgeon_methods, only: new_method
@@ -11,7 +11,7 @@ module gudgeon_simulation
   use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, crank_creeps
   use scene_builder, only: build_scene, simulated_time, latest_end, longest_turn, sample_interval, settings_for
   use crank_turns, only: all_made, turned_back
-  use gudgeon_columns, only: choose_columns, column_list_t
+  use gudgeon_columns, only: column_list_t
   use cycle_watch, only: cycle_watch_t
   use period_watch, only: period_watch_t
   use lyapunov, only: exponent_t, measure_exponent

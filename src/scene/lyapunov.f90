@@ -22,7 +22,7 @@ module lyapunov
   use gudgeon_errors, only: error_t
   use gudgeon_archive, only: archive_t
   use case_definition, only: case_t
-  use ode_method, only: ode_method_t, ode_settings_t
+  use ode_method, only: ode_method_t
   use ode_problem, only: ode_problem_t
   use gudgeon_methods, only: new_method
   use gudgeon_solver, only: integrate, silent_observer_t, integration_interrupted

@@ -1,9 +1,7 @@
 !> Parts of a scene other than rigid bodies and an ideal guide: elastic members, a guide with friction, a piston with clearance in
 !> its bore.
 submodule (gudgeon_scene) scene_bodies
-  use chain_motion, only: crank_pin, piston_pin
   use chain_loads, only: unloaded
-  use sticking, only: hold_surfaces
   use ideal_chain, only: ideal_motion
   use loose_piston, only: place_piston, move_centre
   implicit none

@@ -1,7 +1,6 @@
 !> Derivatives of the accelerations of a scene with respect to its state, for implicit integration.
 submodule (gudgeon_scene) scene_tangent
   use ode_problem, only: difference_jacobian
-  use chain_motion, only: crank_pin
   use chain_bodies, only: drive_t
   use joint_motion, only: most_joint_states
   use crank_rod_tangent, only: rod_slopes, acceleration_slopes
