@@ -1,5 +1,6 @@
 !> The identity of a run. Results, checkpoint and summary belong to the same run and case if their identities are equal.
 module run_identity
+  use, intrinsic :: iso_c_binding, only: c_long
   use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
   use gudgeon_kinds, only: dp
   use gudgeon_checksum, only: checksum_t

@@ -1,5 +1,6 @@
 !> NAME.wear.csv: the worn surfaces of pins and bores at the end of a run.
 module wear_file
+  use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t
   use chain_motion, only: pin_names
   use archard_wear, only: of_pin, of_bore

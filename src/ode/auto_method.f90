@@ -214,12 +214,12 @@ contains
     if (self%stiff) may_improve = self%radau%may_improve(t)
   end function may_improve
 
-  pure subroutine improve(self, t, f, y, is_better)
+  pure subroutine improve(self, t, f, y, change)
     class(auto_t), intent(inout) :: self
     real(dp), intent(in) :: t, f(:)
     real(dp), intent(inout) :: y(:)
-    logical, intent(out) :: is_better
-    call self%radau%improve(t, f, y, is_better)
+    real(dp), intent(out) :: change
+    call self%radau%improve(t, f, y, change)
   end subroutine improve
 
   subroutine land_on(self, problem, t, y, landed)

@@ -147,17 +147,17 @@ contains
     if (.not. nominal_tolerance > 0) nominal_tolerance = maxval(self%settings%relative)
   end function nominal_tolerance
 
-  !> Improve a state inside the last step, found by `interpolate`, where f is the right-hand side. `is_better` is false if y remains
-  !> as it is. Methods whose steps are more accurate than their interpolant override this; the default changes nothing.
-  pure subroutine leave_as_it_is(self, t, f, y, is_better)
+  !> Improve a state inside the last step, found by `interpolate`, where f is the right-hand side. `change` is 0 if y remains as it
+  !> is. Methods whose steps are more accurate than their interpolant override this; the default changes nothing.
+  pure subroutine leave_as_it_is(self, t, f, y, change)
     class(ode_method_t), intent(inout) :: self
     real(dp), intent(in) :: t
     real(dp), intent(in) :: f(:)         !! (n)
     real(dp), intent(inout) :: y(:)      !! (n)
-    logical, intent(out) :: is_better
+    real(dp), intent(out) :: change      !! its largest change, in tolerances
     associate (unused_self => self, unused_time => t, unused_rates => f, unused_state => y)
     end associate
-    is_better = .false.
+    change = 0
   end subroutine leave_as_it_is
 
   !> Whether `improve` may improve a state at this time. The default is no.

@@ -100,12 +100,12 @@ module collocation
     !>
     !> with the Jacobian of the step. Positions, whose errors matter little, remain. So does the whole state if the error of a
     !> position would exceed the inner tolerance: then J does not describe the defect.
-    pure module subroutine improve(self, x, f, y, is_better)
+    pure module subroutine improve(self, x, f, y, change)
       class(collocation_t), intent(inout) :: self
       real(dp), intent(in) :: x
       real(dp), intent(in) :: f(:)         !! (n)
       real(dp), intent(inout) :: y(:)      !! (n)
-      logical, intent(out) :: is_better
+      real(dp), intent(out) :: change      !! largest change of a rate or state, in tolerances; 0: y remains
     end subroutine improve
 
     !> Replace x by (I - tau J)^-1 x, from the decomposed matrix 1/tau - a_v - tau a_p.

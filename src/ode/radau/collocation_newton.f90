@@ -60,7 +60,7 @@ contains
   module procedure improve
     real(dp) :: tau
     logical :: singular
-    is_better = .false.
+    change = 0
     tau = self%h_done*min(x, 1/self%formula(self%stages_done/2)%gamma)
     associate (n => self%m + self%k, d => self%defect, e => self%correction)
       if (abs(tau - self%tau) > 0) then
@@ -75,8 +75,9 @@ contains
       e(:) = d
       call filter(self%k, self%m, tau, 1/tau, self%a_p, self%e1, self%pivot1, e)
       e(:) = d - e
-      is_better = all(abs(e(:self%m)*self%inverse_weight(:self%m)) < 1)
-      if (is_better) y(self%m + 1:n) = y(self%m + 1:n) - e(self%m + 1:)
+      if (.not. all(abs(e(:self%m)*self%inverse_weight(:self%m)) < 1)) return
+      change = maxval(abs(e(self%m + 1:)*self%inverse_weight(self%m + 1:n)))
+      y(self%m + 1:n) = y(self%m + 1:n) - e(self%m + 1:)
     end associate
   end procedure improve
 

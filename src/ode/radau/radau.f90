@@ -330,11 +330,11 @@ contains
   end function may_improve
 
   !> See `improve` of collocation_t.
-  pure subroutine improve(self, t, f, y, is_better)
+  pure subroutine improve(self, t, f, y, change)
     class(radau_t), intent(inout) :: self
     real(dp), intent(in) :: t, f(:)
     real(dp), intent(inout) :: y(:)
-    logical, intent(out) :: is_better
-    call self%stages%improve((t - self%t_old)/(self%t - self%t_old), f, y, is_better)
+    real(dp), intent(out) :: change
+    call self%stages%improve((t - self%t_old)/(self%t - self%t_old), f, y, change)
   end subroutine improve
 end module radau
