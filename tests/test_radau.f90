@@ -492,7 +492,7 @@ contains
     end do
   end subroutine worst_inside
 
-  !> Accelerations and forces in rows inside the steps. Where the exhaust opens, at 540 degrees, the accelerations were off by 1 % of
+  !> Accelerations and forces in rows inside the steps. Where the exhaust opens, at 540 degrees, accelerations were off by 1 % of
   !> their range. After the start of a combustion whose rate has no second derivative, the light piston's acceleration was off by
   !> nine times its range, and the force by which the gas presses on the rod by .4 %.
   subroutine rows_inside_steps(check)
