@@ -11,8 +11,8 @@ contains
 
   !> State at a time inside the last step, and the evaluation of the scene there. Where the method can improve its interpolant, the
   !> forces are otherwise less accurate than at the ends of steps, in a stiff film by orders of magnitude. It is improved again
-  !> while it changes by more than a tenth of a tolerance: after a jump of the load's rate of change, the first improvement takes off no
-  !> more than four fifths of an error of several tolerances. `inside` is false if a model is not defined there.
+  !> while it changes by more than a tenth of a tolerance: after a jump of the load's rate of change, the first improvement takes
+  !> off no more than four fifths of an error of several tolerances. `inside` is false if a model is not defined there.
   subroutine look_inside(scene, method, t, y, now, inside, evaluations)
     type(scene_t), intent(in) :: scene
     class(ode_method_t), intent(inout) :: method
