@@ -142,6 +142,7 @@ contains
     along = inside - self%point(i)
   end subroutine find
 
+  !> Value at x: on a periodic curve anywhere, otherwise beyond the ends that at the nearer end.
   pure real(dp) function value(self, x)
     class(monotone_cubic_t), intent(in) :: self
     real(dp), intent(in) :: x

@@ -47,10 +47,12 @@ contains
     real(dp), intent(in) :: gap, half_length
     real(dp), intent(in), optional :: shift
     real(dp), allocatable :: factor(:, :)
+    real(dp) :: turned
     integer :: i, j, k, next
 
-    self%grid = new_reynolds_grid(n, m, gap, half_length, 0.0_dp)
-    if (present(shift)) self%grid = new_reynolds_grid(n, m, gap, half_length, shift)
+    turned = 0
+    if (present(shift)) turned = shift
+    self%grid = new_reynolds_grid(n, m, gap, half_length, turned)
     self%n = n*m
     self%band = 2*m
     if (allocated(self%matrix)) deallocate (self%matrix, self%linear, self%pressure, self%active, self%open, self%node)

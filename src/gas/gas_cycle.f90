@@ -43,7 +43,6 @@ module gas_cycle
     real(dp) :: bound(0:n_parts) = 0              !! crank angles between the parts, in the cycle that begins at 0 [rad]
     integer :: grading = 1                        !! z = xi^grading in the combustion table
     type(hermite_table_t) :: table(3)             !! pressure of the closed parts as a function of xi
-    real(dp) :: table_error = 0                   !! largest relative error found between the points of the tables
   contains
     procedure :: pressure
     procedure :: pressure_slope
@@ -118,7 +117,6 @@ contains
       deallocate (slope, curvature)
       n = 2*n
     end do
-    gas%table_error = max(gas%table_error, miss)
     p = values(2*n)
   end subroutine tabulate
 

@@ -46,7 +46,7 @@ contains
     i = min(max(int(s), 0), self%n - 1)
     s = s - i
     associate (c => self%coefficient(:, i + 1))
-      value = c(0 + 1) + s*(c(1 + 1) + s*(c(2 + 1) + s*(c(3 + 1) + s*(c(4 + 1) + s*c(5 + 1)))))
+      value = c(1) + s*(c(2) + s*(c(3) + s*(c(4) + s*(c(5) + s*c(6)))))
     end associate
   end function value
 
@@ -60,7 +60,7 @@ contains
     i = min(max(int(s), 0), self%n - 1)
     s = s - i
     associate (c => self%coefficient(:, i + 1))
-      slope = self%n*(c(1 + 1) + s*(2*c(2 + 1) + s*(3*c(3 + 1) + s*(4*c(4 + 1) + s*5*c(5 + 1)))))
+      slope = self%n*(c(2) + s*(2*c(3) + s*(3*c(4) + s*(4*c(5) + s*5*c(6)))))
     end associate
   end function slope
 end module hermite_table

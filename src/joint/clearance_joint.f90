@@ -87,7 +87,7 @@ module clearance_joint
     procedure, non_overridable :: admits
     procedure, non_overridable :: loads
     procedure, non_overridable, private :: film_motion
-    procedure, non_overridable, private :: motion_of_film
+    procedure, non_overridable, private :: elastic_film_motion
     procedure :: contact_weight
     procedure :: n_states
     procedure :: complete
@@ -412,7 +412,7 @@ contains
       joint%film_rate = self%elastic%velocity(self%film, e, -own%film) + drawn*[-e(2), e(1)]
     end associate
     if (self%film%film_moment) &
-      own%moment = self%elastic%moment(self%film, self%motion_of_film(bodies, motion, joint), -own%film)
+      own%moment = self%elastic%moment(self%film, self%elastic_film_motion(bodies, motion, joint), -own%film)
   end subroutine find_elastic
 
   !> The thickness of an elastic film, which does not follow from the eccentricity of its pin, expressed as a penetration. Its rate
@@ -430,8 +430,8 @@ contains
     end associate
   end subroutine find_elastic_thickness
 
-  !> The motion of an elastic film.
-  pure type(film_motion_t) function motion_of_film(self, bodies, motion, joint) result(film)
+  !> The motion on which the force of a film between elastic walls depends: that of the place where the film is.
+  pure type(film_motion_t) function elastic_film_motion(self, bodies, motion, joint) result(film)
     class(clearance_joint_t), intent(in) :: self
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
@@ -439,7 +439,7 @@ contains
     film = self%film_motion(bodies, motion, joint)
     film%eccentricity = joint%film_eccentricity
     film%eccentricity_rate = joint%film_rate
-  end function motion_of_film
+  end function elastic_film_motion
 
   !> Friction by a law with states.
   pure subroutine find_state_friction(self, y, joint, own)
@@ -457,7 +457,7 @@ contains
   end subroutine find_state_friction
 
   !> Set what `loads` does not: the relative motion of journal and bearing in any phase, and zeros for loads that the phase does not
-  !> have. If the motion of the bodies is not known, angular speeds and sliding speed are set to 0.
+  !> have. If the motion of the bodies is not known, angular speeds and sliding speed are not set.
   pure subroutine complete(self, motion, is_known, joint, own)
     class(clearance_joint_t), intent(in) :: self
     type(motion_t), intent(in) :: motion

@@ -21,6 +21,7 @@ module joint_events
 
 contains
 
+  !> Number of event functions of a joint, with those before the last one that its laws need.
   pure integer function n_events(joint)
     type(clearance_joint_t), intent(in) :: joint
     n_events = 0
@@ -306,6 +307,7 @@ contains
     joint%force_is_lost = .false.
   end subroutine begin_contact
 
+  !> End a contact: the journal is free or carried by the film again, and its force is no longer lost.
   pure subroutine end_contact(joint)
     type(clearance_joint_t), intent(inout) :: joint
     joint%phase = joint%phase_apart()

@@ -18,7 +18,7 @@ contains
     if (allocated(self%transition)) then
       call self%transition%film_derivatives(self%film, self%film_motion(bodies, motion, joint), derivatives)
     else if (allocated(self%elastic)) then
-      call self%elastic%slopes(self%film, self%motion_of_film(bodies, motion, joint), &
+      call self%elastic%slopes(self%film, self%elastic_film_motion(bodies, motion, joint), &
         joint%eccentricity - joint%film_eccentricity, self%film%film_moment, of_loads, of_rates)
       derivatives = of_loads(:, :5)
     else if (allocated(self%asperities)) then
@@ -124,7 +124,7 @@ contains
     by_states = 0
     of_rates = 0
     if (allocated(self%elastic)) then
-      call self%elastic%slopes(self%film, self%motion_of_film(bodies, motion, joint), &
+      call self%elastic%slopes(self%film, self%elastic_film_motion(bodies, motion, joint), &
         joint%eccentricity - joint%film_eccentricity, self%film%film_moment, of_loads, of_rates)
       by_states = of_loads(:, 6:)
       return

@@ -254,7 +254,7 @@ contains
     largest = max(largest, peak%value(1))
   end subroutine search_between
 
-  !> The value of a quantity at a time inside the step. `inside` is false if the scene is not defined there.
+  !> The value of a quantity at a time inside the step; `no_peak` for a pin force where the scene is not defined.
   real(dp) function value_inside(self, method, scene, quantity, t) result(value)
     class(peak_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method

@@ -59,6 +59,7 @@ module wear_record
 
 contains
 
+  !> Prepare to count the wear of a joint, from none.
   subroutine prepare(self, joint, scene)
     class(wear_record_t), intent(inout) :: self
     integer, intent(in) :: joint               !! index of a joint with wear
