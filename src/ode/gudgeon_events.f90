@@ -117,11 +117,12 @@ contains
     integer, intent(out) :: index
     real(dp), intent(out) :: t_event
     real(dp) :: t_before, g_before(max_events), rate_before(max_events), t_end, t_found
-    logical :: found
+    logical :: found, restarted, low
     integer :: i
 
     index = 0
     t_event = min(t_last, method%t)
+    restarted = self%fresh
     if (self%fresh) call take_passed(self, index, t_event)
     if (index > 0 .or. self%n == 0) return
     t_end = t_event
@@ -138,8 +139,10 @@ contains
       if (self%low(i)) then
         if (stays_negative(t_end - t_before, g_before(i), rate_before(i), self%g(i), self%rate(i))) cycle
       end if
+      ! a function that has passed 0 in the event and is falling: its sign there is one of rounding
+      low = self%low(i) .and. .not. (restarted .and. i == self%just_taken .and. rate_before(i) < 0)
       call search_one(self, method, problem, i, sample_t(t_before, g_before(i), rate_before(i)), &
-        sample_t(t_end, self%g(i), self%rate(i)), found, t_found)
+        sample_t(t_end, self%g(i), self%rate(i)), low, found, t_found)
       if (found .and. (index == 0 .or. t_found < t_event)) then
         index = i
         t_event = t_found
@@ -167,22 +170,22 @@ contains
     self%fresh = .false.
   end subroutine take_passed
 
-  !> Search one function that may reach zero, from `before` to `here`, which is at most the end of the step.
-  subroutine search_one(self, method, problem, index, before, here, found, t_found)
+  !> Search one function that may reach zero, from `before` to `here`, which is at most the end of the step. `low` says whether it
+  !> has been negative before, and is updated.
+  subroutine search_one(self, method, problem, index, before, here, low, found, t_found)
     class(event_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: index
     type(sample_t), intent(in) :: before, here
+    logical, intent(inout) :: low
     logical, intent(out) :: found
     real(dp), intent(out) :: t_found
     type(sample_t) :: left, right
     integer :: i, pieces
-    logical :: low
 
     found = .false.
     t_found = here%t
-    low = self%low(index)
     if (low .and. here%g >= 0 .and. self%on_step_end(index) .and. .not. here%t < method%t) then
       found = .true.
       return
