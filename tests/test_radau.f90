@@ -7,7 +7,7 @@ module test_radau
   use gudgeon_errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use ode_problem, only: ode_problem_t, difference_jacobian
+  use ode_problem, only: ode_problem_t, difference_jacobian, event_continue
   use ode_method, only: ode_settings_t, step_done
   use radau_coefficients, only: radau_formula_t, radau_formula
   use radau, only: radau_t
@@ -25,6 +25,17 @@ module test_radau
   implicit none
   private
   public :: run_test_radau
+
+  !> A body that falls on a stiff wall with a restitution of about 0.05 and comes to rest there: y = (depth, speed). The event is that
+  !> a contact begins or ends.
+  type, extends(ode_problem_t) :: landing_t
+    logical :: touches = .false.
+    real(dp) :: impact_speed = 0
+  contains
+    procedure :: derivatives => falls_on_wall
+    procedure :: events => reaches_wall
+    procedure :: handle_event => touch
+  end type landing_t
 
   integer, parameter :: long = 60
 
@@ -61,7 +72,62 @@ contains
     call films_are_cheap(check)
     call states_inside_steps(check)
     call rows_inside_steps(check)
+    call damped_contacts_last(check)
   end subroutine run_test_radau
+
+  !> Contacts that the wall damps within a small part of the first step, in which the interpolant is inexact: none of them is lost.
+  subroutine damped_contacts_last(check)
+    class(checks_t), intent(inout) :: check
+    type(landing_t) :: problem
+    type(radau_t) :: method
+    type(silent_observer_t) :: observer
+    real(dp) :: y(2), t
+    integer :: status, i
+    do i = 1, 20
+      problem = landing_t(n=2, n_positions=1, n_events=1)
+      method%settings = settings(2, 1e-4_dp, 1.0_dp)
+      t = 0
+      y = [-0.1_dp - 0.001_dp*i, 0.0_dp]
+      call integrate(problem, method, t, y, 3.0_dp, 0, observer, status)
+      call check%that(status == integration_done, 'contacts with a damped wall')
+      call check%close_to(y(1), 0.0_dp, 1e-4_dp, 'the body stays at the wall')
+    end do
+  end subroutine damped_contacts_last
+
+  pure subroutine falls_on_wall(self, t, y, dydt, inside)
+    class(landing_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
+    logical, intent(out) :: inside
+    associate (unused => t)
+    end associate
+    dydt = [y(2), 1.0_dp]
+    if (self%touches) dydt(2) = 1 - 1e11_dp*max(y(1), 0.0_dp)*max(1 + 19*y(2)/self%impact_speed, 0.0_dp)
+    inside = .true.
+  end subroutine falls_on_wall
+
+  pure subroutine reaches_wall(self, t, y, g, g_rate)
+    class(landing_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
+    associate (unused => t)
+    end associate
+    g = merge(-1, 1, self%touches)*y(1)
+    g_rate = merge(-1, 1, self%touches)*y(2)
+  end subroutine reaches_wall
+
+  subroutine touch(self, index, t, y, action)
+    class(landing_t), intent(inout) :: self
+    integer, intent(in) :: index
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    integer, intent(out) :: action
+    associate (unused => index, unused_t => t, unused_y => y)
+    end associate
+    if (.not. self%touches) self%impact_speed = max(y(2), 1e-5_dp)
+    self%touches = .not. self%touches
+    action = event_continue
+  end subroutine touch
 
   pure subroutine derivatives(self, t, y, dydt, inside)
     class(van_der_pol_t), intent(in) :: self

@@ -42,12 +42,15 @@ module gudgeon_events
 contains
 
   !> Begin at (t, y), after a start or restart of the method. Event `just_taken` (0: none) is not taken again before its function
-  !> has been negative; any other function that is positive and increasing gives an event at once.
-  subroutine begin(self, problem, t, y, just_taken)
+  !> has been negative; any other function that is positive and increasing gives an event at once. `fell`: the function of event
+  !> `just_taken` was decreasing when the event was taken, which happens where the interpolant, on which it is found, is inexact. If the
+  !> event has reversed the function, it now gives the opposite event at once.
+  subroutine begin(self, problem, t, y, just_taken, fell)
     class(event_watch_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t, y(:)
     integer, intent(in) :: just_taken
+    logical, intent(in) :: fell
     self%just_taken = just_taken
     self%fresh = .true.
     if (.not. allocated(self%y)) allocate (self%y(size(y)))
@@ -57,6 +60,9 @@ contains
     self%low(:self%n) = self%g(:self%n) < 0
     if (just_taken > 0) self%leaving(just_taken) = self%rate(just_taken) < 0
     self%leaving(:self%n) = self%leaving(:self%n) .and. .not. self%low(:self%n)
+    if (fell) then
+      if (self%rate(just_taken) > 0) self%just_taken = 0
+    end if
   end subroutine begin
 
   !> Return to (t, y), the beginning of the last step, which the method has taken back.
@@ -64,7 +70,7 @@ contains
     class(event_watch_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t, y(:)
-    call self%begin(problem, t, y, self%just_taken)
+    call self%begin(problem, t, y, self%just_taken, .false.)
     self%fresh = .false.   ! functions that were positive there have been looked at
   end subroutine step_back
 

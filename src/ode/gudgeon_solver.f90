@@ -101,7 +101,7 @@ contains
       call look_around(method, max_steps, observer, status)
     else
       call method%start(problem, at%t, at%y, .true., status)
-      call at%watch%begin(problem, at%t, at%y, 0)
+      call at%watch%begin(problem, at%t, at%y, 0, .false.)
       at%t_place = t
     end if
     do while (status == step_done)
@@ -139,9 +139,9 @@ contains
     real(dp), intent(in) :: t_end
     type(position_t), intent(inout) :: at
     integer, intent(inout) :: status
-    real(dp) :: chatter_time
+    real(dp) :: chatter_time, g(max_events), rate(max_events)
     integer :: action
-    logical :: landed
+    logical :: landed, falls
 
     if (at%t < method%t) then
       call land(problem, method, at%event, at%t, at%y, landed)
@@ -158,6 +158,8 @@ contains
     call method%count_time(at%t)
     call observer%step_taken(method, problem, at%t)
     call observer%event_taken(problem, at%event, at%t, at%y)
+    call problem%events(at%t, at%y, g, rate)
+    falls = rate(at%event) < 0
     call problem%handle_event(at%event, at%t, at%y, action)
     call observer%event_handled(problem, at%event, at%t, at%y)
     if (action == event_stop) then
@@ -172,7 +174,7 @@ contains
     if (at%in_place > most_events_in_place) status = chattering
     if (is_at_end(at%t, t_end)) return
     if (status == step_done) call method%start(problem, at%t, at%y, .false., status)
-    call at%watch%begin(problem, at%t, at%y, at%event)
+    call at%watch%begin(problem, at%t, at%y, at%event, falls)
   end subroutine take_event
 
   !> Whether an event is so close to the end that no step fits between them.
