@@ -253,7 +253,7 @@ contains
     found = .false.
     t_found = right%t
     start = left
-    if (.not. low .and. right%g >= 0 .and. left%rate < 0 .and. right%rate > 0) then
+    if (.not. low .and. right%g >= 0 .and. left%rate <= 0 .and. right%rate > 0) then
       start = extremum(self, method, problem, index, left, right)   ! it may become negative in between
       low = start%g < 0
       if (.not. low .and. self%leaving(index)) then
