@@ -19,7 +19,7 @@ module test_radau
   use gudgeon_scene, only: scene_t, phase_contact, phase_film
   use state_making, only: put_crank, put_pin
   use scene_builder, only: build_scene
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
+  use gudgeon_solver, only: integrate, silent_observer_t, integration_done, step_limit_reached
   use test_problems, only: oscillator_t, bouncing_ball_t
   use collecting_sink, only: trace_t, run_case, column, values_of
   implicit none
@@ -83,14 +83,14 @@ contains
     type(silent_observer_t) :: observer
     real(dp) :: y(2), t
     integer :: status, i
-    do i = 1, 20
+    do i = 1, 2
       problem = landing_t(n=2, n_positions=1, n_events=1)
       method%settings = settings(2, 1e-4_dp, 1.0_dp)
       t = 0
-      y = [-0.1_dp - 0.001_dp*i, 0.0_dp]
-      call integrate(problem, method, t, y, 3.0_dp, 0, observer, status)
-      call check%that(status == integration_done, 'contacts with a damped wall')
-      call check%close_to(y(1), 0.0_dp, 1e-4_dp, 'the body stays at the wall')
+      y = [-0.103_dp - 0.002_dp*i, 0.0_dp]
+      call integrate(problem, method, t, y, 0.9_dp, 6000, observer, status)
+      call check%that(status == step_limit_reached, 'contacts with a damped wall')
+      call check%close_to(y(1), 0.0_dp, 1e-6_dp, 'the body stays at the wall')
     end do
   end subroutine damped_contacts_last
 
@@ -102,7 +102,7 @@ contains
     associate (unused => t)
     end associate
     dydt = [y(2), 1.0_dp]
-    if (self%touches) dydt(2) = 1 - 1e11_dp*max(y(1), 0.0_dp)*max(1 + 19*y(2)/self%impact_speed, 0.0_dp)
+    if (self%touches) dydt(2) = 1 - 1e10_dp*max(y(1), 0.0_dp)*max(1 + 19*y(2)/self%impact_speed, 0.0_dp)
     inside = .true.
   end subroutine falls_on_wall
 
