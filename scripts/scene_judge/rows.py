@@ -305,8 +305,12 @@ class RowChecks:
         eps, gap = get["eccentricity_ratio"], get["film_thickness"] / c
         least = self.run.number("lubrication.least_film_ratio") if self.weighted else 0.0
         size = math.hypot(*row.slip) + c * abs(row.journal_turn + row.bearing_turn)
+        place = eps, gap
+        if self.asperities:
+            mean, slope = self.asperities.mean_gap(get["film_thickness"])
+            place = 1 - mean / c, mean / c
         if self.film == "oscillating_film":
-            self.check_oscillating(row, n, force, share, eps, gap, i)
+            self.check_oscillating(row, n, force, share, *place, i)
             return
         if not self.is_judged(i) or eps <= 1e-3 or size <= 1e6 * give:
             return
@@ -314,9 +318,8 @@ class RowChecks:
         if law.law == "pinkus_sternlicht" and law.variant != "half_film" and abs(along) <= 1e6 * give:
             return
         if self.asperities:
-            mean, slope = self.asperities.mean_gap(get["film_thickness"])
-            along, across = slope * along, (1 - mean / c) / eps * across
-            gap, eps = mean / c, 1 - mean / c
+            along, across = slope * along, place[0] / eps * across
+            eps, gap = place
         elif self.weighted and gap < least:
             gap, eps = least, 1 - least
         if not 1e-3 < eps < 1 or law.is_solved and gap < LEAST_GAP:
