@@ -27,6 +27,7 @@ class Guide:
             return
         self.clearance, self.radius, self.tolerance = n("guide.bore_clearance"), n("guide.piston_radius"), n("integrator.relative_tolerance")
         along = run.pair("guide.piston_com")[0]
+        self.reach = n("mechanism.crank_length") + n("mechanism.rod_length")
         self.height = n("guide.skirt_top") - along, -n("guide.skirt_bottom") - along
         case = {key.replace("guide.", "contact."): value for key, value in run.case.items() if key.startswith("guide.")}
         case |= {"contact.law": run.case["guide.contact_law"], "contact.geometry": ["hertz_sphere"],
@@ -97,8 +98,8 @@ class Guide:
             near = 1e-15 * (self.radius + self.clearance + abs(self.height[(k - 1) % 2] * row.tilt)) + 1e-9 * self.clearance
             events = self.contacts[k - 1].begin
             if (i := bisect.bisect_left(events, t * (1 - 1e-15))) < len(events) and events[i] <= t * (1 + 1e-15):
-                # a step that lands on the event ends within its own error of the wall
-                near += 1e-4 * self.tolerance * (abs(row.offset_y) + abs(self.height[(k - 1) % 2] * row.tilt) + self.clearance)
+                # a step that lands on the event ends within its own error of the wall, and within the rounding of the chain's lengths
+                near += 1e-15 * self.reach + 1e-4 * self.tolerance * (abs(row.offset_y) + abs(self.height[(k - 1) % 2] * row.tilt) + self.clearance)
             # a row where the contact begins or ends, written before or after this event
             at_wall = abs(self.contacts[k - 1].force(2 * near, rate, t)) if abs(depth) <= near else 0.0
             checks.take("contact law of a corner", max(low - normal, normal - high, 0.0), (LAW + blur) * max(abs(normal), size_of_law) + at_wall, t)
