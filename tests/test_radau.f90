@@ -26,8 +26,8 @@ module test_radau
   private
   public :: run_test_radau
 
-  !> A body that falls on a stiff wall with a restitution of about 0.05 and comes to rest there: y = (depth, speed). The event is that
-  !> a contact begins or ends.
+  !> A body that falls on a stiff wall with a restitution of about 0.05 and comes to rest there: y = (depth, speed). The event is
+  !> that a contact begins or ends.
   type, extends(ode_problem_t) :: landing_t
     logical :: touches = .false.
     real(dp) :: impact_speed = 0

@@ -25,7 +25,7 @@ module gudgeon_events
     private
     integer :: n = 0                      !! number of functions
     logical :: low(max_events) = .false.  !! negative at some time since the last restart: a passage is an event
-    logical :: leaving(max_events) = .false.       !! its event has been taken, and it is becoming negative
+    logical :: leaving(max_events) = .false.       !! its event has been taken, and it is becoming negative; its sign is rounding
     logical :: on_step_end(max_events) = .false.   !! its event is taken at the end of the step
     integer :: just_taken = 0             !! event that caused the last restart
     logical :: fresh = .true.             !! no step since the restart
@@ -43,8 +43,8 @@ contains
 
   !> Begin at (t, y), after a start or restart of the method. Event `just_taken` (0: none) is not taken again before its function
   !> has been negative; any other function that is positive and increasing gives an event at once. `fell`: the function of event
-  !> `just_taken` was decreasing when the event was taken, which happens where the interpolant, on which it is found, is inexact. If the
-  !> event has reversed the function, it now gives the opposite event at once.
+  !> `just_taken` was decreasing when the event was taken, which happens where the interpolant, on which it is found, is inexact. If
+  !> the event has reversed the function, it now gives the opposite event at once.
   subroutine begin(self, problem, t, y, just_taken, fell)
     class(event_watch_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -58,8 +58,8 @@ contains
     if (self%n == 0) return
     call look(self, problem, t, y)
     self%low(:self%n) = self%g(:self%n) < 0
-    if (just_taken > 0) self%leaving(just_taken) = self%rate(just_taken) < 0
     self%leaving(:self%n) = self%leaving(:self%n) .and. .not. self%low(:self%n)
+    if (just_taken > 0) self%leaving(just_taken) = self%rate(just_taken) < 0
     if (fell) then
       if (self%rate(just_taken) > 0) self%just_taken = 0
     end if
@@ -123,12 +123,11 @@ contains
     integer, intent(out) :: index
     real(dp), intent(out) :: t_event
     real(dp) :: t_before, g_before(max_events), rate_before(max_events), t_end, t_found
-    logical :: found, restarted, low
+    logical :: found
     integer :: i
 
     index = 0
     t_event = min(t_last, method%t)
-    restarted = self%fresh
     if (self%fresh) call take_passed(self, index, t_event)
     if (index > 0 .or. self%n == 0) return
     t_end = t_event
@@ -143,12 +142,13 @@ contains
     end if
     do i = 1, self%n
       if (self%low(i)) then
-        if (stays_negative(t_end - t_before, g_before(i), rate_before(i), self%g(i), self%rate(i))) cycle
+        if (stays_negative(t_end - t_before, g_before(i), rate_before(i), self%g(i), self%rate(i))) then
+          self%leaving(i) = .false.
+          cycle
+        end if
       end if
-      ! a function that has passed 0 in the event and is falling: its sign there is one of rounding
-      low = self%low(i) .and. .not. (restarted .and. i == self%just_taken .and. rate_before(i) < 0)
       call search_one(self, method, problem, i, sample_t(t_before, g_before(i), rate_before(i)), &
-        sample_t(t_end, self%g(i), self%rate(i)), low, found, t_found)
+        sample_t(t_end, self%g(i), self%rate(i)), found, t_found)
       if (found .and. (index == 0 .or. t_found < t_event)) then
         index = i
         t_event = t_found
@@ -176,22 +176,22 @@ contains
     self%fresh = .false.
   end subroutine take_passed
 
-  !> Search one function that may reach zero, from `before` to `here`, which is at most the end of the step. `low` says whether it
-  !> has been negative before, and is updated.
-  subroutine search_one(self, method, problem, index, before, here, low, found, t_found)
+  !> Search one function that may reach zero, from `before` to `here`, which is at most the end of the step.
+  subroutine search_one(self, method, problem, index, before, here, found, t_found)
     class(event_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: index
     type(sample_t), intent(in) :: before, here
-    logical, intent(inout) :: low
     logical, intent(out) :: found
     real(dp), intent(out) :: t_found
     type(sample_t) :: left, right
     integer :: i, pieces
+    logical :: low
 
     found = .false.
     t_found = here%t
+    low = self%low(index) .and. .not. self%leaving(index)
     if (low .and. here%g >= 0 .and. self%on_step_end(index) .and. .not. here%t < method%t) then
       found = .true.
       return
