@@ -6,6 +6,7 @@ import math
 
 NODES = 6   # number of rows through which the polynomial of an interval passes
 CLOSEST = 1e-3   # smallest distance of its rows, over the length of the interval: through closer rows a polynomial swings
+SWING = 30.0     # largest sum of the weights' magnitudes, over that length: six equally spaced rows beside the interval have 23
 GAUSS = ((0.0, 4 / 9), (-math.sqrt(0.15), 5 / 18), (math.sqrt(0.15), 5 / 18))   # points, weights on [-1/2, 1/2]; exact
 
 
@@ -60,6 +61,17 @@ def nearest(rows: list[int], position: int, count: int, times: list[float]) -> l
     return before[:taken][::-1] + after[:count - taken]
 
 
+def steady(rows: list[int], times: list[float], a: float, b: float) -> tuple[list[int], list[float]]:
+    """Those of the rows whose polynomial does not swing in the interval from a to b, and their weights: the farthest rows are left
+    out until the weights are not much larger than the interval."""
+    while True:
+        found = weights([times[k] for k in rows], a, b)
+        if len(rows) == 1 or sum(map(abs, found)) <= SWING * (b - a):
+            return rows, found
+        farthest = max(rows, key=lambda k: abs(times[k] - 0.5 * (a + b)))
+        rows = [k for k in rows if k != farthest]
+
+
 def spaced(rows: list[int], count: int, times: list[float], least: float) -> list[int]:
     """The first `count` rows of a list, at least so far apart."""
     found = rows[:1]
@@ -90,7 +102,7 @@ def stencils(times: list[float], pieces: list[list[int]], joined: bool) -> list[
             coarse = nearest(half, (position + 1) // 2, NODES, times) if len(piece) > NODES else fine[:max(1, len(fine) - 1)]
             if len(fine) == 1:   # one row only: the row before it bounds the error, although there may be a jump between them
                 coarse = [row - 1]
-            ours.append(Stencil(fine, weights([times[k] for k in fine], a, b), coarse, weights([times[k] for k in coarse], a, b)))
+            ours.append(Stencil(*steady(fine, times, a, b), *steady(coarse, times, a, b)))
         found.append(ours)
     return found
 
