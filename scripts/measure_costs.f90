@@ -372,7 +372,7 @@ contains
     integer, intent(in) :: just_taken
     integer :: i
     do i = 1, size(watches)
-      call watches(i)%begin(scene, t, y, just_taken)
+      call watches(i)%begin(scene, t, y, just_taken, .false.)
     end do
   end subroutine begin_all
 

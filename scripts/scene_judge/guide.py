@@ -6,7 +6,7 @@ import dataclasses
 import math
 
 from .contact import Contact
-from .laws import ROUNDING, Friction
+from .laws import LANDING, ROUNDING, Friction
 from .mechanics import Row, rotated
 from .trace import Run
 
@@ -99,7 +99,7 @@ class Guide:
             events = self.contacts[k - 1].begin
             if (i := bisect.bisect_left(events, t * (1 - 1e-15))) < len(events) and events[i] <= t * (1 + 1e-15):
                 # a step that lands on the event ends within its own error of the wall, and within the rounding of the chain's lengths
-                near += 1e-15 * self.reach + 1e-4 * self.tolerance * (abs(row.offset_y) + abs(self.height[(k - 1) % 2] * row.tilt) + self.clearance)
+                near += 1e-15 * self.reach + LANDING * self.tolerance * (abs(row.offset_y) + abs(self.height[(k - 1) % 2] * row.tilt) + self.clearance)
             # a row where the contact begins or ends, written before or after this event
             at_wall = abs(self.contacts[k - 1].force(2 * near, rate, t)) if abs(depth) <= near else 0.0
             checks.take("contact law of a corner", max(low - normal, normal - high, 0.0), (LAW + blur) * max(abs(normal), size_of_law) + at_wall, t)

@@ -6,6 +6,7 @@ import math
 from .trace import Run
 
 ROUNDING = 1e-14   # of a speed that is the sum of those of crank, rod and piston, relative to their magnitudes
+LANDING = 0.1      # error of a position where a step lands on an event, in tolerances of the clearance
 
 
 class Friction:

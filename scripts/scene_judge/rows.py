@@ -9,7 +9,7 @@ from .drive import Drive
 from .gas import gas_of
 from .guide import Guide
 from .films import Asperities, Film
-from .laws import ROUNDING, Friction
+from .laws import LANDING, ROUNDING, Friction
 from .mechanics import Bodies, Row
 from .trace import Run
 
@@ -28,7 +28,6 @@ CLEAR = 0.01       # largest relative uncertainty of a force, from the film's ve
 MOVING = 2e-4, 2000  # allowed error of a rate in rows between two steps, relative and in tolerances: there the positions of the film
                      # are as accurate as in the steps, but not their differences
 EVENT = 1e-10     # error of the time of an event, of the distance to the row before it
-LANDING = 0.1     # error of a position where a step lands on an event, in tolerances of the clearance
 LEAST_BEND = 5e-9  # [m] if the break-away deflection is smaller, break-away is within a step and cannot be checked between steps
 BENT = 1000       # allowed excess over static friction in rows between the steps, in tolerances of the static friction
 
