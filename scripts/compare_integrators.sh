@@ -1,9 +1,10 @@
 #!/bin/sh
 # Compares the program's integrators with public codes on the program's own right-hand side, coordinates and scales: SciPy's DOP853,
-# Radau and LSODA, and SUNDIALS CVODE (Debian: apt-get install libsundials-dev; left out if it is not installed).
+# Radau and LSODA, SUNDIALS CVODE (Debian: apt-get install libsundials-dev) and Hairer's RADAU5 as compiled in the R package deSolve
+# (apt-get install --no-install-recommends r-cran-desolve). The last two are left out if they are not installed.
 #
 #   scripts/compare_integrators.sh [DIR]                writes DIR/integrators.md, .csv and .png (default: data/measured)
-#   scripts/compare_integrators.sh [DIR] --compiled     measures only the program's own methods and CVODE again
+#   scripts/compare_integrators.sh [DIR] --compiled     measures all but SciPy again
 #   scripts/compare_integrators.sh [DIR] --draw         measures nothing, draws the picture again from DIR/integrators.csv
 #
 # With --language pt the picture has Portuguese texts. The comparison takes about three minutes of processor time, including one
@@ -40,6 +41,14 @@ if [ -e /usr/include/cvode/cvode.h ]; then
 else
   rm -f $folder/cvode_run.so
   echo "compare_integrators: CVODE is not installed and is left out (apt-get install libsundials-dev)" >&2
+fi
+desolve=/usr/lib/R/site-library/deSolve/libs
+if [ -e $desolve/deSolve.so ]; then
+  cc -O2 -shared -fPIC scripts/scene_library/radau5_run.c -o $folder/radau5_run.so $desolve/deSolve.so -Wl,--disable-new-dtags,-rpath,$desolve:/usr/lib/R/lib \
+    -Wl,--allow-shlib-undefined -lm || exit 1
+else
+  rm -f $folder/radau5_run.so
+  echo "compare_integrators: RADAU5 is not installed and is left out (apt-get install --no-install-recommends r-cran-desolve)" >&2
 fi
 # shellcheck disable=SC2086  # options or nothing
 exec .venv/bin/python scripts/compare_integrators.py "$out" $part $options

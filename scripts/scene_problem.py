@@ -58,8 +58,8 @@ def load_library(path: Path = FOLDER / "scene_library.so") -> c.CDLL:
     return library
 
 
-class CvodeRun(c.Structure):
-    """The C structure run_t of scripts/scene_library/cvode_run.c."""
+class CompiledRun(c.Structure):
+    """The C structure run_t of scripts/scene_library/scene_run.h."""
 
     _fields_ = [("handle", c.c_void_p), ("rates", c.c_void_p), ("events", c.c_void_p), ("handle_event", c.c_void_p),
                 ("sizes", c.c_void_p), ("n", c.c_int), ("most_rates", c.c_int), ("n_rates", c.c_int), ("n_jacobians", c.c_int),
@@ -106,9 +106,11 @@ class Scene:
         self.library.scene_largest(self.handle, values)
         return values
 
-    def seconds_in_turn(self) -> float:
-        """Time in seconds of one right-hand side in a sequence in which each waits for the one before."""
-        return self.library.scene_seconds_in_turn(self.handle, 0.0, self.start())
+    def seconds_in_turn(self, t: float, y: np.ndarray) -> float:
+        """Time in seconds of one right-hand side at (t, y), in the discrete state of the start, in a sequence in which each waits for
+        the one before."""
+        self.start()
+        return self.library.scene_seconds_in_turn(self.handle, t, np.ascontiguousarray(y))
 
     def tolerances(self, tolerance: float) -> tuple[float, np.ndarray]:
         """The relative tolerance for all states, and an absolute tolerance for each state from the program's own scales."""
@@ -127,7 +129,7 @@ class Scene:
         y = self.start()
         relative, absolute = self.tolerances(tolerance)
         address = {f: c.cast(getattr(self.library, f"scene_{f}"), c.c_void_p) for f in ("rates", "events", "handle_event", "sizes")}
-        run = CvodeRun(self.handle, address["rates"], address["events"], address["handle_event"], address["sizes"], self.n, most, 0,
+        run = CompiledRun(self.handle, address["rates"], address["events"], address["handle_event"], address["sizes"], self.n, most, 0,
                        0, 0, 0, MOST_INSTANTS, 0.0)
         instants = np.zeros(MOST_INSTANTS)
         pointer = c.POINTER(c.c_double)

@@ -5,7 +5,7 @@ UNTRANSLATED = {
     "rad", "mm", "cm", "cm³", "µs", "µm", "nm", "ms", "kN", "MPa", "GPa", "Pa", "mPa", "nJ", "MJ", "bar", "kg", "mJ", "µJ", "kJ", "mrad", "Hz", "rpm", "deg", "min",
     "II", "III", "IV", "VI", "Pinkus", "Sternlicht", "Hertz", "Lankarani", "Nikravesh", "Flores", "Coulomb", "Ambrosio", "Morris", "Sobol",
     "hertz", "sphere", "johnson", "conformal", "pereira", "winkler", "lankarani", "nikravesh", "hunt", "crossley", "herbert", "mcwhannell",
-    "zhiying", "qishao", "gonthier", "flores", "carvalho", "martins", "csv", "sim", "Reynolds", "Lyapunov", "gudgeon", "plotly", "js", "adams", "radau", "auto", "SciPy", "DOP", "Radau", "LSODA", "CVODE", "Adams", "BDF",
+    "zhiying", "qishao", "gonthier", "flores", "carvalho", "martins", "csv", "sim", "Reynolds", "Lyapunov", "gudgeon", "plotly", "js", "adams", "radau", "auto", "SciPy", "DOP", "Radau", "LSODA", "CVODE", "RADAU", "Adams", "BDF",
 }
 
 TEXTS = {

@@ -5,29 +5,9 @@
  */
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
-#include <stdio.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
-#include <time.h>
-
-enum { most_events = 16 };
-
-/* The scene, through the functions of scene_library.f90, which explains them. */
-typedef struct {
-  void *handle;
-  int (*rates)(void *, double, const double *, double *);
-  int (*events)(void *, double, const double *, double *, double *);
-  int (*handle_event)(void *, int, double, double *, int *);
-  void (*sizes)(void *, int *);
-  int n;              /* states */
-  int most_rates;     /* evaluations after which the run is given up */
-  int n_rates;        /* evaluations so far */
-  int n_jacobians;
-  int n_steps;
-  int n_instants;     /* number of contact events so far */
-  int most_instants;  /* size of the array of their times */
-  double seconds;     /* processor time */
-} run_t;
+#include "scene_run.h"
 
 static int rates(double t, N_Vector y, N_Vector f, void *data) {
   run_t *run = data;
@@ -69,9 +49,8 @@ static void add_counts(void *cvode, run_t *run) {
 int cvode_run(run_t *run, int method, double relative, const double *absolute, double max_step, double t_end, double *state,
               double *instants) {
   SUNContext context;
-  struct timespec before, after;
   double t = 0;
-  int status, found[most_events], sizes[3], is_contact, ends = 0;
+  int status, found[most_events], sizes[3], ends = 0;
 
   SUNContext_Create(NULL, &context);
   N_Vector y = N_VMake_Serial(run->n, state, context);
@@ -80,7 +59,7 @@ int cvode_run(run_t *run, int method, double relative, const double *absolute, d
   SUNLinearSolver solver = SUNLinSol_Dense(y, matrix, context);
   void *cvode = CVodeCreate(method == 1 ? CV_ADAMS : CV_BDF, context);
 
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &before);
+  double before = processor_time();
   CVodeInit(cvode, rates, 0, y);
   CVodeSetErrHandlerFn(cvode, silent, NULL);
   CVodeSetUserData(cvode, run);
@@ -101,15 +80,13 @@ int cvode_run(run_t *run, int method, double relative, const double *absolute, d
     run->sizes(run->handle, sizes);
     int index = 0;
     while (index < sizes[2] - 1 && found[index] == 0) index++;
-    ends = run->handle_event(run->handle, index + 1, t, state, &is_contact);
-    if (is_contact && run->n_instants < run->most_instants) instants[run->n_instants++] = t;
+    ends = take_event(run, index + 1, t, state, instants);
     if ((status = CVodeReInit(cvode, t, y)) < 0) break;
     CVodeSetStopTime(cvode, t_end);
     status = watch_events(cvode, run);
   }
   add_counts(cvode, run);
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &after);
-  run->seconds = (double)(after.tv_sec - before.tv_sec) + 1e-9 * (double)(after.tv_nsec - before.tv_nsec);
+  run->seconds = processor_time() - before;
   CVodeFree(&cvode);
   SUNLinSolFree(solver);
   SUNMatDestroy(matrix);
