@@ -241,10 +241,11 @@ contains
   !> Accept the trial: its stages become those of the last step.
   pure subroutine keep(self)
     class(collocation_t), intent(inout) :: self
-    integer :: s
-    s = self%stages()
-    self%z(:, :s) = self%z_new(:, :s)
-    self%stages_done = s
+    real(dp), allocatable :: earlier(:, :)
+    call move_alloc(self%z, earlier)
+    call move_alloc(self%z_new, self%z)
+    call move_alloc(earlier, self%z_new)
+    self%stages_done = self%stages()
     self%h_done = self%h
     self%tau = 0
   end subroutine keep
@@ -288,15 +289,11 @@ contains
     class(collocation_t), intent(in) :: self
     real(dp), intent(in) :: f_0(:)
     real(dp), intent(out), contiguous :: error(:)   !! (n)
-    real(dp) :: total
-    integer :: i, r
+    integer :: i
     associate (formula => self%formula(self%level))
-      do r = 1, self%n
-        total = (self%h/formula%gamma)*f_0(r)
-        do i = 1, formula%stages
-          total = total + formula%e(i)*self%z_new(r, i)
-        end do
-        error(r) = total
+      error = (self%h/formula%gamma)*f_0(:self%n)
+      do i = 1, formula%stages
+        error = error + formula%e(i)*self%z_new(:, i)
       end do
       call filter(self%k, self%m, self%h/formula%gamma, formula%gamma/self%h, self%a_p, self%e1, self%pivot1, error)
     end associate

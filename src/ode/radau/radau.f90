@@ -206,7 +206,7 @@ contains
     real(dp), intent(out) :: error
     integer, intent(out) :: outcome
     real(dp), intent(out) :: fraction
-    integer :: verdict
+    integer :: verdict, first
     logical :: inside
 
     error = 0
@@ -238,7 +238,8 @@ contains
     end if
     call self%stages%settle_quadratures(problem, self%f_new)
     call collect(self)
-    self%y_new = self%y + self%stages%z_new(:, self%stages%stages())
+    first = problem%n - problem%n_quadratures + 1
+    self%y_new(first:) = self%y(first:) + self%stages%z_new(first:, self%stages%stages())
   end subroutine attempt
 
   !> The Jacobian of a trial is evaluated at three quarters of the step, on the extrapolated polynomial of the last step: the
