@@ -16,7 +16,7 @@ module case_rules
   public :: check_rules, case_warning
 
   real(dp), parameter :: most_samples = 1e9_dp   !! largest number of rows that a run may ask for
-  real(dp), parameter :: rounding = 1e-12_dp     !! relative difference of two times that counts as none
+  real(dp), parameter :: rounding = 1e-12_dp     !! relative difference of two times or lengths that counts as none
 
 contains
 
@@ -310,8 +310,9 @@ contains
       real(dp), intent(in) :: distance, rate(2)
       associate (key => prefix//'eccentricity')
         if (joint%has_clearance()) then
-          call forbid(.not. (joint%can_touch() .or. allocated(joint%asperities)) .and. distance >= joint%clearance, 'initial', &
-            key, 'must be shorter than the clearance where there is no contact')
+          call forbid(.not. (joint%can_touch() .or. allocated(joint%asperities)) .and. &
+            distance >= joint%clearance*(1 - rounding), 'initial', key, &
+            'must be shorter than the clearance where there is no contact')
           call forbid(distance >= joint%bearing_radius, 'initial', key, &
             'must be shorter than bearing_radius: the pin would leave its bearing')
         else

@@ -51,6 +51,7 @@ module gudgeon_recorder
                                                    !! revolution; 0: no limit
     real(dp) :: revolution_time = huge(1.0_dp)      !! duration of a revolution at the starting speed [s]
     logical :: over_budget = .false.                !! the run is to end because that number was exceeded
+    logical :: has_left = .false.                   !! the run is to end because the state of a row is outside the model
     real(dp), private :: initial_energy = 0, start_angle = 0
     integer, private :: next_row = 0, steps = 0
     integer, private :: evaluations_then = 0        !! number of evaluations at the beginning of the present revolution
@@ -157,7 +158,8 @@ contains
     end select
     call keep_budget(self, method%statistics%evaluations)
     call self%patience%follow(self%figures%time, abs(self%figures%crank_travel)/two_pi)
-    self%wants_to_stop = self%sink%wants_to_stop .or. self%over_budget .or. self%periods%has_ended .or. self%patience%is_over
+    self%wants_to_stop = self%sink%wants_to_stop .or. self%over_budget .or. self%has_left .or. self%periods%has_ended .or. &
+      self%patience%is_over
     self%wants_archive = self%sink%wants_archive
     if (self%periods%has_ended) self%keeps_archives = .false.
   end subroutine step_taken
@@ -231,6 +233,7 @@ contains
     type(evaluation_t) :: now
     logical :: inside
     call look_inside(scene, method, t, self%y, now, inside, self%figures%evaluations)
+    if (.not. inside) self%has_left = .true.
     if (.not. inside) return
     call self%elastic%take_values(scene, now, self%figures%elastic)
     call take_row(self, scene, t, self%y, now)
@@ -531,6 +534,7 @@ contains
     logical :: inside
     if (size(self%values) == 0) return
     call look_at(self, scene, t, y, now, inside)
+    if (.not. inside) self%has_left = .true.
     if (inside) call take_row(self, scene, t, y, now)
   end subroutine write_row
 

@@ -3,7 +3,7 @@ module gudgeon_simulation
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_integration
   use case_definition, only: case_t
-  use ode_method, only: ode_method_t, step_statistics_t, limit_stability
+  use ode_method, only: ode_method_t, step_statistics_t, limit_stability, left_domain
   use gudgeon_methods, only: new_method
   use gudgeon_solver, only: integrate, silent_observer_t, integration_done, integration_stopped, integration_interrupted, &
     step_limit_reached, evaluation_limit_reached, unreadable_archive
@@ -116,6 +116,8 @@ contains
       call judge_turns(scene, t, y, status)
     end if
     if (status /= unreadable_archive) call recorder%finish(scene, t, y)
+    if (recorder%has_left .and. any(status == [integration_done, integration_stopped, integration_interrupted])) &
+      status = left_domain
     report%periods = recorder%periods
     has_come_to_its_end = status == integration_done
     if (status == integration_done .and. case%run%lyapunov_revolutions > 0 .and. .not. ideal_joint) then
