@@ -35,6 +35,7 @@ contains
     call wears_as_the_trace_says(check)
     call motion_is_the_same(check)
     call wide_arcs_wear_more(check)
+    call narrow_bins(check)
     call wears_at_both_pins(check)
     call wears_through_a_film(check)
     call refuses(check)
@@ -245,6 +246,26 @@ contains
     end associate
     call check%close_to(sum(trace%report%wear(1)%volume(:, of_pin)), 0.0_dp, 0.0_dp, 'a pin without a wear rate')
   end subroutine wide_arcs_wear_more
+
+  !> On a wide arc, bins that are much narrower than it take few evaluations more than wide ones, and wear as these do.
+  subroutine narrow_bins(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: wide, narrow
+    character(len=long), parameter :: soft(4) = [character(len=long) :: 'integrator.revolutions=0.3', 'contact.liner_modulus=1e8', &
+      'integrator.relative_tolerance=1e-8', 'wear.rate=0,1e-14']
+    integer :: i
+    wide = run_case('cases/contact/liner_carvalho_martins.nml', [soft, [character(len=long) :: 'wear.bins=90']])
+    narrow = run_case('cases/contact/liner_carvalho_martins.nml', [soft, [character(len=long) :: 'wear.bins=3600']])
+    call check%that(.not. (allocated(wide%error) .or. allocated(narrow%error)), 'runs with wide and narrow bins')
+    if (allocated(wide%error) .or. allocated(narrow%error)) return
+    associate (in_wide => wide%report%wear(1)%volume(:, of_bore), in_narrow => narrow%report%wear(1)%volume(:, of_bore))
+      call check%relative(sum(in_narrow), sum(in_wide), 1e-8_dp, 'volume in narrow bins')
+      do i = 1, size(in_wide)
+        call check%close_to(sum(in_narrow(40*i - 39:40*i)), in_wide(i), 2e-3_dp*maxval(in_wide), 'volumes of forty narrow bins')
+      end do
+    end associate
+    call check%that(narrow%report%figures%evaluations < 2*wide%report%figures%evaluations, 'evaluations for narrow bins')
+  end subroutine narrow_bins
 
   !> Both pins wear, each by its own law, with an elastic rod too; and in a piston that tilts.
   subroutine wears_at_both_pins(check)

@@ -472,8 +472,10 @@ contains
       own%friction_force = 0
       joint%friction_states = 0
     end if
-    call find_polar(self%bearing%clearance, joint)
-    if (allocated(self%worn)) call find_worn(self, joint, normal_force)
+    if (.not. (is_known .and. allocated(self%worn) .and. self%phase == phase_contact)) then   ! `loads` has set these
+      call find_polar(self%bearing%clearance, joint)
+      if (allocated(self%worn)) call find_worn(self, joint, normal_force)
+    end if
     if (allocated(self%elastic)) call find_elastic_thickness(self, joint)
     if (.not. is_known) return
     call find_speeds(self%place, self%bearing_turns, motion, joint)

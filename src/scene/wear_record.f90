@@ -113,7 +113,7 @@ contains
 
   !> Count the wear up to t, in the last step of the method and in one phase of the joint. An interval is halved until the rules of
   !> three and seven points agree within the tolerance of the run, relative to the sum so far, and until the line of centres turns
-  !> by at most two bins, or one if the worn bore acts.
+  !> by at most `widest_turn`.
   subroutine follow(self, method, scene, t)
     class(wear_record_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -122,10 +122,9 @@ contains
     real(dp), parameter :: shortest = 1.0_dp/4096   !! of an interval, over the time since the last call
     type(samples_t) :: samples
     real(dp), parameter :: finest = 1e-8_dp         !! least tolerance of the sum
-    real(dp) :: done, part, span, sums(2), widest
+    real(dp) :: done, part, span, sums(2), turn, widest
     logical :: is_rough
     span = t - self%time
-    widest = merge(1, 2, allocated(scene%joints(self%joint)%worn))*self%surface(of_bore)%width()
     if (may_touch(self, scene) .and. span > 0) then
       done = 0
       part = 1
@@ -133,7 +132,9 @@ contains
         call take_samples(self, method, scene, self%time + done*span, part*span, samples)
         sums = 0.5_dp*part*span*[dot_product(weights, samples%load), dot_product(gauss, samples%load)]
         is_rough = sums(1) > 0 .and. part > shortest
-        if (is_rough) is_rough = sweep(samples) > widest .or. &
+        turn = sweep(samples)
+        widest = widest_turn(self, scene, turn, samples)
+        if (is_rough) is_rough = turn > widest .or. &
           sums(1)*(10*abs(sums(1) - sums(2))/sums(1))**1.5_dp > max(method%settings%tolerance, finest)*(self%total + sums(1))
         if (is_rough) then
           part = 0.5_dp*part
@@ -141,12 +142,39 @@ contains
           if (sums(1) > 0) call distribute(self, scene, sums(1), samples)
           self%total = self%total + sums(1)
           done = done + part
-          part = min(2*part, 1 - done)
+          part = min(2.0_dp, 0.9_dp*widest/max(turn, tiny(turn)))*part   ! the next one should not have to be halved
+          if (done + part > 1 - shortest) part = 1 - done
         end if
       end do
     end if
     self%time = t
   end subroutine follow
+
+  !> Largest angle by which the line of centres may turn in an interval [rad]: two bins, or one if the worn bore acts; where the
+  !> surfaces touch along a wide arc, half of the standard deviation of the load along it, since the load of a bin then changes
+  !> little. It is found only for a turn that exceeds these bins.
+  function widest_turn(self, scene, turn, samples) result(widest)
+    type(wear_record_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: turn
+    type(samples_t), intent(in) :: samples
+    real(dp) :: widest
+    integer, parameter :: in_middle = (n_nodes + 1)/2
+    type(contact_arc_t) :: arc
+    real(dp) :: total, middle
+    associate (joint => scene%joints(self%joint), width => self%surface(of_bore)%width())
+      widest = merge(1, 2, allocated(joint%worn))*width
+      if (turn <= widest) return
+      call arc_of(joint, samples%now(in_middle)%relative(self%joint), width, arc)
+    end associate
+    if (arc%n == 0) return
+    associate (at => 0.5_dp*(arc%ends(1, :arc%n) + arc%ends(2, :arc%n)), load => arc%loads(:arc%n))
+      total = sum(load)
+      if (.not. total > 0) return
+      middle = sum(load*at)/total
+      widest = max(widest, 0.5_dp*sqrt(sum(load*(at - middle)**2)/total))
+    end associate
+  end function widest_turn
 
   !> Whether the surfaces may touch in the present phase.
   pure logical function may_touch(self, scene)
