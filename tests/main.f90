@@ -57,6 +57,7 @@ program gudgeon_tests
   use test_pinkus_sternlicht, only: run_test_pinkus_sternlicht
   use test_published_films, only: run_test_published_films
   use test_radau, only: run_test_radau
+  use test_recorder, only: run_test_recorder
   use test_reference, only: run_test_reference
   use test_restitution, only: run_test_restitution
   use test_result_file, only: run_test_result_file
@@ -137,6 +138,7 @@ program gudgeon_tests
   call run('published_films', run_test_published_films)
   call run('pinkus_sternlicht', run_test_pinkus_sternlicht)
   call run('radau', run_test_radau)
+  call run('recorder', run_test_recorder)
   call run('reference', run_test_reference)
   call run('result_file', run_test_result_file)
   call run('run_figures', run_test_run_figures)
