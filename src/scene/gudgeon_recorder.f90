@@ -233,10 +233,8 @@ contains
     type(evaluation_t) :: now
     logical :: inside
     call look_inside(scene, method, t, self%y, now, inside, self%figures%evaluations)
-    if (.not. inside) self%has_left = .true.
-    if (.not. inside) return
-    call self%elastic%take_values(scene, now, self%figures%elastic)
-    call take_row(self, scene, t, self%y, now)
+    if (inside) call self%elastic%take_values(scene, now, self%figures%elastic)
+    call take_row(self, scene, t, self%y, now, inside)
   end subroutine put_sample
 
   !> Report the progress of the run to the sink. If the run ends after a number of turns, its end is estimated from the mean speed
@@ -534,17 +532,20 @@ contains
     logical :: inside
     if (size(self%values) == 0) return
     call look_at(self, scene, t, y, now, inside)
-    if (.not. inside) self%has_left = .true.
-    if (inside) call take_row(self, scene, t, y, now)
+    call take_row(self, scene, t, y, now, inside)
   end subroutine write_row
 
-  !> Account for the values of an evaluation and write its row.
-  subroutine take_row(self, scene, t, y, now)
+  !> Account for the values of an evaluation and write its row. If its state is not `inside` the model there is no row, and the
+  !> run is to end.
+  subroutine take_row(self, scene, t, y, now, inside)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: inside
     integer :: i
+    if (.not. inside) self%has_left = .true.
+    if (.not. inside) return
     do i = 1, self%n_pins   ! without revolution counts: those must not depend on whether rows are written
       call self%pins(i)%take_values(scene, now, self%figures)
     end do

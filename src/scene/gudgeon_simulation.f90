@@ -116,8 +116,7 @@ contains
       call judge_turns(scene, t, y, status)
     end if
     if (status /= unreadable_archive) call recorder%finish(scene, t, y)
-    if (recorder%has_left .and. any(status == [integration_done, integration_stopped, integration_interrupted])) &
-      status = left_domain
+    if (recorder%has_left) status = left_domain
     report%periods = recorder%periods
     has_come_to_its_end = status == integration_done
     if (status == integration_done .and. case%run%lyapunov_revolutions > 0 .and. .not. ideal_joint) then
