@@ -472,7 +472,7 @@ contains
       own%friction_force = 0
       joint%friction_states = 0
     end if
-    if (.not. (is_known .and. allocated(self%worn) .and. self%phase == phase_contact)) then   ! `loads` has set these
+    if (.not. (is_known .and. self%phase == phase_contact)) then   ! else `loads` has set these
       call find_polar(self%bearing%clearance, joint)
       if (allocated(self%worn)) call find_worn(self, joint, normal_force)
     end if

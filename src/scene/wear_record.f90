@@ -142,7 +142,7 @@ contains
           if (sums(1) > 0) call distribute(self, scene, sums(1), samples)
           self%total = self%total + sums(1)
           done = done + part
-          part = min(2.0_dp, 0.9_dp*widest/max(turn, tiny(turn)))*part   ! the next one should not have to be halved
+          part = (0.9_dp*widest/max(turn, 0.45_dp*widest))*part   ! at most twice; it should not have to be halved
           if (done + part > 1 - shortest) part = 1 - done
         end if
       end do
@@ -152,7 +152,7 @@ contains
 
   !> Largest angle by which the line of centres may turn in an interval [rad]: two bins, or one if the worn bore acts; where the
   !> surfaces touch along a wide arc, half of the standard deviation of the load along it, since the load of a bin then changes
-  !> little. It is found only for a turn that exceeds these bins.
+  !> little. The standard deviation is computed only where `turn` exceeds these bins.
   function widest_turn(self, scene, turn, samples) result(widest)
     type(wear_record_t), intent(in) :: self
     type(scene_t), intent(in) :: scene
