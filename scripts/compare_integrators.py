@@ -225,10 +225,10 @@ def report(data: pd.DataFrame, drivers: dict[str, ctypes.CDLL]) -> str:
             "  finite differences are counted.",
             "  `radau` and `auto` have Jacobians in closed form where only the piston pin has clearance; these are part of the",
             "  time, but are not counted;",
-            "- in brackets, the shortest processor time of a run with at most this error, divided by the time of one right-hand",
-            "  side that waits for the one before (given above each table; measured before and after each run, of which the median of",
-            f"  {REPEATS} counts). This may be another run than that of the first number. SciPy has no second number, because its time is",
-            "  mainly that of Python.", "",
+            "- in brackets, the processor time of the fastest run with at most this error, divided by the time of one right-hand",
+            f"  side that waits for the one before. The run is repeated up to {REPEATS} times, with a measurement of that right-hand side before",
+            "  and after each; the number is the median quotient. (The time above each table is the shortest measured.) This may be",
+            "  another run than that of the first number. SciPy has no second number, because its time is mainly that of Python.", "",
             f"\"–\" means that no run had this error. A code is given up after a run of more than {MOST_PYTHON:,} (SciPy) or",
             f"{MOST_COMPILED:,} evaluations. All codes integrate the program's own right-hand side in its own coordinates and with",
             "its own absolute tolerances, except the crank speed, which the program integrates at a hundredth of its tolerance.",
@@ -285,15 +285,18 @@ def main() -> int:
     language.add_option(parser)
     options = parser.parse_args()
     folder, compiled_only = options.folder, options.compiled
+    table_of_runs = folder / "integrators.csv"
+    if (options.draw or compiled_only) and not table_of_runs.exists():
+        sys.exit(f"compare_integrators: {table_of_runs} is missing: measure all codes first, without --compiled and --draw")
     if options.draw:
-        draw(pd.read_csv(folder / "integrators.csv"), folder / "integrators.png")
+        draw(pd.read_csv(table_of_runs), folder / "integrators.png")
         return 0
     library = load_library()
     drivers = {name: ctypes.CDLL(str(path), mode=ctypes.RTLD_GLOBAL) for name in SOURCES if (path := FOLDER / f"{name}.so").exists()}
     data = pd.DataFrame([row for problem in PROBLEMS for row in measure(problem, library, drivers, not compiled_only)])
     if compiled_only:
-        data = with_rows_of_scipy(data, folder / "integrators.csv")
-    data.to_csv(folder / "integrators.csv", index=False, float_format="%.7g")
+        data = with_rows_of_scipy(data, table_of_runs)
+    data.to_csv(table_of_runs, index=False, float_format="%.7g")
     page = write_table("integrators", "Integrators at equal error", "scripts/compare_integrators.sh", report(data, drivers), folder)
     draw(data, folder / "integrators.png")
     print(page.read_text(encoding="utf-8"))

@@ -45,8 +45,8 @@ static double event_at(int i, double t, double *polynomials, int *length) {
   return g[i];
 }
 
-/* Whether a function that is negative at both ends of a step stays negative between them, by its cubic Hermite interpolant with the
- * curvature counted twice. */
+/* Whether a function that is negative at both ends of a step stays negative between them: whether both inner Bernstein coefficients of
+ * its cubic Hermite interpolant are below 0 by more than their largest deviation from the straight line. */
 static int stays_negative(double width, double left, double left_rate, double right, double right_rate) {
   if (left >= 0 || right >= 0) return 0;
   double first = left + width * left_rate / 3, second = right - width * right_rate / 3;
