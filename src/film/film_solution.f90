@@ -84,8 +84,8 @@ contains
     type(film_answer_t) :: fine, coarse
     integer :: i
     do i = 1, size(self%pairs)
-      call self%pairs(i)%fine%solve(alpha, self%cavitation, warm, fine)
       call self%pairs(i)%coarse%solve(alpha, self%cavitation, warm, coarse)
+      call self%pairs(i)%fine%solve(alpha, self%cavitation, warm, fine, self%pairs(i)%coarse)
       film%force = film%force + (4*fine%force - coarse%force)/3
       film%flow = film%flow + (4*fine%flow - coarse%flow)/3
       film%most = film%most + (4*fine%most - coarse%most)/3

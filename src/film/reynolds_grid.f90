@@ -26,8 +26,6 @@ module reynolds_grid
     real(dp), allocatable :: along(:)       !! conductance from node j to j + 1 in axial direction, per integral of H^3 (m)
     real(dp), allocatable :: zeta(:)        !! axial positions of the nodes (m), 0 in the middle plane
     real(dp), allocatable :: width(:)       !! axial widths of the cells (m + 1); the last one, at the end, is a half cell
-  contains
-    procedure :: place
   end type reynolds_grid_t
 
   integer, parameter :: n_scales = 5
@@ -130,12 +128,4 @@ contains
       phi = next
     end do
   end function angle_at
-
-  !> Place of a node of the ring in the order of the unknowns, which runs from both ends, so that neighbours on the ring are at most
-  !> two places apart.
-  pure integer function place(self, i)
-    class(reynolds_grid_t), intent(in) :: self
-    integer, intent(in) :: i
-    place = merge(2*i - 1, 2*(self%n - i + 1), i <= self%n/2)
-  end function place
 end module reynolds_grid
