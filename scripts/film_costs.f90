@@ -54,7 +54,7 @@ contains
   subroutine prepare(case)
     type(case_t), intent(inout) :: case
     type(error_t), allocatable :: error
-    call provide_tables(case, .false., error)
+    call provide_tables(case, .false., .false., error)
     if (allocated(error)) error stop 'film_costs: no table'
     call case%joint%film%prepare(case%joint%bearing(case%mechanism%rod_length), case%integrator%relative_tolerance)
   end subroutine prepare

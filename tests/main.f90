@@ -14,6 +14,7 @@ program gudgeon_tests
   use test_worn_bore, only: run_test_worn_bore
   use test_wear, only: run_test_wear
   use test_worn_places, only: run_test_worn_places
+  use test_film_equations, only: run_test_film_equations
   use test_film_transition, only: run_test_film_transition
   use test_oil_viscosity, only: run_test_oil_viscosity
   use test_elastic_film, only: run_test_elastic_film
@@ -94,6 +95,7 @@ program gudgeon_tests
   call run('worn_bore', run_test_worn_bore)
   call run('wear', run_test_wear)
   call run('worn_places', run_test_worn_places)
+  call run('film_equations', run_test_film_equations)
   call run('film_transition', run_test_film_transition)
   call run('oil_viscosity', run_test_oil_viscosity)
   call run('elastic_film', run_test_elastic_film)

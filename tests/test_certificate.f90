@@ -83,7 +83,7 @@ contains
     call read_case(file, common, case, error)
     run = run_case(file, common)
     truth = run_case(file, [character(len=long) :: common, 'integrator.relative_tolerance=1e-13'])
-    call make_certificate(case, run%report, certificate, error)
+    call make_certificate(case, run%report, .false., certificate, error)
     call check%that(.not. allocated(error) .and. certificate%is_made, what//': a certificate is made')
     if (.not. certificate%is_made) return
     n = min(size(run%values, 2), size(truth%values, 2))
@@ -152,7 +152,7 @@ contains
     call read_case(file, own, case, error)
     run = run_case(file, own)
     truth = run_case(file, close)
-    call make_certificate(case, run%report, certificate, error)
+    call make_certificate(case, run%report, .false., certificate, error)
     there = 0
     early = 0
     do i = 1, size(run%event)
@@ -187,7 +187,7 @@ contains
       'integrator.revolutions=0.1']
     call read_case('cases/flores/lubricated_400cP.nml', tight, case, error)
     run = run_case('cases/flores/lubricated_400cP.nml', tight)
-    call make_certificate(case, run%report, certificate, error)
+    call make_certificate(case, run%report, .false., certificate, error)
     call check%that(.not. (certificate%is_made .or. allocated(error)), 'no certificate for a run at 1e-13')
     call check%that(index(certificate_clause(certificate), 'not certified: ') == 1, &
       'the line of the run says that it is not certified')

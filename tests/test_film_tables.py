@@ -10,6 +10,7 @@ Builds the fast program. Ends with `N passed, N failed`; the exit status is 0 if
 import csv
 import math
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -79,7 +80,7 @@ class Cache(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stderr)
             with (self.folder / name / "sim_I_finite.summary.csv").open() as file:
                 rows = {row["quantity"]: (row["value"], row["unit"]) for row in csv.DictReader(file)}
-            self.assertTrue(all(unit == "1" for name, (_, unit) in rows.items() if name.startswith("film_table")))
+            self.assertTrue(all(unit == "1" for name, (_, unit) in rows.items() if name in ("film_table_error", "film_table_mean_error")))
             return [float(rows[name][0]) for name in ("film_table_error", "film_table_mean_error") if name in rows]
 
         made, kept, small = stated("made"), stated("kept"), stated("small", "-s", "lubrication.table_points=17")
@@ -88,6 +89,39 @@ class Cache(unittest.TestCase):
         self.assertTrue(0 < made[1] < made[0] < 0.03, made)
         self.assertGreater(small[0], 3 * made[0])
         self.assertEqual(stated("short", "-s", "lubrication.variant=short"), [])
+
+    def test_announced(self) -> None:
+        """A table that is computed is announced in one line, also off a terminal, unless the user wants errors only. Its time is in
+        the summary."""
+
+        def said(name: str, *options: str) -> tuple[list[str], float]:
+            done = subprocess.run([GUDGEON, *options, "-o", self.folder / name, *SMALL, CASE], capture_output=True, text=True,
+                                  check=True, env={**os.environ, "XDG_CACHE_HOME": str(self.cache)})
+            with (self.folder / name / "sim_I_finite.summary.csv").open() as file:
+                rows = {row["quantity"]: row for row in csv.DictReader(file)}
+            self.assertEqual(rows["film_table_time"]["unit"], "s")
+            return [line for line in done.stderr.splitlines() if "film table" in line], float(rows["film_table_time"]["value"])
+
+        lines, computed = said("first")
+        self.assertEqual(len(lines), 1, lines)
+        self.assertIn(str(self.cache), lines[0], "it says where the table is kept")
+        lines, read = said("again")
+        self.assertEqual(lines, [], "a table from the cache is not announced")
+        self.assertLess(0.0, read)
+        self.assertLess(read, computed)
+        shutil.rmtree(self.cache)
+        self.assertEqual(said("quiet", "--quiet")[0], [])
+
+    def test_certificate(self) -> None:
+        """The runs for a certificate have the next finer table: that of their own tolerance if it is finer."""
+        for tolerance, wanted in (("1e-4", ["33 64", "97 128"]), ("1e-6", ["97 128", "97 192"])):
+            case = ("-s", "integrator.revolutions=0.2", "-s", f"integrator.relative_tolerance={tolerance}",
+                    "-s", "lubrication.cavitation=gumbel")
+            subprocess.run([GUDGEON, "-q", "--certify", "-o", self.folder / tolerance, *case, CASE], check=True,
+                           env={**os.environ, "XDG_CACHE_HOME": str(self.cache)})
+            keys = [table.read_bytes().splitlines()[1].decode() for table in (self.cache / "gudgeon").iterdir()]
+            self.assertEqual(sorted(" ".join(key.split()[-2:]) for key in keys), wanted)
+            shutil.rmtree(self.cache)
 
     def test_other_tables(self) -> None:
         self.run_case("one")

@@ -52,9 +52,9 @@ contains
     scaled = 0
     do j = 1, grid%m
       scaled(j, j) = axial_sum(grid, j)/root(j)**2
-      if (j == 1) cycle
-      scaled(j, j - 1) = -grid%along(j - 1)/(root(j)*root(j - 1))
-      scaled(j - 1, j) = scaled(j, j - 1)
+      if (j == grid%m) exit
+      scaled(j, j + 1) = -grid%along(j)/(root(j)*root(j + 1))
+      scaled(j + 1, j) = scaled(j, j + 1)
     end do
     call diagonalise(scaled, vectors)
     self%rate = [(scaled(j, j), j=1, grid%m)]

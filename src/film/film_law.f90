@@ -47,6 +47,7 @@ module film_law
     character(len=100) :: table_of = ''       !! `table_key` of the present table; empty if there is none
     real(dp) :: table_error = 0               !! largest relative error of the force found when the table was made [-]
     real(dp) :: table_mean_error = 0          !! root-mean-square of that error [-]
+    real(dp) :: table_time = 0                !! time that it took to compute the table, or to read it [s]
   contains
     procedure(prepare), deferred :: prepare
     procedure(film_force), deferred :: film_force

@@ -114,7 +114,7 @@ contains
     class(film_solver_t), intent(inout) :: self
     real(dp), intent(in) :: source(:)
     integer, parameter :: most_rounds = 100
-    logical, allocatable :: active(:, :)
+    logical :: active(size(self%active, 1), size(self%active, 2))
     integer :: round
     self%active = self%active .and. .not. self%open
     do round = 1, most_rounds
@@ -132,20 +132,19 @@ contains
     real(dp), intent(in) :: source(:), pressure(:, :)
     logical, intent(in) :: active(:, :)
     logical :: inside(grid%m, grid%n)
-    real(dp) :: flow, rounding
-    integer :: i, j, before, after
-    rounding = 1e-13_dp*maxval(abs(source))*maxval(grid%width(:grid%m))
+    real(dp) :: flow(grid%m), rounding
+    integer :: i, m
+    m = grid%m
+    rounding = 1e-13_dp*maxval(abs(source))*maxval(grid%width(:m))
     inside = .false.
     do i = 1, grid%n
-      before = modulo(i - 2, grid%n) + 1
-      after = modulo(i, grid%n) + 1
-      do j = 1, grid%m
-        if (active(j, i)) cycle
-        flow = (grid%around(before)*pressure(j, before) + grid%around(i)*pressure(j, after) + source(i))*grid%width(j)
-        if (j > 1) flow = flow + grid%height_cubed(i)*grid%along(j - 1)*pressure(j - 1, i)
-        if (j < grid%m) flow = flow + grid%height_cubed(i)*grid%along(j)*pressure(j + 1, i)
-        inside(j, i) = flow > rounding
-      end do
+      if (all(active(:, i))) cycle
+      associate (before => modulo(i - 2, grid%n) + 1, after => modulo(i, grid%n) + 1)
+        flow = (grid%around(before)*pressure(:, before) + grid%around(i)*pressure(:, after) + source(i))*grid%width(:m)
+      end associate
+      flow(2:) = flow(2:) + grid%height_cubed(i)*grid%along(:m - 1)*pressure(:m - 1, i)
+      flow(:m - 1) = flow(:m - 1) + grid%height_cubed(i)*grid%along(:m - 1)*pressure(2:, i)
+      inside(:, i) = flow > rounding .and. .not. active(:, i)
     end do
   end function flows_in
 

@@ -119,7 +119,7 @@ contains
   !> Compute the film tables of the scene, while no other run needs the processors. Error in `error`: the user interrupted.
   subroutine make_ready(self)
     class(case_run_t), intent(inout) :: self
-    call provide_tables(self%case, self%show_progress, self%error)
+    call provide_tables(self%case, .not. self%quiet, self%show_progress, self%error)
     if (allocated(self%error)) call name_file(self%case%file, self%error)
   end subroutine make_ready
 
@@ -143,7 +143,7 @@ contains
     if (.not. allocated(self%report%status)) self%report%status = self%error%message
     if (self%certifies .and. self%report%status == 'done') then
       allocate (self%certificate)
-      call make_certificate(self%case, self%report, self%certificate, self%error)
+      call make_certificate(self%case, self%report, .not. self%quiet, self%certificate, self%error)
       if (allocated(self%error)) self%certificate%reason = self%error%message
     end if
     call close_files(self, files)

@@ -15,6 +15,7 @@ module certificate
   use gudgeon_columns, only: column_list_t, choose_columns
   use gudgeon_simulation, only: run_report_t
   use trace_sink, only: trace_event_t
+  use film_files, only: provide_tables
   use run_witness, only: witness_t, run, has_coarse_table, figures_of, means_of, n_statistics, n_figures, loss_figure
   implicit none
   private
@@ -61,9 +62,10 @@ module certificate
 contains
 
   !> Certify a completed run, or say why it cannot be certified. Error: the user interrupted (status_integration).
-  subroutine make_certificate(case, report, certificate, error)
+  subroutine make_certificate(case, report, announces, certificate, error)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
+    logical, intent(in) :: announces   !! tell the user that a film table is computed
     type(certificate_t), intent(out) :: certificate
     type(error_t), allocatable, intent(out) :: error
     type(case_t) :: plain, close
@@ -78,14 +80,20 @@ contains
     end if
     call prepare(case, report, plain, certificate%list, error)
     if (allocated(error)) return
+    call provide_tables(plain, announces, .false., error)
+    if (allocated(error)) return
     call run(plain, certificate%list, 0, own, error)
     if (allocated(error)) return
     close = plain
     close%integrator%relative_tolerance = max(finest_tolerance, closer*min(case%integrator%relative_tolerance, loosest_tolerance))
-    if (has_coarse_table(close, finest_table)) close%integrator%relative_tolerance = &
-      min(close%integrator%relative_tolerance, finest_table)
+    if (.not. has_coarse_table(case, close%integrator%relative_tolerance)) then   ! the film has the same table at this tolerance
+      if (has_coarse_table(close, finest_table)) close%integrator%relative_tolerance = &
+        min(close%integrator%relative_tolerance, finest_table)
+    end if
     if (case%integrator%absolute_tolerance > 0) &
       close%integrator%absolute_tolerance = max(finest_tolerance, closer*case%integrator%absolute_tolerance)
+    call provide_tables(close, announces, .false., error)
+    if (allocated(error)) return
     call run(close, certificate%list, 0, closer_run, error)
     if (allocated(error)) return
     if (.not. (own%is_done .and. closer_run%is_done)) then

@@ -18,10 +18,10 @@ module film_files
   use film_law, only: film_law_t, table_watch_t
   use gudgeon_posix, only: make_directory, interrupted
   use growing_text, only: growing_text_t
-  use number_text, only: real_text
-  use gudgeon_progress, only: progress_t
+  use number_text, only: real_text, short_text
+  use gudgeon_progress, only: progress_t, clock, tell
   use result_file, only: write_text
-  use text_tools, only: path_beside
+  use text_tools, only: path_beside, printable
   use text_file, only: read_whole
   implicit none
   private
@@ -38,31 +38,34 @@ module film_files
 
 contains
 
-  !> Give the films of a case their tables, stored or new ones. Errors: the user interrupted (status_integration); the file that the
-  !> case names is not a table (status_case_file) or cannot be written (status_output).
-  subroutine provide_tables(case, shows_progress, error)
+  !> Give the films of a case their tables, stored or new ones. `announces`: the user is told, in one line, that a table is computed.
+  !> Errors: the user interrupted (status_integration); the file that the case names is not a table (status_case_file) or cannot be
+  !> written (status_output).
+  subroutine provide_tables(case, announces, shows_progress, error)
     type(case_t), intent(inout) :: case
-    logical, intent(in) :: shows_progress
+    logical, intent(in) :: announces, shows_progress
     type(error_t), allocatable, intent(out) :: error
-    call provide_table(case%joint, case, shows_progress, error)
-    if (.not. allocated(error)) call provide_table(case%crank_pin, case, shows_progress, error)
+    call provide_table(case%joint, case, announces, shows_progress, error)
+    if (.not. allocated(error)) call provide_table(case%crank_pin, case, announces, shows_progress, error)
   end subroutine provide_tables
 
-  subroutine provide_table(joint, case, shows_progress, error)
+  subroutine provide_table(joint, case, announces, shows_progress, error)
     type(joint_case_t), intent(inout) :: joint
     type(case_t), intent(in) :: case
-    logical, intent(in) :: shows_progress
+    logical, intent(in) :: announces, shows_progress
     type(error_t), allocatable, intent(out) :: error
     type(progress_watch_t) :: watch
     type(bearing_t) :: bearing
     character(len=:), allocatable :: key, path
     logical :: is_there, is_named, is_foreign
+    real(dp) :: began   ! [s]
     if (.not. (allocated(joint%film) .and. joint%has_clearance())) return
     bearing = joint%bearing(case%mechanism%rod_length)
     associate (tolerance => case%integrator%relative_tolerance)
       key = joint%film%table_key(bearing, tolerance)
       if (key == joint%film%table_of) return
       !$omp critical (film_tables)
+      began = clock()
       is_named = .false.
       if (allocated(joint%film%table_file)) is_named = joint%film%table_file /= ''
       if (is_named) then
@@ -74,6 +77,8 @@ contains
       if (is_named .and. is_foreign) call fail(error, '&lubrication table_file = '//joint%film%table_file// &
         ': is not a film table of this program: name another file', status_case_file)
       if (.not. (is_there .or. allocated(error))) then
+        if (announces) call tell(printable(case%file, 200)//': computing the film table of a bearing with L/D = '// &
+                                 short_text(0.5_dp*bearing%length/bearing%pin_radius())//place_of(path))
         call watch%progress%start(case%name//': film table', shows_progress)
         call joint%film%make_table(bearing, tolerance, watch)
         call watch%progress%finish()
@@ -84,6 +89,7 @@ contains
           if (allocated(error) .and. .not. is_named) deallocate (error)
         end if
       end if
+      joint%film%table_time = clock() - began
       !$omp end critical (film_tables)
     end associate
   end subroutine provide_table
@@ -94,6 +100,14 @@ contains
     call self%progress%update(real(done, dp)/rows)
     self%wants_to_stop = interrupted()
   end subroutine row_done
+
+  !> Where a table is kept, for the user.
+  function place_of(path) result(text)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: text
+    text = ', kept in '//printable(path, 200)
+    if (path == '') text = '; there is no folder to keep it in'
+  end function place_of
 
   !> Path of a stored table; empty if there is no cache folder.
   function path_for(key) result(path)

@@ -139,6 +139,7 @@ contains
         if (joint%film%table_of /= '') then
           call add(prefix//'film_table_error', real_text(joint%film%table_error), '1')
           call add(prefix//'film_table_mean_error', real_text(joint%film%table_mean_error), '1')
+          call add(prefix//'film_table_time', real_text(joint%film%table_time), 's')
         end if
       end if
       call add(prefix//'min_film_thickness', peak(pin%min_film_thickness), 'm')

@@ -6,7 +6,6 @@ module run_witness
   use chain_motion, only: piston_pin, crank_pin
   use cycle_statistics, only: cycle_t
   use cycle_watch, only: cycle_watch_t
-  use film_files, only: provide_tables
   use gudgeon_columns, only: column_list_t
   use gudgeon_scene, only: event_contact_begins
   use gudgeon_simulation, only: simulate, run_report_t
@@ -43,7 +42,8 @@ module run_witness
 
 contains
 
-  !> Run a case in memory. `is_done` is false if it does not reach its end, or needs more than `most_evaluations` (0: no limit).
+  !> Run a case, whose films have their tables, in memory. `is_done` is false if it does not reach its end, or needs more than
+  !> `most_evaluations` (0: no limit).
   subroutine run(case, list, most_evaluations, witness, error)
     type(case_t), intent(in) :: case
     type(column_list_t), intent(in) :: list
@@ -57,8 +57,6 @@ contains
     type(trace_event_t), allocatable :: event(:)
     limited = case
     if (most_evaluations > 0) limited%integrator%max_evaluations = min(limited%integrator%max_evaluations, most_evaluations)
-    call provide_tables(limited, .false., error)
-    if (allocated(error)) return
     if (case%has_play()) then   ! without clearance the integrals of the joint would change the steps
       allocate (witness%cycles)
       witness%cycles%keeps_cycles = .true.

@@ -70,6 +70,7 @@ module summary_quantities
     quantity_t('film_table_error', '1', &
       'largest relative error of the force in the table of the film against its solver, at gaps from 1e-4 of the clearance on'), &
     quantity_t('film_table_mean_error', '1', 'root mean square of the same'), &
+    quantity_t('film_table_time', 's', 'time that computing or reading the table took, not part of `wall_time`'), &
     quantity_t('min_film_thickness', 'm', 'smallest film thickness; negative: deepest penetration'), &
     quantity_t('contacts', '1', 'contacts that began'), &
     quantity_t('contact_time_fraction', '1', 'share of the simulated time in contact'), &

@@ -79,7 +79,7 @@ contains
     if (.not. allocated(error)) call self%base%check(error)
     if (.not. allocated(error)) then
       has_begun = .true.
-      call provide_tables(self%base%case, .false., error)
+      call provide_tables(self%base%case, .false., .false., error)
       self%was_interrupted = allocated(error)
       if (self%was_interrupted) return
       if (self%traces_all) then
