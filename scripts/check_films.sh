@@ -5,7 +5,7 @@
 #   scripts/check_films.sh                          the program's solver at its three accuracy levels (a minute)
 #   scripts/check_films.sh 33 64                    force tables of 33 values in each direction, solved with 64 nodes
 #   scripts/check_films.sh 65 192 0.75 reynolds     the same for one bearing (L/D = 0.75) and one cavitation condition
-#   scripts/check_films.sh tables                   force tables as the accuracy levels make them (some minutes)
+#   scripts/check_films.sh tables                   force tables as the accuracy levels make them (half a minute)
 #
 # scripts/record.py film_accuracy "..." scripts/check_films.sh and scripts/record.py film_tables "..." scripts/check_films.sh tables
 # write data/measured/film_accuracy.md and data/measured/film_tables.md.
@@ -38,5 +38,5 @@ for bearing in 0.25 0.5 0.75 1 2; do
   done
 done
 for bearing in 0.5 0.75; do
-  "$program" 65 192 "$bearing" reynolds | tail -n 1   # a minute of processor time each
+  "$program" 65 192 "$bearing" reynolds | tail -n 1   # with the mean of four grids
 done

@@ -26,7 +26,7 @@ program film_costs
   pair = [minval([(time_of_pairs(calls, .false.), i=1, blocks)]), minval([(time_of_pairs(calls, .true.), i=1, blocks)])]
   print '(2(a,f0.1),a)', '| sine and cosine of an angle; each waiting for the one before | ', pair(1), ' ns; ', pair(2), ' ns | | |'
   call print_table('gumbel', 2)
-  call print_table('reynolds', 20)
+  call print_table('reynolds', 2)
   call print_force('force from the table', finite, 'lubrication.cavitation=reynolds', 'at most 10')
   call print_force('force of the short bearing', finite, 'lubrication.variant=short', '')
   call print_force('force of the closed form of Pinkus and Sternlicht', long, 'lubrication.variant=closed_form', '')
