@@ -23,8 +23,8 @@ module gudgeon_summary
 
 contains
 
-  !> The rows `quantity,value,unit`. Peaks have as many digits as the trace, so that rounding does not make a row of the trace
-  !> exceed them.
+  !> The rows `quantity,value,unit`. Peaks and times have as many digits as the trace, so that rounding does not make a row of the
+  !> trace exceed them.
   function summary_table(case, report, wall_time, identity, trace_length, events_length, is_twin) result(text)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
@@ -39,7 +39,7 @@ contains
     text = 'quantity,value,unit'//newline
     call add('status', quoted(report%status, '"'), '')
     associate (s => report%statistics, f => report%figures)
-      call add('simulated_time', real_text(f%time), 's')
+      call add('simulated_time', peak(f%time), 's')
       call add('wall_time', real_text(wall_time), 's')
       call add('method', trim(case%integrator%method), '')
       call add('steps_accepted', integer_text(s%accepted), '1')
@@ -89,7 +89,7 @@ contains
       else if (case%run%lyapunov_revolutions > 0 .and. report%status == 'done') then
         call add('lyapunov_warning', '"'//no_exponent//'"', '')
       end if
-      call add('max_energy_residual', real_text(f%max_energy_residual), 'J')
+      call add('max_energy_residual', peak(max(f%max_energy_residual, f%row_energy_residual)), 'J')
       call add('max_energy_residual_relative', real_text(relative_residual(report)), '1')
       if (report%energy_is_poor) call add('energy_warning', quoted(energy_warning(case, report), '"'), '')
       if (case%joint%has_clearance()) call add_joint('', case%joint, f%pin(piston_pin))
@@ -126,7 +126,7 @@ contains
         call add('period', real_text(periods%duration), 's')
         call add('periodic_difference', real_text(periods%difference), '1')
       end if
-      if (periods%window_after >= 0) call add('window_start', real_text(periods%window_start), 's')
+      if (periods%window_after >= 0) call add('window_start', peak(periods%window_start), 's')
     end subroutine add_period
 
     !> Rows of a joint with clearance, with a prefix.
@@ -144,7 +144,7 @@ contains
       end if
       call add(prefix//'min_film_thickness', peak(pin%min_film_thickness), 'm')
       call add_contacts(prefix, pin)
-      call add(prefix//'max_entry_penetration', real_text(pin%max_entry_penetration), 'm')
+      call add(prefix//'max_entry_penetration', peak(pin%max_entry_penetration), 'm')
       call add(prefix//'impacts_beyond_validity', integer_text(pin%impacts_beyond_validity), '1')
       call add(prefix//'contacts_beyond_validity', integer_text(pin%contacts_beyond_validity), '1')
       if (pin%friction_work < huge(pin%friction_work)) call add(prefix//'friction_work', real_text(pin%friction_work), 'J')
@@ -205,7 +205,7 @@ contains
       call add('max_crankshaft_twist', peak(largest%twist), 'rad')
     end subroutine add_elastic
 
-    !> A peak, with as many digits as the trace.
+    !> A peak or a time, with as many digits as the trace.
     function peak(value) result(number)
       real(dp), intent(in) :: value
       character(len=:), allocatable :: number
@@ -252,7 +252,7 @@ contains
     text = text(:index(text, ',', back=.true.) - 1)
   end function summary_value
 
-  !> Largest energy residual divided by the largest energy [-]; 0 if there is no energy.
+  !> Largest energy residual at the ends of steps divided by the largest energy [-]; 0 if there is no energy.
   pure real(dp) function relative_residual(report)
     type(run_report_t), intent(in) :: report
     relative_residual = 0

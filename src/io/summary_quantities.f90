@@ -61,8 +61,9 @@ module summary_quantities
     quantity_t('lyapunov_exponent_error', '1/revolution', 'its standard error'), &
     quantity_t('lyapunov_revolutions', '1', 'revolutions over which it was measured'), &
     quantity_t('lyapunov_warning', '', 'why there is no exponent'), &
-    quantity_t('max_energy_residual', 'J', 'largest size of the energy residual'), &
-    quantity_t('max_energy_residual_relative', '1', 'the same over the largest energy: a measure of the integration error'), &
+    quantity_t('max_energy_residual', 'J', 'largest size of the energy residual, at the ends of steps and in the rows'), &
+    quantity_t('max_energy_residual_relative', '1', &
+      'that at the ends of steps over the largest energy: a measure of the integration error'), &
     quantity_t('energy_warning', '', 'written where that is larger than the tolerance explains')]
 
   type(quantity_t), parameter :: of_joints(*) = [ &

@@ -560,6 +560,9 @@ contains
     type(evaluation_t), intent(in) :: now
     if (size(self%values) == 0) return
     call row_values(self%list, scene, t, now, scene%work(y), self%initial_energy, self%values)
+    associate (f => self%figures)
+      f%row_energy_residual = max(f%row_energy_residual, abs(scene%chain%energy(now%motion) - self%initial_energy - scene%work(y)))
+    end associate
     call self%sink%take_row(self%values)
   end subroutine put_row
 end module gudgeon_recorder

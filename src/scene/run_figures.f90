@@ -45,7 +45,8 @@ module run_figures
     integer :: evaluations = 0                !! number of evaluations of the scene for rows, events and these results
     integer :: peak_evaluations = 0           !! number of those evaluations that search peaks between accepted points
     real(dp) :: max_energy = 0                !! largest |kinetic + potential energy| [J]
-    real(dp) :: max_energy_residual = 0       !! largest |energy residual| [J]
+    real(dp) :: max_energy_residual = 0       !! largest |energy residual| at the ends of steps [J]
+    real(dp) :: row_energy_residual = 0       !! the same in the rows of the trace, also inside the steps [J]
     real(dp) :: crank_travel = 0              !! crank angle turned through, signed [rad]
     real(dp) :: time = 0                      !! time simulated [s]
   contains
@@ -70,7 +71,7 @@ contains
       call archive%exchange(e%mid_deflection, e%stretch, e%strain_energy, e%twist)
     end associate
     call archive%exchange(self%evaluations, self%peak_evaluations)
-    call archive%exchange(self%max_energy, self%max_energy_residual, self%crank_travel, self%time)
+    call archive%exchange(self%max_energy, self%max_energy_residual, self%row_energy_residual, self%crank_travel, self%time)
   end subroutine exchange_figures
 
   !> Write the results at a pin to an archive, or read them from it.
