@@ -115,7 +115,7 @@ proportion to the number of bins that touch.
 
 def over_extrapolation(run: Runs) -> str:
     def simulated(revolutions: int) -> tuple[dict[str, float], pd.DataFrame]:
-        summary, worn = run("wear/worn_bore", f"integrator.revolutions={revolutions}.01", f"wear.extrapolation={8000 // revolutions}",
+        summary, worn = run("wear/worn_bore", f"integrator.revolutions={revolutions}", f"wear.extrapolation={8000 // revolutions}",
                             "wear.greatest_step_ratio=1")
         assert worn is not None
         return summary, worn

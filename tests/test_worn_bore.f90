@@ -28,6 +28,7 @@ contains
     call bore_changes(check)
     call steps_are_limited(check)
     call methods_agree_when_worn(check)
+    call last_change_counts(check)
     call refuses(check)
   end subroutine run_test_worn_bore
 
@@ -248,6 +249,26 @@ contains
     if (.not. allocated(trace%report%wear)) return
     call check%that(maxval(trace%report%wear(1)%depth(:, of_bore)) > 1e-6_dp, 'the bore is worn deeper than it is pressed')
   end subroutine methods_agree_when_worn
+
+  !> A change of shape is due at the end of runs of whole revolutions too, whatever rounding says of their last angle.
+  subroutine last_change_counts(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace, longer
+    character(len=40) :: revolutions
+    real(dp) :: volume
+    integer :: n
+    do n = 1, 7
+      write (revolutions, '(a,i0)') 'integrator.revolutions=', n
+      trace = run_case(file, [character(len=40) :: revolutions, 'wear.extrapolation=100'])
+      call check%close_to(trace%report%wear(1)%turns, 100.0_dp*n, 0.0_dp, 'turns of a worn bore after whole revolutions')
+      if (n /= 3) cycle
+      longer = run_case(file, [character(len=40) :: 'integrator.revolutions=3.001', 'wear.extrapolation=100'])
+      volume = sum(longer%report%wear(1)%volume)
+      call check%relative(sum(trace%report%wear(1)%volume), volume, 1e-3_dp, 'volume of a worn bore after whole revolutions')
+    end do
+    trace = run_case(file, [character(len=40) :: 'integrator.revolutions=3', 'wear.extrapolation=100', 'wear.cycles_per_update=3'])
+    call check%close_to(trace%report%wear(1)%turns, 300.0_dp, 0.0_dp, 'turns of a worn bore after one change')
+  end subroutine last_change_counts
 
   subroutine refuses(check)
     class(checks_t), intent(inout) :: check

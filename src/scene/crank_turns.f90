@@ -49,6 +49,7 @@ module crank_turns
     real(dp) :: begin = 0          !! crank angle at which the present ones began [rad]
   contains
     procedure :: event
+    procedure :: is_over
   end type wear_cycle_t
 
 contains
@@ -120,6 +121,14 @@ contains
     g = (crank_angle - self%begin)**2 - (two_pi*self%turns)**2
     g_rate = 2*(crank_angle - self%begin)*crank_speed
   end subroutine event
+
+  !> Whether the turns end at a crank angle, within rounding. At the end of a run rounding decides whether the event is met.
+  pure logical function is_over(self, crank_angle)
+    class(wear_cycle_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle   !! [rad]
+    real(dp), parameter :: rounding = 1e-9_dp   !! [rad]
+    is_over = abs(abs(crank_angle - self%begin) - two_pi*self%turns) <= rounding
+  end function is_over
 
   !> Report that the crank is `turns` turns away from its start at time t.
   pure subroutine follow(self, t, turns)

@@ -448,14 +448,22 @@ contains
     call self%sink%take_event(event)
   end subroutine pass_on
 
-  !> End the run at (t, y). Writes the last row if rows are written at every step, or if rounding left out the last row of the grid.
+  !> End the run at (t, y), and with it a cycle of wear that is complete. Writes the last row if rows are written at every step, or
+  !> if rounding left out the last row of the grid.
   subroutine finish(self, scene, t, y)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
+    integer :: i
     if (allocated(self%cycles)) then
       call self%guide%end_revolution(self%cycles)
       call self%cycles%finish(scene, t, y)
+    end if
+    if (allocated(scene%wear_cycle)) then
+      do i = 1, self%n_pins
+        if (.not. (allocated(self%pins(i)%wear) .and. scene%wear_cycle%is_over(scene%crank_angle(t, y)))) cycle
+        if (allocated(scene%joints(self%pins(i)%joint)%worn)) call self%pins(i)%wear%end_cycle(scene%joints(self%pins(i)%joint))
+      end do
     end if
     if (self%every_step) return
     if (self%angles%per_revolution > 0) then

@@ -53,6 +53,7 @@ module wear_record
     procedure :: follow
     procedure :: begin_at
     procedure :: change_bore
+    procedure :: end_cycle
     procedure :: profile
     procedure :: exchange
   end type wear_record_t
@@ -86,16 +87,30 @@ contains
     end do
   end subroutine begin_at
 
-  !> Change the shape of the bore of a joint by the wear since the last change, multiplied by the extrapolation. This is reduced if
-  !> the change of depth would exceed the largest ratio to the clearance, or twice that ratio to the mean penetration, weighted by
-  !> the load; wear that has happened always counts.
+  !> Change the shape of the bore of a joint by the wear since the last change.
   subroutine change_bore(self, joint)
     class(wear_record_t), intent(inout) :: self
     type(clearance_joint_t), intent(inout) :: joint
-    real(dp) :: factor, by_load, change, lengths(2)
+    call self%end_cycle(joint)
+    joint%worn%depth = depth_by_load(self, joint)*self%earlier(of_bore)%load_path
+  end subroutine change_bore
+
+  !> Depth of wear in a bin of the bore over its load path [1/N].
+  pure real(dp) function depth_by_load(self, joint)
+    class(wear_record_t), intent(in) :: self
+    type(clearance_joint_t), intent(in) :: joint
+    depth_by_load = joint%wear%rate(of_bore)/(joint%bearing%radius*joint%bearing%length*self%surface(of_bore)%width())
+  end function depth_by_load
+
+  !> Multiply the wear since the last change of the bore by the extrapolation. This is reduced if the change of depth would exceed
+  !> the largest ratio to the clearance, or twice that ratio to the mean penetration, weighted by the load; wear that has happened
+  !> always counts.
+  subroutine end_cycle(self, joint)
+    class(wear_record_t), intent(inout) :: self
+    type(clearance_joint_t), intent(in) :: joint
+    real(dp) :: factor, change, lengths(2)
     integer :: k
-    by_load = joint%wear%rate(of_bore)/(joint%bearing%radius*joint%bearing%length*self%surface(of_bore)%width())
-    change = by_load*maxval(self%surface(of_bore)%load_path)
+    change = depth_by_load(self, joint)*maxval(self%surface(of_bore)%load_path)
     lengths = joint%bearing%clearance
     if (self%total > 0) lengths(2) = self%depth_sum/self%total
     factor = joint%wear%extrapolation
@@ -108,8 +123,7 @@ contains
     self%turns = self%turns + factor*joint%wear%cycles_per_update
     self%total = 0
     self%depth_sum = 0
-    joint%worn%depth = by_load*self%earlier(of_bore)%load_path
-  end subroutine change_bore
+  end subroutine end_cycle
 
   !> Count the wear up to t, in the last step of the method and in one phase of the joint. An interval is halved until the rules of
   !> three and seven points agree within the tolerance of the run, relative to the sum so far, and until the line of centres turns
