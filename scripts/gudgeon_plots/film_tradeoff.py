@@ -109,6 +109,8 @@ def measure(program: Path, case: Path, film: Film, repeat: int, timeout: float) 
         seconds = answers.get("wall_time")
         if film.repeats and "stopped" not in answers:
             seconds = min(run(program, case, out, film.overrides, timeout)["wall_time"] for _ in range(repeat))
+    if "film_energy_lost" in answers:   # also by shear that does not act, so that films with and without its moment can be compared
+        answers["film_energy_lost"] += answers.get("neglected_shear_loss", 0.0)
     wanted = ("stopped", "rhs_evaluations", "min_film_thickness", "max_film_pressure", "film_energy_lost", "film_table_error")
     return {"seconds": seconds, "instructions": instructions(program, case, film, timeout), **{key: answers.get(key) for key in wanted}}
 

@@ -60,6 +60,7 @@ module film_law
     procedure, nopass :: gives_pressure => no
     procedure, nopass :: gives_side_flow => no
     procedure, non_overridable :: drag_moment
+    procedure, non_overridable :: neglects_shear
     procedure :: pressure => nowhere
     procedure :: peak_and_flow => peak_without_flow
     procedure :: pressure_field => long_field
@@ -160,6 +161,12 @@ contains
   pure logical function yes()
     yes = .true.
   end function yes
+
+  !> Whether the shear of a film with a pressure has a moment that the case neglects.
+  pure logical function neglects_shear(self)
+    class(film_law_t), intent(in) :: self
+    neglects_shear = self%gives_pressure() .and. .not. self%film_moment
+  end function neglects_shear
 
   !> Moment of the film on the pin [N m] that `film_force` does not include if `film_moment` is .false.: that of the shear of a film
   !> with a pressure.

@@ -151,6 +151,8 @@ contains
       if (allocated(joint%wear) .and. allocated(report%wear)) call add_wear(prefix)
       if (.not. (joint%reports_film .and. allocated(joint%film))) return
       call add(prefix//'film_energy_lost', real_text(pin%film_energy_lost), 'J')
+      if (joint%film%neglects_shear()) &
+        call add(prefix//'neglected_shear_loss', real_text(pin%neglected_shear_loss), 'J')
       if (joint%film%gives_pressure()) call add(prefix//'max_film_pressure', peak(pin%max_film_pressure), 'Pa')
       if (joint%film%gives_side_flow() .and. report%figures%time > 0) &
         call add(prefix//'mean_film_side_flow', real_text(pin%film_volume/report%figures%time), 'm3/s')

@@ -92,6 +92,8 @@ module summary_quantities
       'the same over the mean penetration: a large value calls for less extrapolation or fewer `cycles_per_update`'), &
     quantity_t('film_energy_lost', 'J', &
       'energy that the film took from the bodies; negative: it gave energy, as an oscillating film may'), &
+    quantity_t('neglected_shear_loss', 'J', &
+      'energy that the shear of the film would have taken; it does not act with `film_moment = .false.`'), &
     quantity_t('max_film_pressure', 'Pa', 'largest pressure in the film'), &
     quantity_t('mean_film_side_flow', 'm3/s', 'mean oil flow out of both ends of the bearing'), &
     quantity_t('max_force', 'N', 'largest contact force of this corner of the skirt'), &

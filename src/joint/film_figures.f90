@@ -12,8 +12,9 @@ module film_figures
   public :: film_figures_t, film_figures_of, film_moment, acting_film
 
   type :: film_figures_t
-    real(dp) :: moment = 0        !! on the pin about its centre, computed even if the case neglects the shear [N m]
-    real(dp) :: power = 0         !! taken from the bodies by the film's force and this moment [W]
+    real(dp) :: power = 0         !! taken from the bodies by the film's force and by the moment of its shear, if that acts [W]
+    real(dp) :: neglected_moment = 0   !! of the shear on the pin about its centre that does not act since the case neglects it [N m]
+    real(dp) :: neglected_power = 0    !! that this moment would take from the bodies [W]
     real(dp) :: max_pressure = 0  !! [Pa]
     real(dp) :: side_flow = 0     !! out of both ends of the bearing [m^3/s]
   end type film_figures_t
@@ -27,16 +28,18 @@ contains
     type(joint_motion_t), intent(in) :: motion
     type(joint_loads_t), intent(in) :: loads
     type(film_motion_t) :: seen
-    real(dp) :: share, rate(2)
+    real(dp) :: share, rate(2), moment
     call acting_film(joint, motion, seen, share)
     if (.not. share > 0) return
     rate = motion%eccentricity_rate
     if (allocated(joint%elastic)) rate = motion%film_rate   ! the elastic energy of the walls does not belong to the film
-    figures%moment = film_moment(joint, loads)
-    if (.not. joint%film%film_moment) &
-      figures%moment = figures%moment + share*joint%film%drag_moment(seen, loads%film/share)
-    figures%power = -(dot_product(loads%film, rate) + figures%moment*motion%journal_speed &
-      + bearing_moment(motion%eccentricity, loads%film, figures%moment)*motion%bearing_speed)
+    moment = film_moment(joint, loads)
+    figures%power = -(dot_product(loads%film, rate) + moment*motion%journal_speed &
+      + bearing_moment(motion%eccentricity, loads%film, moment)*motion%bearing_speed)
+    if (joint%film%neglects_shear()) then
+      figures%neglected_moment = share*joint%film%drag_moment(seen, loads%film/share)
+      figures%neglected_power = -figures%neglected_moment*(motion%journal_speed - motion%bearing_speed)
+    end if
     if (.not. joint%film%gives_pressure()) return
     call joint%film%peak_and_flow(seen, figures%max_pressure, figures%side_flow)
     figures%max_pressure = share*figures%max_pressure

@@ -12,8 +12,6 @@ module joint_columns
   private
   public :: put_joint_columns
 
-  character(len=*), parameter :: shear_moment = 'moment of the oil shear on the pin about its centre, positive from x to y'
-
 contains
 
   !> Put the columns of a joint into a row: those of the forces only for the laws that the case names.
@@ -54,7 +52,7 @@ contains
         call put_friction(motion, loads, row)
       end if
       if (joint%film%film_moment) call row%put('film_moment[N.m]', film_moment(joint, loads), &
-        shear_moment)
+        'moment of the oil shear on the pin about its centre, positive from x to y')
       call put_film_figures(joint, motion, loads, row)
     end if
     if (allocated(joint%wear)) call put_wear(joint, motion, loads, row)
@@ -110,7 +108,7 @@ contains
     type(film_figures_t) :: figures
     integer :: columns
     columns = 1
-    if (.not. joint%film%film_moment) columns = columns + 1
+    if (joint%film%neglects_shear()) columns = columns + 2
     if (joint%film%gives_pressure()) columns = columns + 1
     if (joint%film%gives_side_flow()) columns = columns + 1
     if (row%wants(columns)) then
@@ -119,10 +117,14 @@ contains
       call row%skip(columns)
       return
     end if
-    if (.not. joint%film%film_moment) call row%put_on_request('film_moment[N.m]', figures%moment, &
-      shear_moment)
     call row%put_on_request('film_power[W]', figures%power, &
-      'power that the film takes from the bodies, by pressure and shear; < 0: it gives')
+      'power that the film takes from the bodies, by pressure and by shear that acts; < 0: it gives')
+    if (joint%film%neglects_shear()) then
+      call row%put_on_request('neglected_shear_moment[N.m]', figures%neglected_moment, &
+        'moment of the oil shear on the pin that does not act (film_moment = .false.)')
+      call row%put_on_request('neglected_shear_power[W]', figures%neglected_power, &
+        'power that this shear would take from the bodies')
+    end if
     if (joint%film%gives_pressure()) call row%put_on_request('max_film_pressure[Pa]', figures%max_pressure, &
       'largest pressure in the film')
     if (joint%film%gives_side_flow()) call row%put_on_request('film_side_flow[m3/s]', figures%side_flow, &

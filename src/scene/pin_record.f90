@@ -118,6 +118,7 @@ contains
         if (.not. inside) cycle
         film = film_figures_of(joint, halfway%relative(k), halfway%joint(k))
         f%film_energy_lost = f%film_energy_lost + weight(i)*span*film%power
+        f%neglected_shear_loss = f%neglected_shear_loss + weight(i)*span*film%neglected_power
         f%film_volume = f%film_volume + weight(i)*span*film%side_flow
         f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
       end do

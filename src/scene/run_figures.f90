@@ -20,6 +20,7 @@ module run_figures
     real(dp) :: max_force = 0                 !! magnitude of the force of the joint on the pin [N]
     real(dp) :: min_film_thickness = huge(1.0_dp)  !! c - |e| [m]
     real(dp) :: film_energy_lost = 0  !! energy that the film takes from the bodies, if results of the film are requested [J]
+    real(dp) :: neglected_shear_loss = 0  !! energy that shear which does not act would take [J]
     real(dp) :: film_volume = 0               !! volume of oil that has left the film at its ends [m^3]
     real(dp) :: max_film_pressure = 0         !! [Pa]
     real(dp) :: friction_work = huge(1.0_dp)  !! work of the friction forces on the bodies so far [J]; huge: not integrated
@@ -81,6 +82,6 @@ contains
     call archive%exchange(self%contacts, self%impacts_beyond_validity, self%contacts_beyond_validity)
     call archive%exchange(self%contact_time, self%max_penetration, self%max_entry_penetration, self%max_force, &
       self%min_film_thickness, self%friction_work)
-    call archive%exchange(self%film_energy_lost, self%film_volume, self%max_film_pressure)
+    call archive%exchange(self%film_energy_lost, self%neglected_shear_loss, self%film_volume, self%max_film_pressure)
   end subroutine exchange_pin
 end module run_figures
