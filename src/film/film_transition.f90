@@ -9,7 +9,6 @@ module film_transition
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
   use gudgeon_bearing, only: bearing_t
-  use gudgeon_archive, only: archive_t
   use film_law, only: film_law_t, film_motion_t
   implicit none
   private
@@ -34,7 +33,6 @@ module film_transition
     procedure :: weight
     procedure :: held_motion
     procedure :: film_derivatives
-    procedure :: exchange
   end type film_transition_t
 
 contains
@@ -131,12 +129,4 @@ contains
     held = motion
     if (self%film_is_held) held%eccentricity = motion%eccentricity*(self%film_reach/norm2(motion%eccentricity))
   end function held_motion
-
-  !> Write the discrete state to an archive, or read it from it.
-  subroutine exchange(self, archive)
-    class(film_transition_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%film_is_held)
-    call archive%exchange(self%film_is_gone)
-  end subroutine exchange
 end module film_transition

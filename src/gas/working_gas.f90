@@ -3,7 +3,6 @@
 module working_gas
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree
-  use gudgeon_archive, only: archive_t
   use trace_row, only: trace_row_t
   use monotone_cubic, only: monotone_cubic_t
   use cylinder, only: cylinder_t
@@ -37,7 +36,6 @@ module working_gas
     procedure :: events
     procedure :: pass
     procedure :: put_columns
-    procedure :: exchange
   end type working_gas_t
 
 contains
@@ -154,16 +152,4 @@ contains
       if (gas%cycle%bound(gas%part) > gas%cycle%bound(gas%part - 1)) exit
     end do
   end subroutine pass_bound
-
-  !> Write the discrete state to an archive, or read it from it.
-  subroutine exchange(self, archive)
-    class(working_gas_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    if (allocated(self%valves)) then
-      call self%valves%exchange(archive)
-    else
-      call archive%exchange(self%part)
-      call archive%exchange(self%cycle_start)
-    end if
-  end subroutine exchange
 end module working_gas

@@ -223,7 +223,6 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(dp) :: speed
     plain = case
-    !$omp critical (texts)
     plain%output%sampling = 'time'
     plain%output%columns = 'standard'
     plain%output%window = 'all'
@@ -235,7 +234,6 @@ contains
       plain%integrator%end_time = report%figures%time
     end if
     call choose_columns(plain, .false., list, error)
-    !$omp end critical (texts)
     if (allocated(plain%joint%film)) plain%joint%film%table_file = ''   ! the files that the user names are not written again
     if (allocated(plain%crank_pin%film)) plain%crank_pin%film%table_file = ''
     plain%run%lyapunov_revolutions = 0

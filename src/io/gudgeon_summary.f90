@@ -1,6 +1,6 @@
 !> The summary of a run: NAME.summary.csv, and one line for the user.
 module gudgeon_summary
-  use, intrinsic :: iso_fortran_env, only: int64, compiler_version, compiler_options
+  use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
@@ -25,12 +25,10 @@ contains
 
   !> The rows `quantity,value,unit`. Peaks and times have as many digits as the trace, so that rounding does not make a row of the
   !> trace exceed them.
-  function summary_table(case, report, wall_time, identity, trace_length, events_length, is_twin) result(text)
+  function summary_table(case, report, wall_time, is_twin) result(text)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
     real(dp), intent(in) :: wall_time                               !! [s]
-    character(len=*), intent(in) :: identity                        !! identity of the run
-    integer(int64), intent(in) :: trace_length, events_length       !! lengths of the files [bytes]; 0: no such file
     logical, intent(in), optional :: is_twin                        !! true for the ideal twin, whose bodies are rigid
     character(len=:), allocatable :: text
     character(len=5), parameter :: method_names(2) = ['adams', 'radau']
@@ -107,9 +105,6 @@ contains
       end if
       if (case%is_elastic()) call add_elastic(f%elastic)
     end associate
-    if (trace_length > 0) call add('trace_bytes', integer_text(trace_length), 'B')
-    if (events_length > 0) call add('events_bytes', integer_text(events_length), 'B')
-    call add('identity', identity, '')
     call add('version', program_version, '')
     call add('compiler', quoted(compiler_version(), '"'), '')
     call add('compiler_options', quoted(compiler_options(), '"'), '')

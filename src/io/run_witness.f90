@@ -8,7 +8,8 @@ module run_witness
   use cycle_watch, only: cycle_watch_t
   use gudgeon_columns, only: column_list_t
   use gudgeon_scene, only: event_contact_begins
-  use gudgeon_simulation, only: simulate, run_report_t
+  use gudgeon_simulation, only: run_t, run_report_t
+  use patient_run, only: go_to_end
   use row_store, only: row_store_t
   use run_figures, only: run_figures_t
   use trace_sink, only: trace_event_t
@@ -51,28 +52,29 @@ contains
     type(witness_t), intent(out) :: witness
     type(error_t), allocatable, intent(out) :: error   !! the user interrupted
     type(error_t), allocatable :: failure
+    type(run_t) :: own
     type(run_report_t) :: report
     type(case_t) :: limited
     type(row_store_t) :: sink
     type(trace_event_t), allocatable :: event(:)
+    logical :: was_interrupted
     limited = case
     if (most_evaluations > 0) limited%integrator%max_evaluations = min(limited%integrator%max_evaluations, most_evaluations)
     if (case%has_play()) then   ! without clearance the integrals of the joint would change the steps
       allocate (witness%cycles)
       witness%cycles%keeps_cycles = .true.
-      call simulate(limited, .false., list, sink, report, failure, cycles=witness%cycles)
-    else
-      call simulate(limited, .false., list, sink, report, failure)
+    end if
+    call own%begin(limited, .false., list, sink, failure, witness%cycles)
+    if (.not. allocated(failure)) then
+      call go_to_end(own, was_interrupted)
+      if (was_interrupted) call fail(error, 'interrupted before it was certified', status_integration)
+      call own%finish(report, failure, witness%cycles)
     end if
     witness%is_done = .not. allocated(failure)
     witness%figures = report%figures
     if (allocated(report%wear)) call take_wear(report%wear, witness%worn)
     call sink%hand_over(size(list%id), witness%values, event)
     witness%impact = pack(event, event%kind == event_contact_begins)
-    if (.not. sink%wants_to_stop) return
-    !$omp critical (texts)
-    call fail(error, 'interrupted before it was certified', status_integration)
-    !$omp end critical (texts)
   end subroutine run
 
   pure subroutine take_wear(wear, worn)

@@ -4,7 +4,6 @@
 !> 2013, fig. 3.9). A law that the case does not name is not allocated.
 module clearance_joint
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   use gudgeon_bearing, only: bearing_t, crossing_speed
   use state_layout, only: layout_t, coordinates_t, slice_t
   use chain_motion, only: motion_t, piston_pin
@@ -98,7 +97,6 @@ module clearance_joint
     procedure :: state_slopes
     procedure :: is_singular
     procedure :: phase_apart
-    procedure :: exchange
   end type clearance_joint_t
 
   interface
@@ -549,16 +547,4 @@ contains
     is_singular = .false.
     if (is_unbounded(self)) is_singular = norm2(y(self%at%position:self%at%position + 1)) > (1 - thin)*self%bearing%clearance
   end function is_singular
-
-  !> Write the discrete state to an archive, or read it from it.
-  subroutine exchange(self, archive)
-    class(clearance_joint_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%phase)
-    call archive%exchange(self%impact_speed)
-    call archive%exchange(self%sliding)
-    call archive%exchange(self%force_is_lost)
-    if (allocated(self%transition)) call self%transition%exchange(archive)
-    if (allocated(self%worn)) call self%worn%exchange(archive)
-  end subroutine exchange
 end module clearance_joint

@@ -9,7 +9,6 @@ module gudgeon_events
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, max_events
   use ode_method, only: ode_method_t
-  use gudgeon_archive, only: archive_t
   use gudgeon_roots, only: bracket_t, next_abscissa, narrow, abscissa_by_rates
   implicit none
   private
@@ -36,7 +35,6 @@ module gudgeon_events
     procedure :: begin
     procedure :: step_back
     procedure :: search
-    procedure :: exchange
   end type event_watch_t
 
 contains
@@ -93,25 +91,6 @@ contains
     self%t = t
     call problem%events(t, y, self%g, self%rate)
   end subroutine look
-
-  !> Write the state to an archive, or read it from it; the problem must have been read before.
-  subroutine exchange(self, problem, archive)
-    class(event_watch_t), intent(inout) :: self
-    class(ode_problem_t), intent(in) :: problem
-    type(archive_t), intent(inout) :: archive
-    integer :: i
-    if (.not. allocated(self%y)) allocate (self%y(problem%n))
-    if (archive%is_reading) call prepare(self, problem)
-    do i = 1, self%n
-      call archive%exchange(self%low(i))
-      call archive%exchange(self%leaving(i))
-    end do
-    call archive%exchange(self%just_taken)
-    call archive%exchange(self%fresh)
-    call archive%exchange(self%t)
-    call archive%exchange(self%g)
-    call archive%exchange(self%rate)
-  end subroutine exchange
 
   !> Search the last step of the method up to t_last. `index` is the first event, or 0. t_event is its time, at a non-negative value
   !> of the function, or the end of the search.

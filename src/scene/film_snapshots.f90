@@ -2,7 +2,6 @@
 !> are computed when it has ended.
 module film_snapshots
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   use film_law, only: film_motion_t
   use ode_method, only: ode_method_t
   use gudgeon_scene, only: scene_t, evaluation_t
@@ -33,7 +32,6 @@ module film_snapshots
     procedure :: prepare
     procedure :: take
     procedure :: fields
-    procedure :: exchange
   end type film_snapshots_t
 
 contains
@@ -98,16 +96,4 @@ contains
       end associate
     end do
   end function fields
-
-  !> Write the stored motions to an archive, or read them from it.
-  subroutine exchange(self, archive)
-    class(film_snapshots_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    integer :: i
-    call archive%exchange(self%next, self%n)
-    if (archive%failed .or. self%n > size(self%kept, 2)) return
-    do i = 1, self%n
-      call archive%exchange(self%kept(:, i))
-    end do
-  end subroutine exchange
 end module film_snapshots

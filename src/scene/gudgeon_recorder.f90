@@ -7,7 +7,7 @@ module gudgeon_recorder
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
   use ode_problem, only: ode_problem_t
-  use ode_method, only: ode_method_t, limit_stability
+  use ode_method, only: ode_method_t
   use gudgeon_solver, only: observer_t
   use chain_motion, only: crank_pin, piston_pin, most_pins => n_pins
   use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide, of_wear, phase_contact
@@ -27,7 +27,6 @@ module gudgeon_recorder
   use run_figures, only: run_figures_t
   use film_snapshots, only: film_snapshots_t
   use wear_record, only: wear_profile_t
-  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: recorder_t
@@ -45,7 +44,6 @@ module gudgeon_recorder
     real(dp) :: interval = 0          !! time between rows [s]
     type(angle_grid_t) :: angles      !! crank angles of the rows, if rows are spaced by crank angle
     real(dp) :: end_time = 0          !! latest end of the run [s]
-    real(dp) :: expected_end = 0      !! expected end of the run [s]
     logical :: every_step = .false.   !! write a row at every accepted step
     integer :: max_evaluations_per_revolution = 0  !! largest number of evaluations in one revolution, or in the time of the first
                                                    !! revolution; 0: no limit
@@ -53,7 +51,7 @@ module gudgeon_recorder
     logical :: over_budget = .false.                !! the run is to end because that number was exceeded
     logical :: has_left = .false.                   !! the run is to end because the state of a row is outside the model
     real(dp), private :: initial_energy = 0, start_angle = 0
-    integer, private :: next_row = 0, steps = 0
+    integer, private :: next_row = 0
     integer, private :: evaluations_then = 0        !! number of evaluations at the beginning of the present revolution
     real(dp), private :: time_then = 0, angle_then = 0   !! time [s] and crank angle [rad] at that beginning
     integer, private :: n_pins = 1                 !! number of pins that have a record
@@ -68,8 +66,7 @@ module gudgeon_recorder
     procedure :: event_taken
     procedure :: event_handled
     procedure :: finish
-    procedure :: exchange => exchange_recorder
-    procedure :: take_archive
+    procedure :: row
     procedure :: wear
   end type recorder_t
 
@@ -87,7 +84,6 @@ contains
     call self%guide%prepare(scene)
     call self%elastic%prepare(scene, self%figures%elastic)
     allocate (self%y(scene%n), self%values(size(self%list%id)))
-    self%keeps_archives = self%sink%keeps_archives .and. .not. allocated(self%cycles)   ! the revolution counts cannot be archived
     if (self%periods%is_on) call self%periods%begin(scene)
     if (self%periods%keeps_one_more) self%first_sample = huge(self%first_sample)        ! no rows until the window begins
   end subroutine prepare
@@ -134,7 +130,6 @@ contains
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t_to
-    integer, parameter :: steps_between_reports = 2000
     real(dp) :: t_end
 
     select type (problem)
@@ -150,18 +145,10 @@ contains
       else
         call take_end(self, method, problem, method%t, method%y)
       end if
-      self%steps = self%steps + 1
-      if (mod(self%steps, steps_between_reports) == 0) then
-        call tell_progress(self, problem, t_to)
-        if (method%statistics%time_limited_by(limit_stability) > 0.5_dp*t_to) call self%sink%take_cost(t_to, method%statistics)
-      end if
     end select
     call keep_budget(self, method%statistics%evaluations)
     call self%patience%follow(self%figures%time, abs(self%figures%crank_travel)/two_pi)
-    self%wants_to_stop = self%sink%wants_to_stop .or. self%over_budget .or. self%has_left .or. self%periods%has_ended .or. &
-      self%patience%is_over
-    self%wants_archive = self%sink%wants_archive
-    if (self%periods%has_ended) self%keeps_archives = .false.
+    self%wants_to_stop = self%over_budget .or. self%has_left .or. self%periods%has_ended .or. self%patience%is_over
   end subroutine step_taken
 
   !> Check whether the motion is periodic. If so, t_end may be moved to an earlier time, or the window of the output begins.
@@ -236,18 +223,6 @@ contains
     if (inside) call self%elastic%take_values(scene, now, self%figures%elastic)
     call take_row(self, scene, t, self%y, now, inside)
   end subroutine put_sample
-
-  !> Report the progress of the run to the sink. If the run ends after a number of turns, its end is estimated from the mean speed
-  !> so far.
-  subroutine tell_progress(self, scene, t)
-    class(recorder_t), intent(inout) :: self
-    type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t
-    self%sink%expected_end = self%expected_end
-    if (allocated(scene%turns) .and. abs(self%figures%crank_travel) > 0) self%sink%expected_end = &
-      min(self%end_time, t*scene%turns%wanted*two_pi/abs(self%figures%crank_travel))
-    call self%sink%take_progress(t)
-  end subroutine tell_progress
 
   !> Record the end of a step, or of its final part, after the ends of revolutions inside it.
   subroutine take_end(self, method, scene, t, y)
@@ -471,8 +446,6 @@ contains
     else if (abs(self%first_sample + self%next_row*self%interval - t) <= 1e-9_dp*self%interval) then
       call write_row(self, scene, t, y)
     end if
-    self%sink%expected_end = t
-    call self%sink%take_progress(t)
   end subroutine finish
 
   !> Write the row at the final crank angle, if rounding left it out.
@@ -489,35 +462,6 @@ contains
     if (scene%crank_moves) self%y(scene%crank%position) = crank_angle
     call write_row(self, scene, t, self%y)
   end subroutine put_last_angle
-
-  !> Write the results so far to an archive, or read them from it. Settings are not archived.
-  subroutine exchange_recorder(self, archive)
-    class(recorder_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    integer :: i
-    call self%figures%exchange(archive)
-    do i = 1, self%n_pins
-      call self%pins(i)%exchange(archive)
-    end do
-    call self%guide%exchange(archive)
-    call self%elastic%exchange(archive)
-    if (allocated(self%films)) call self%films%exchange(archive)
-    call archive%exchange(self%initial_energy, self%start_angle)
-    call archive%exchange(self%next_row)
-    call self%angles%exchange(archive)
-    call self%periods%exchange(archive)
-    call self%patience%exchange(archive)
-    call archive%exchange(self%first_sample)
-    call archive%exchange(self%steps, self%evaluations_then)
-    call archive%exchange(self%time_then, self%angle_then)
-  end subroutine exchange_recorder
-
-  !> Hand the state of the run to the sink.
-  subroutine take_archive(self, archive)
-    class(recorder_t), intent(inout) :: self
-    type(archive_t), intent(in) :: archive
-    call self%sink%take_archive(archive)
-  end subroutine take_archive
 
   !> The worn surfaces of the joints whose wear is counted.
   function wear(self, scene) result(worn)
@@ -567,10 +511,20 @@ contains
     real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t), intent(in) :: now
     if (size(self%values) == 0) return
-    call row_values(self%list, scene, t, now, scene%work(y), self%initial_energy, self%values)
+    call self%row(scene, t, y, now, self%values)
     associate (f => self%figures)
       f%row_energy_residual = max(f%row_energy_residual, abs(scene%chain%energy(now%motion) - self%initial_energy - scene%work(y)))
     end associate
     call self%sink%take_row(self%values)
   end subroutine put_row
+
+  !> The values of a row at (t, y), where the scene has been evaluated.
+  subroutine row(self, scene, t, y, now, values)
+    class(recorder_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(scene%n)
+    type(evaluation_t), intent(in) :: now
+    real(dp), intent(out) :: values(:)
+    call row_values(self%list, scene, t, now, scene%work(y), self%initial_energy, values)
+  end subroutine row
 end module gudgeon_recorder

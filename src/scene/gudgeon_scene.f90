@@ -1,7 +1,6 @@
 !> A scene: the chain of crank, rod and piston with the joints and the gas of a case, as a system of differential equations.
 module gudgeon_scene
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   use ode_problem, only: ode_problem_t, max_events
   use state_layout, only: layout_t, coordinates_t, slice_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, turn_crank, follow_rod, follow_piston
@@ -103,7 +102,6 @@ module gudgeon_scene
     procedure :: energy_scale
     procedure :: speed_scale
     procedure :: twist_frequency
-    procedure :: exchange
   end type scene_t
 
   interface
@@ -548,20 +546,4 @@ contains
         energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%guide%own_speed(self%span)**2
     end associate
   end function energy_scale
-
-  !> Write the discrete state to an archive, or read it from it.
-  subroutine exchange(self, archive)
-    class(scene_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    integer :: i
-    call self%exchange_mode(archive)
-    call archive%exchange(self%entry_time)
-    do i = 1, self%n_joints
-      call self%joints(i)%exchange(archive)
-    end do
-    if (allocated(self%guide)) call self%guide%exchange(archive)
-    if (allocated(self%gas)) call self%gas%exchange(archive)
-    if (allocated(self%turns)) call self%turns%exchange(archive)
-    if (allocated(self%wear_cycle)) call archive%exchange(self%wear_cycle%begin)
-  end subroutine exchange
 end module gudgeon_scene

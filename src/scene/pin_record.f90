@@ -1,7 +1,6 @@
 !> Records what happens at one pin: its contacts, and the peaks of its force, penetration, film thickness and normal force.
 module pin_record
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   use ode_method, only: ode_method_t
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins
   use inside_step, only: look_inside
@@ -28,7 +27,6 @@ module pin_record
     procedure, non_overridable :: take_values
     procedure, non_overridable :: take_contact
     procedure, non_overridable :: is_touching
-    procedure :: exchange
   end type pin_record_t
 
 contains
@@ -183,14 +181,4 @@ contains
       event = self%contact
     end associate
   end subroutine take_contact
-
-  !> Write the results so far to an archive, or read them from it. The place of the pin is not archived.
-  subroutine exchange(self, archive)
-    class(pin_record_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call self%contact%exchange(archive)
-    call self%peak_watch_t%exchange(archive)
-    call archive%exchange(self%film_time)
-    if (allocated(self%wear)) call self%wear%exchange(archive)
-  end subroutine exchange
 end module pin_record

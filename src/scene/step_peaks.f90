@@ -6,7 +6,6 @@
 !> and then falls.
 module step_peaks
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   use ode_method, only: ode_method_t
   use chain_motion, only: piston_pin
   use chain_loads, only: force_size
@@ -44,7 +43,6 @@ module step_peaks
     procedure, non_overridable :: change_phase
     procedure, non_overridable :: search_interval
     procedure, non_overridable :: values
-    procedure :: exchange
   end type peak_watch_t
 
 contains
@@ -75,20 +73,6 @@ contains
     self%has_before = .false.
     self%slope_time = -huge(1.0_dp)
   end subroutine change_phase
-
-  !> Write the variables that change during a run to an archive, or read them from it. The place of the pin is not archived.
-  subroutine exchange(self, archive)
-    class(peak_watch_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%evaluations)
-    call archive%exchange(self%fresh)
-    call archive%exchange(self%has_before)
-    call archive%exchange(self%t_before, self%t)
-    call archive%exchange(self%before)
-    call archive%exchange(self%last)
-    call archive%exchange(self%slope)
-    call archive%exchange(self%slope_time)
-  end subroutine exchange
 
   !> The values of the quantities in one evaluation.
   pure function values(self, now)

@@ -3,7 +3,7 @@ module stop_reason
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree
   use ode_method, only: ode_settings_t, step_too_small, tolerance_too_small, start_outside, left_domain
-  use gudgeon_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached, unreadable_archive
+  use gudgeon_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached
   use gudgeon_scene, only: scene_t, evaluation_t, phase_free
   use chain_motion, only: crank_pin, piston_pin
   implicit none
@@ -54,8 +54,6 @@ contains
       text = 'the crank creeps: one revolution takes longer than 100 at its starting speed, after '//turns_text(scene, t, y)
     case (integration_interrupted)
       text = interrupted_text
-    case (unreadable_archive)
-      text = 'the state of the checkpoint does not belong to this case'
     case (chattering)
       text = 'contact events without progress in time (chatter)'
     case default

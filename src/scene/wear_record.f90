@@ -2,7 +2,6 @@
 module wear_record
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
-  use gudgeon_archive, only: archive_t
   use ode_method, only: ode_method_t
   use chain_motion, only: crank_pin, piston_pin
   use archard_wear, only: worn_surface_t, of_pin, of_bore
@@ -55,7 +54,6 @@ module wear_record
     procedure :: change_bore
     procedure :: end_cycle
     procedure :: profile
-    procedure :: exchange
   end type wear_record_t
 
 contains
@@ -304,18 +302,4 @@ contains
       end do
     end associate
   end function profile
-
-  !> Write the wear so far to an archive, or read it from it.
-  subroutine exchange(self, archive)
-    class(wear_record_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    integer :: k
-    call archive%exchange(self%evaluations)
-    call archive%exchange(self%time, self%total, self%depth_sum, self%turns)
-    call archive%exchange(self%step_ratios)
-    do k = 1, size(self%surface)
-      call self%surface(k)%exchange(archive)
-      call self%earlier(k)%exchange(archive)
-    end do
-  end subroutine exchange
 end module wear_record
