@@ -86,6 +86,8 @@ contains
       call refuse('--certify is not for gudgeon sweep')
     else if (.not. line%sweep .and. (line%fresh .or. line%last_row > 0)) then
       call refuse('--fresh and --rows are for gudgeon sweep')
+    else if (line%fresh .and. line%last_row > 0) then
+      call refuse('--fresh would discard the results of other rows: not with --rows')
     else
       call check_names()
     end if

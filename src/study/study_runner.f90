@@ -14,8 +14,8 @@ module study_runner
   use case_runner, only: tell_warning
   use process_pool, only: tasks_t, note_t, share, available_processors
   use gudgeon_posix, only: make_directory, remove_folder, list_folder, longest_name, remove_file, file_length, synchronise_folder, &
-    interrupted, signal_set_t, hold_interrupts, restore_interrupts
-  use text_file, only: read_text_file, read_whole
+    wait_for_input, interrupted, signal_set_t, hold_interrupts, restore_interrupts
+  use text_file, only: read_whole
   use study_sweep, only: sweep_t, read_sweep, check_rows, study_checksum
   use study_worker, only: study_worker_t
   use study_rows, only: run_header, cycle_header, strobe_header
@@ -92,7 +92,6 @@ contains
     type(study_tasks_t), intent(inout) :: tasks
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: label, before
-    type(error_t), allocatable :: nothing_there
     integer :: status, kind, ignored
     associate (sweep => tasks%sweep)
       tasks%folder = sweep%path//'.chunks'
@@ -104,18 +103,20 @@ contains
         return
       end if
       label = checksum_label//study_checksum(sweep)//newline
-      call read_text_file(sweep%path//'.study.nml', 100, 'study', before, nothing_there)
-      if (allocated(nothing_there) .or. options%fresh) then
+      call read_whole(sweep%path//'.study.nml', before, status)
+      if (options%fresh .or. status /= 0 .and. options%last_row == 0) then
+        before = ''
         do kind = n_kinds, 1, -1
           call remove_file(sweep%path//trim(suffixes(kind)), ignored)
         end do
         call remove_chunks(tasks)
-      else if (index(before, label) /= 1) then
+      end if
+      if (before /= '' .and. index(before, label) /= 1) then
         call fail(error, printable(sweep%path, 200)// &
           '.runs.csv: belongs to another study, base case or program; --fresh replaces it', status_output)
         return
       end if
-      call write_text(sweep%path//'.study.nml', label//sweep%study%resolved, error)
+      if (before == '') call write_study(sweep, label, error)
       if (allocated(error)) return
       call synchronise_folder(sweep%path, ignored)
       call make_directory(tasks%folder, status)
@@ -123,6 +124,27 @@ contains
     end associate
     if (.not. allocated(error)) call find_missing(tasks)
   end subroutine take_folder
+
+  !> Write the study with its checksum. Another sweep of its rows may do so at the same time.
+  subroutine write_study(sweep, label, error)
+    type(sweep_t), intent(in) :: sweep
+    character(len=*), intent(in) :: label
+    type(error_t), allocatable, intent(out) :: error
+    integer, parameter :: most_tries = 20, patience = 50   !! [ms]
+    integer, parameter :: nothing = -1
+    character(len=:), allocatable :: present
+    logical :: unused
+    integer :: try, status
+    do try = 1, most_tries
+      call write_text(sweep%path//'.study.nml', label//sweep%study%resolved, error)
+      if (.not. allocated(error)) return
+      call wait_for_input(nothing, patience, unused)
+      call read_whole(sweep%path//'.study.nml', present, status)
+      if (index(present, label) /= 1) cycle
+      deallocate (error)
+      return
+    end do
+  end subroutine write_study
 
   !> Remove all chunks.
   subroutine remove_chunks(tasks)
