@@ -486,12 +486,12 @@ contains
     call resolves(check, whole, ['integrator.end_time=1'], 'revolutions = 0.0', 'end_time = 1.0')
     call resolves(check, timed, ['integrator.revolutions=3'], 'revolutions = 3.0', 'end_time = 0.0')
     call resolves(check, timed, [character(len=30) :: 'integrator.revolutions=3', 'integrator.revolutions=0'], &
-                  'revolutions = 0.0', 'end_time = 5.0')
+                  'revolutions = 0.0', 'end_time = 0.5')
     call resolves(check, timed, [character(len=40) :: 'integrator.revolutions=3', 'integrator.relative_tolerance=1e-5', &
                                  'integrator.revolutions=4'], 'revolutions = 4.0', 'end_time = 0.0')
     call resolves(check, whole, ['integrator.end_time=0'], 'revolutions = 2.0', 'end_time = 0.0')
     call resolves(check, bodies//'&integrator end_time=0.5 revolutions=2 /', ['integrator.end_time=0.25'], &
-                  'revolutions = 0.0', 'end_time = 2.5')
+                  'revolutions = 0.0', 'end_time = 0.25')
     call resolves(check, bodies, [character(len=30) :: 'integrator.revolutions=3', 'integrator.end_time=1', &
                                   'integrator.revolutions=0'], 'revolutions = 0.0', 'end_time = 1.0')
     call refused_on(check, whole, [character(len=30) :: 'integrator.end_time=1', 'integrator.revolutions=1'], both//'1'//remedy)
@@ -584,7 +584,7 @@ contains
     call resolves(check, turned, ['integrator.end_time=2'], 'crank_revolutions = 0.0', 'end_time = 2.0')
     call resolves(check, timed, ['integrator.crank_revolutions=3'], 'crank_revolutions = 3.0', 'end_time = 0.0')
     call resolves(check, bounded, ['integrator.end_time=2'], 'crank_revolutions = 4.0', 'end_time = 2.0')
-    call resolves(check, bounded, ['integrator.crank_revolutions=3'], 'crank_revolutions = 3.0', 'end_time = 5.0')
+    call resolves(check, bounded, ['integrator.crank_revolutions=3'], 'crank_revolutions = 3.0', 'end_time = 0.5')
     call resolves(check, bounded, ['integrator.revolutions=3'], 'crank_revolutions = 0.0', 'end_time = 0.0')
     call resolves(check, timed, [character(len=40) :: 'integrator.crank_revolutions=3', 'integrator.end_time=1'], &
                   'crank_revolutions = 3.0', 'end_time = 1.0')

@@ -5,6 +5,7 @@
 !> e of the case, and therefore in the difference between e* and e.
 module restitution_law
   use gudgeon_kinds, only: dp
+  use number_text, only: short_text
   use gudgeon_parameters, only: parameter_list_t
   use gudgeon_bearing, only: bearing_t
   use contact_law, only: contact_law_t
@@ -57,13 +58,11 @@ contains
   pure subroutine conflict(self, key, wanted)
     class(restitution_law_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
-    character(len=4) :: least
     key = ''
     wanted = ''
     if (self%restitution >= self%least_restitution() .or. self%dissipation > 0) return
     key = 'restitution'
-    write (least, '(f4.2)') self%least_restitution()
-    wanted = 'must be >= '//least//' with law = '''//trim(self%name)//''''
+    wanted = 'must be >= '//short_text(self%least_restitution())//' with law = '''//trim(self%name)//''''
   end subroutine conflict
 
   pure real(dp) function zero()
