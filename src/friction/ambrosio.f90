@@ -1,6 +1,7 @@
 !> Coulomb friction with a linear ramp at small sliding speeds, after Ambrosio (4.9, 4.10).
 module ambrosio
   use gudgeon_kinds, only: dp
+  use number_text, only: short_text
   use gudgeon_parameters, only: parameter_list_t
   use friction_law, only: friction_law_t
   implicit none
@@ -34,7 +35,7 @@ contains
     class(ambrosio_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
     key = ''
-    wanted = 'must be >= v0'
+    wanted = 'must be >= v0 = '//short_text(self%v0)
     if (self%v1 < self%v0) key = 'v1'
   end subroutine conflict
 

@@ -9,6 +9,7 @@
 !> 3, 14 and 9 % less; it is not offered.
 module bristle_law
   use gudgeon_kinds, only: dp
+  use number_text, only: short_text
   use gudgeon_parameters, only: parameter_list_t
   use trace_row, only: trace_row_t
   use static_friction, only: static_friction_t
@@ -93,7 +94,7 @@ contains
     else if (largest*self%bristle_damping*self%damping_speed >= static) then
       key = 'damping_speed'
       wanted = 'bristle_damping gives more than the static friction at touch-down: must be < '// &
-        'static_coefficient/(0.43 bristle_damping)'
+        'static_coefficient/(0.43 bristle_damping) = '//short_text(static/(largest*self%bristle_damping))
     end if
   end subroutine conflict
 

@@ -1,6 +1,7 @@
 !> Common part of the friction laws in which static friction exceeds sliding friction.
 module static_friction
   use gudgeon_kinds, only: dp
+  use number_text, only: short_text
   use gudgeon_parameters, only: parameter_list_t
   use friction_law, only: friction_law_t
   implicit none
@@ -38,7 +39,7 @@ contains
     class(static_friction_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
     key = ''
-    wanted = 'must be >= coefficient, or 0: as coefficient'
+    wanted = 'must be >= coefficient = '//short_text(self%coefficient)//', or 0: as coefficient'
     if (self%holding_coefficient() < self%coefficient) key = 'static_coefficient'
   end subroutine static_conflict
 

@@ -2,6 +2,7 @@
 !> re-expansion of the gas in the dead space.
 module compressor
   use gudgeon_kinds, only: dp
+  use number_text, only: short_text
   use gudgeon_errors, only: error_t
   use gudgeon_parameters, only: parameter_list_t
   use cylinder, only: new_cylinder
@@ -43,7 +44,7 @@ contains
     class(compressor_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
     key = ''
-    wanted = 'must be > suction_pressure'
+    wanted = 'must be > suction_pressure = '//short_text(self%suction_pressure)
     if (self%discharge_pressure <= self%suction_pressure) key = 'discharge_pressure'
   end subroutine conflict
 

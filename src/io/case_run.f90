@@ -17,7 +17,7 @@ module case_run
   use stability_advice, only: stability_advice_t, advice
   use gudgeon_progress, only: progress_t, clock
   use gudgeon_posix, only: synchronise_folder, file_length, error_text, interrupted
-  use text_tools, only: printable
+  use text_tools, only: printable, replaced
   implicit none
   private
   public :: case_run_t, name_file
@@ -222,10 +222,12 @@ contains
     has_events = self%case%has_contact() .and. .not. self%is_twin
   end function has_events
 
-  !> Put the name of the case file in front of an error message that does not contain it.
+  !> Put the name of the case file in front of each line of an error message that does not contain it.
   subroutine name_file(path, error)
     character(len=*), intent(in) :: path
     type(error_t), intent(inout) :: error
-    error%message = printable(path, 200)//': '//error%message
+    character(len=:), allocatable :: head
+    head = printable(path, 200)//': '
+    error%message = head//replaced(error%message, achar(10), achar(10)//head)
   end subroutine name_file
 end module case_run

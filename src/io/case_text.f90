@@ -87,7 +87,8 @@ contains
     list = list(3:)
   end function others
 
-  !> A case file with all keys of the models of the case, in every group that is present. Reals have as many digits as read back exactly.
+  !> A case file with all keys of the models of the case, in every group that is present. Reals have as many digits as read
+  !> back exactly.
   function resolved_text(values) result(text)
     type(case_values_t), intent(in) :: values
     character(len=:), allocatable :: text

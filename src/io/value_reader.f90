@@ -3,7 +3,7 @@
 module value_reader
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
-  use text_tools, only: lowercase, printable, is_clean, whole_number
+  use text_tools, only: lowercase, printable, is_clean, whole_number, likely_word
   use case_schema, only: key_t, is_listed, real_kind, integer_kind, logical_kind, word_kind
   use namelist_reader, only: token_t
   implicit none
@@ -28,6 +28,7 @@ module value_reader
     logical :: switch = .false.
     character(len=:), allocatable :: text
     character(len=48) :: written(most_reals) = ''   !! as the user wrote it, for messages
+    integer :: line = 0                      !! line of the file on which it is given
   end type value_t
 
 contains
@@ -67,7 +68,7 @@ contains
     case (word_kind)
       value%text = trim(lowercase(token%text))
       if (.not. is_listed(value%text, key%words) .and. value%text /= key%default) wanted = 'must be one of '// &
-        key%words
+        key%words//likely_word(value%text, key%words)
     case default
       if (.not. is_clean(token%text)) wanted = 'must not contain control characters or bytes that are not UTF-8'
       if (element > 1 .and. key%count > 1 .and. token%quoted) then

@@ -50,6 +50,7 @@ contains
     call read_study(path, sweep%study, error)
     if (allocated(error)) return
     call read_case_values(sweep%study%case, with_preset(options%accuracy, options%overrides), values, error)
+    if (.not. allocated(error)) call values%problems%report(error)
     if (allocated(error)) then
       error%message = printable(path, 200)//': &study case: '//error%message
       return
