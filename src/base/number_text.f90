@@ -13,7 +13,8 @@ module number_text
   use text_tools, only: whole_number, integer_text
   implicit none
   private
-  public :: real_text, short_text, exact_text, number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
+  public :: real_text, short_text, exact_text, quantity_text, number_writer_t, append_formatted, longest_number, &
+    fewest_digits, most_digits
 
   integer, parameter :: fewest_digits = 6, most_digits = 17   !! significant digits
   integer, parameter :: longest_number = most_digits + 9      !! characters, as -1.2345678901234567E-100, with trailing blanks
@@ -234,6 +235,20 @@ contains
     if (present(digits)) wanted = digits
     text = plain_text(real_text(value, wanted))
   end function short_text
+
+  !> A value with a unit that makes it readable, in three digits: 4.22 um, 3.61 kN, 100 ms.
+  pure function quantity_text(value, unit) result(text)
+    real(dp), intent(in) :: value
+    character(len=*), intent(in) :: unit   !! of the value
+    character(len=:), allocatable :: text
+    character(len=1), parameter :: prefixes(-4:4) = ['p', 'n', 'u', 'm', ' ', 'k', 'M', 'G', 'T']
+    integer, parameter :: digits = 3
+    integer :: power
+    power = 0
+    if (abs(value) > 0) power = floor(log10(abs(value)*(1 + 0.5_dp*10.0_dp**(-digits)))/3)
+    if (power < lbound(prefixes, 1) .or. power > ubound(prefixes, 1)) power = 0
+    text = short_text(value/10.0_dp**(3*power), digits)//' '//trim(prefixes(power))//unit
+  end function quantity_text
 
   !> A real with as few digits as read back as the same bits: 0.0508, 250, 2e-5.
   pure function exact_text(value) result(text)

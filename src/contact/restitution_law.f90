@@ -38,12 +38,12 @@ contains
     class(restitution_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%add('restitution', self%restitution, 'coefficient of restitution', range='>= 0 and <= 1', default='0.9', &
-      family='loss')
+      family='loss', usual='0 to 1')
     call list%add('dissipation', self%dissipation, &
       'factor a in force = elastic force (1 + a rate), instead of restitution; 0: from restitution', &
-      's/m', '> 0', default='0.0', family='loss')
+      's/m', '> 0', default='0.0', family='loss', usual='1e-3 to 100')
     call list%add('least_impact_speed', self%least_impact_speed, 'impacts slower than this are damped as if they had this speed', &
-      'm/s', '>= 1e-9 and <= 1', default='1.0e-5')
+      'm/s', '>= 1e-9 and <= 1', default='1.0e-5', usual='1e-7 to 1e-3')
   end subroutine parameters
 
   subroutine prepare(self, bearing)

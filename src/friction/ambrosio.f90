@@ -27,8 +27,9 @@ contains
     class(ambrosio_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call self%add_coefficient(list)
-    call list%add('v0', self%v0, 'sliding speed below which there is no friction', 'm/s', '>= 0', example='0.001')
-    call list%add('v1', self%v1, 'sliding speed above which friction is full', 'm/s', '>= 0', example='0.010')
+    call list%add('v0', self%v0, 'sliding speed below which there is no friction', 'm/s', '>= 0', example='0.001', &
+      usual='1e-6 to 0.1')
+    call list%add('v1', self%v1, 'sliding speed above which friction is full', 'm/s', '>= 0', example='0.010', usual='1e-6 to 1')
   end subroutine parameters
 
   pure subroutine conflict(self, key, wanted)

@@ -30,13 +30,14 @@ contains
     class(compressor_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call self%add_bore(list)
-    call list%add('dead_space', self%dead_space, 'clearance volume over displacement', range='>= 1e-4 and <= 100', example='0.05')
+    call list%add('dead_space', self%dead_space, 'clearance volume over displacement', range='>= 1e-4 and <= 100', example='0.05', &
+      usual='5e-3 to 0.5')
     call list%add('suction_pressure', self%suction_pressure, &
-      'pressure while the suction valve is open', 'Pa', '> 0', default='101325.0')
+      'pressure while the suction valve is open', 'Pa', '> 0', default='101325.0', usual='2e4 to 1e7')
     call list%add('discharge_pressure', self%discharge_pressure, 'pressure while the discharge valve is open', 'Pa', '> 0', &
-      example='4.0e5')
+      example='4.0e5', usual='5e4 to 1e8')
     call list%add('polytropic_exponent', self%polytropic_exponent, 'exponent n of p V^n = const. while both valves are closed', &
-      range='>= 0.1 and <= 10', example='1.3')
+      range='>= 0.1 and <= 10', example='1.3', usual='1 to 1.67')
     call self%add_crankcase_pressure(list)
   end subroutine parameters
 

@@ -43,13 +43,13 @@ contains
   subroutine add_bore(self, list)
     class(gas_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('bore', self%bore, 'cylinder diameter', 'm', '>= 1e-6 and <= 1e3', example='0.070')
+    call list%add('bore', self%bore, 'cylinder diameter', 'm', '>= 1e-6 and <= 1e3', example='0.070', usual='5e-3 to 1.5')
   end subroutine add_bore
 
   subroutine add_crankcase_pressure(self, list)
     class(gas_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%add('crankcase_pressure', self%crankcase_pressure, &
-      'pressure on the crank side of the piston', 'Pa', '> 0', default='101325.0')
+      'pressure on the crank side of the piston', 'Pa', '> 0', default='101325.0', usual='2e4 to 3e6')
   end subroutine add_crankcase_pressure
 end module gas_law

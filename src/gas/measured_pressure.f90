@@ -37,11 +37,11 @@ contains
     call list%add('period_deg', self%period_deg, &
       'period of the table: 720 (four-stroke) or 360 degrees', '>= 360 and <= 720', '720')
     call list%add('offset_deg', self%offset_deg, &
-      'crank angle of the simulation at angle 0 of the table', 'degrees', '>= -1080 and <= 1080', '0.0')
+      'crank angle of the simulation at angle 0 of the table', 'degrees', '>= -1080 and <= 1080', '0.0', usual='0 to 1080')
     call self%add_bore(list)
     call list%add('compression_ratio', self%compression_ratio, &
       'largest over smallest volume, for the column cylinder_volume only; 0: it shows the swept volume', &
-      range='> 1 and <= 1000', default='0.0')
+      range='> 1 and <= 1000', default='0.0', usual='2 to 30')
     call self%add_crankcase_pressure(list)
   end subroutine parameters
 

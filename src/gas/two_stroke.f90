@@ -26,7 +26,7 @@ contains
     call self%wiebe_parameters(list)
     call list%add('port_opens_deg', self%port_opens_deg, &
       'crank angle after the firing dead centre at which the ports open; they close as much before it', 'degrees', &
-      '> 0 and <= 180', example='105.0')
+      '> 0 and <= 180', example='105.0', usual='70 to 150')
   end subroutine parameters
 
   pure subroutine conflict(self, key, wanted)

@@ -9,6 +9,7 @@ module case_file
   use case_values, only: case_values_t
   use case_loader, only: load_case
   use case_rules, only: check_rules
+  use case_notes, only: note_case
   use case_text, only: template_text, resolved_text
   use namelist_reader, only: namelist_t, read_namelist
   use problem_list, only: behind_file
@@ -89,6 +90,7 @@ contains
       call check_rules(this, values)
     end if
     call values%problems%report(error)
+    if (.not. allocated(error)) call note_case(this, values)
   end subroutine complete_case
 
   !> A complete case file with comments, which can be read back.

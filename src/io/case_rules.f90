@@ -12,21 +12,12 @@ module case_rules
   use body_rules, only: check_guide, check_elastic, bore_reach
   implicit none
   private
-  public :: check_rules, case_warning
+  public :: check_rules
 
   real(dp), parameter :: most_samples = 1e9_dp   !! largest number of rows that a run may ask for
   real(dp), parameter :: rounding = 1e-12_dp     !! relative difference of two times or lengths that counts as none
 
 contains
-
-  !> A warning for the user of a valid case, or an empty text.
-  pure function case_warning(c) result(text)
-    type(case_t), intent(in) :: c
-    character(len=:), allocatable :: text
-    text = ''
-    if (c%drive%kind == 'constant_speed' .and. abs(c%drive%torque) > 0) text = '&drive torque has no effect with kind = '// &
-      '''constant_speed'': the drive supplies the moment that holds the speed (crank_moment); with kind = ''free'' the torque acts'
-  end function case_warning
 
   !> Note the errors of a case of which no scene can be built; `values` tells which keys the user has set.
   subroutine check_rules(c, values)
@@ -61,6 +52,7 @@ contains
     !> A = I_c + m_c |com_c|^2 and B = I_r + m_r |com_r|^2 its smallest determinant is A B + m_r R^2 I_r.
     subroutine check_bodies()
       character(len=*), parameter :: away = 'must be > 0 unless crank_mass is > 0 away from the axis'
+      character(len=:), allocatable :: key
       real(dp) :: play, crank, rod
       associate (m => c%mechanism)
         play = play_of(c%joint) + play_of(c%crank_pin)
@@ -69,9 +61,9 @@ contains
         else if (m%rod_length <= m%crank_length + play) then
           call values%refuse('mechanism', 'rod_length', 'must be > crank_length + clearance = '//short_text(m%crank_length + play))
         else if (m%rod_length <= m%crank_length + play + bore_reach(c)) then
-          call values%refuse('guide', 'bore_clearance', 'lets the piston move '//short_text(bore_reach(c))//' m off the '// &
-            'cylinder''s axis: must be less than rod_length - crank_length - clearance = '// &
-            short_text(m%rod_length - m%crank_length - play))
+          key = trim(merge('bore_clearance', 'piston_com    ', c%guide%bore_clearance > abs(c%guide%piston_com(2))))
+          call values%refuse('guide', key, 'lets the pin move '//short_text(bore_reach(c))//' m off the cylinder''s axis: must '// &
+            'be less than rod_length - crank_length - clearance = '//short_text(m%rod_length - m%crank_length - play))
         end if
         crank = m%crank_inertia + c%drive%flywheel_inertia + m%crank_mass*sum(m%crank_com**2)
         rod = m%rod_inertia + m%rod_mass*sum(m%rod_com**2)

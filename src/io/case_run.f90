@@ -13,7 +13,8 @@ module case_run
   use result_file, only: result_file_t, remove_result, write_text
   use certificate, only: certificate_t, make_certificate
   use certificate_text, only: certificate_table, certificate_summary, certificate_clause
-  use gudgeon_summary, only: summary_table, summary_line
+  use gudgeon_summary, only: summary_table
+  use run_line, only: lines_for_user
   use stability_advice, only: stability_advice_t, advice
   use gudgeon_progress, only: progress_t, clock
   use gudgeon_posix, only: synchronise_folder, file_length, error_text, interrupted
@@ -182,6 +183,7 @@ contains
     case = self%case
     if (self%is_twin) case%joint%kind = 'ideal'
     if (self%is_twin) case%crank_pin%kind = 'ideal'
+    if (self%is_twin .and. allocated(case%notes)) deallocate (case%notes)
     remark = ''
     if (allocated(self%certificate)) then
       if (self%certificate%is_made) then
@@ -191,7 +193,7 @@ contains
       remark = certificate_clause(self%certificate)
     end if
     wall_time = clock() - self%began
-    self%line = summary_line(case, self%report, wall_time, self%base, remark)
+    self%line = lines_for_user(case, self%report, wall_time, self%base, remark)
     if (.not. self%advice%was_given) self%notice = advice(self%report%auto_saves)
     if (self%notice /= '') self%notice = printable(case%file, 200)//': '//self%notice
     call self%summary%put(summary_table(case, self%report, wall_time, self%is_twin))

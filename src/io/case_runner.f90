@@ -8,7 +8,6 @@ module case_runner
   use case_file, only: read_case_values, complete_case
   use case_text, only: resolved_text
   use case_values, only: case_values_t
-  use case_rules, only: case_warning
   use command_line, only: command_line_t
   use film_files, only: provide_tables
   use gudgeon_columns, only: column_list_t, choose_columns
@@ -21,10 +20,10 @@ module case_runner
   use gudgeon_progress, only: tell, say, clock, progress_wanted
   use measured_curve, only: measured_curve_t
   use process_pool, only: tasks_t, note_t, share, available_processors
-  use text_tools, only: printable, integer_text
+  use text_tools, only: printable, integer_text, replaced
   implicit none
   private
-  public :: run_cases, tell_warning
+  public :: run_cases, tell_notes
 
   !> A case with its results.
   type :: case_job_t
@@ -105,7 +104,7 @@ contains
       call name_file(path, job%error)
       return
     end if
-    if (.not. options%quiet) call tell_warning(case)
+    if (.not. options%quiet) call tell_notes(case)
     base = options%out//'/'//case%name
     call keep_tables(case, base, job%error)
     if (allocated(job%error)) return
@@ -151,13 +150,13 @@ contains
     end subroutine refuse_table
   end subroutine keep_tables
 
-  !> Warn about values of a case that are valid but have no effect.
-  subroutine tell_warning(case)
+  !> Tell the notes on a case.
+  subroutine tell_notes(case)
     type(case_t), intent(in) :: case
-    character(len=:), allocatable :: warning
-    warning = case_warning(case)
-    if (warning /= '') call tell(printable(case%file, 200)//': '//warning)
-  end subroutine tell_warning
+    character(len=:), allocatable :: head
+    head = printable(case%file, 200)//': note: '
+    if (allocated(case%notes)) call tell(head//replaced(case%notes, achar(10), achar(10)//head))
+  end subroutine tell_notes
 
   !> Run a case and its ideal twin, and print the outcome.
   subroutine carry_out(self, task, note)

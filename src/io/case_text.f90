@@ -43,7 +43,7 @@ contains
     end do
   end function template_text
 
-  !> `  key = value   ! unit, range, default: description`
+  !> `  key = value   ! unit, range, usual sizes, default: description`
   function template_line(keys, group, key) result(line)
     type(key_t), intent(in) :: keys(:)   !! of the schema
     type(group_definition_t), intent(in) :: group
@@ -58,6 +58,7 @@ contains
     note = ''
     if (key%unit /= '') note = note//', '//trim(key%unit)
     if (key%range /= '') note = note//', '//trim(key%range)
+    if (key%usual /= '') note = note//', usually '//trim(key%usual)
     if (allocated(key%words)) note = note//', one of '//key%words
     if (key%required) note = note//', required'
     if (.not. key%required .and. key%example /= '' .and. key%default /= '') note = note//', default '//trim(key%default)

@@ -7,8 +7,10 @@ module case_values
   use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, real_kind, integer_kind, &
     word_kind, text_kind
   use namelist_reader, only: entry_t, token_t, read_values
+  use unit_hints, only: likely_unit
   use problem_list, only: problem_list_t, behind_file
-  use value_reader, only: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals, is_within
+  use value_reader, only: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals, is_within, &
+    read_bounds
   implicit none
   private
   public :: case_values_t, value_t
@@ -395,6 +397,18 @@ contains
     end associate
   end subroutine check_range
 
+  !> Text that guesses the unit of a real that is not of a usual size.
+  pure function meant(key, value) result(text)
+    type(key_t), intent(in) :: key
+    real(dp), intent(in) :: value
+    character(len=:), allocatable :: text
+    real(dp) :: least, most
+    text = ''
+    if (key%usual == '' .or. .not. abs(value) > 0 .or. value < 0 .and. key%unit /= 'degrees') return
+    call read_bounds(trim(key%usual), least, most)
+    if (abs(value) < least .or. abs(value) > most) text = likely_unit(trim(key%unit), value, least, most)
+  end function meant
+
   !> Note an error of a value: file, group, key, value as written, allowed values, unit.
   subroutine refuse(self, group, name, wanted, element, unit)
     class(case_values_t), intent(inout) :: self
@@ -413,7 +427,7 @@ contains
     if (present(unit)) then
       text = text//unit
     else
-      text = text//unit_of(self%keys(place))
+      text = text//unit_of(self%keys(place))//meant(self%keys(place), self%values(place)%reals(min(shown, most_reals)))
     end if
     call self%problems%add(text, group, self%place_in_file(place))
   end subroutine refuse

@@ -65,7 +65,8 @@ contains
         if (it%instead_of /= '') text = text//'Cannot be combined with `&'//trim(it%instead_of)//'`.'//newline
         if (it%place /= '' .or. it%is_law) &
           text = text//'`place = ''crank_pin''` in a second group of this name makes it that of the crank pin.'//newline
-        text = text//newline//'| key | unit | limits | default | meaning |'//newline//'|---|---|---|---|---|'//newline
+        text = text//newline//'| key | unit | limits | usual | default | meaning |'//newline// &
+          '|---|---|---|---|---|---|'//newline
         do i = it%first, it%last
           text = text//key_row(table%keys, it, table%keys(i))//newline
         end do
@@ -94,7 +95,8 @@ contains
         if (key%laws /= all_laws) meaning = meaning//' Only with `'//key%choice//'` '//key%laws//'.'
       end associate
     end if
-    row = '| `'//trim(key%name)//'` | '//trim(key%unit)//' | '//trim(key%range)//' | '//default//' | '//escaped(meaning)//' |'
+    row = '| `'//trim(key%name)//'` | '//trim(key%unit)//' | '//trim(key%range)//' | '// &
+      trim(key%usual)//' | '//default//' | '//escaped(meaning)//' |'
   end function key_row
 
   !> Page of all columns and quantities that a result file can have.

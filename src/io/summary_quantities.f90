@@ -60,11 +60,11 @@ module summary_quantities
       'largest Lyapunov exponent: growth rate of the distance of neighbouring motions'), &
     quantity_t('lyapunov_exponent_error', '1/revolution', 'its standard error'), &
     quantity_t('lyapunov_revolutions', '1', 'revolutions over which it was measured'), &
-    quantity_t('lyapunov_warning', '', 'why there is no exponent'), &
     quantity_t('max_energy_residual', 'J', 'largest size of the energy residual, at the ends of steps and in the rows'), &
     quantity_t('max_energy_residual_relative', '1', &
       'that at the ends of steps over the largest energy: a measure of the integration error'), &
-    quantity_t('energy_warning', '', 'written where that is larger than the tolerance explains')]
+    quantity_t('energy_warning', '', 'written where that is larger than the tolerance explains'), &
+    quantity_t('note_N', '', 'values of the case or results that are implausible or beyond a model')]
 
   type(quantity_t), parameter :: of_joints(*) = [ &
     quantity_t('viscosity', 'Pa s', 'dynamic viscosity of the oil at the temperature of the film'), &

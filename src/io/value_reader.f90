@@ -9,7 +9,7 @@ module value_reader
   implicit none
   private
   public :: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals
-  public :: read_real, read_times, read_integer, is_within
+  public :: read_real, read_times, read_integer, is_within, read_bounds
 
   integer, parameter :: most_reals = 2   !! longest array of reals in the schema
   integer, parameter :: longest_text = 4000
@@ -257,6 +257,18 @@ contains
     within = meets(value, trim(range(:length)))
     if (within) within = is_within(value, range(length + 6:))
   end function is_within
+
+  !> The bounds in a text such as `1e-6 to 1e-3`.
+  pure subroutine read_bounds(text, least, most)
+    character(len=*), intent(in) :: text
+    real(dp), intent(out) :: least, most
+    character(len=*), parameter :: to = ' to '
+    character(len=:), allocatable :: wanted
+    integer :: at
+    at = index(text, to)
+    call read_real(text(:at - 1), least, wanted)
+    call read_real(text(at + len(to):), most, wanted)
+  end subroutine read_bounds
 
   !> Whether a value meets one condition: an operator and a number, separated by a blank.
   pure logical function meets(value, condition) result(met)

@@ -48,7 +48,7 @@ contains
       'elastic walls in series with the film; &contact with law = ''hertz'' gives their stiffness', '.false.')
     call list%add('pressure_viscosity', self%pressure_viscosity, &
       'elastic_film: exponential growth of the viscosity with the mean pressure (Barus)', &
-      '1/Pa', '>= 0 and <= 1e-6', default='0.0')
+      '1/Pa', '>= 0 and <= 1e-6', default='0.0', usual='1e-9 to 1e-7')
   end subroutine parameters
 
   subroutine prepare(self, bearing)

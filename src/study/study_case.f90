@@ -8,6 +8,7 @@ module study_case
   use case_file, only: complete_case
   use case_loader, only: load_case
   use case_rules, only: check_rules
+  use case_notes, only: note_case
   use value_reader, only: read_value => convert
   use namelist_reader, only: token_t
   implicit none
@@ -112,7 +113,8 @@ contains
     end associate
   end subroutine convert
 
-  !> Check the ranges of the values set last and the rules between them. An error concerns this run, not the study: the first one.
+  !> Check the ranges of the values set last and the rules between them, and put the notes on them into the case. An error concerns
+  !> this run, not the study: the first one.
   subroutine check(self, error)
     class(study_case_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
@@ -123,6 +125,7 @@ contains
     if (self%varies_words) call self%values%check()
     if (self%values%problems%n == 0) call check_rules(self%case, self%values)
     call self%values%problems%report(error)
+    if (.not. allocated(error)) call note_case(self%case, self%values)
     if (allocated(error)) error%message = error%message(:index(error%message//achar(10), achar(10)) - 1)
   end subroutine check
 end module study_case

@@ -1,0 +1,79 @@
+!> What the user is told about a run that has ended: the physics in one line, its cost in another one, and the notes on its results.
+module run_line
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
+  use gudgeon_simulation, only: run_report_t
+  use run_figures, only: pin_figures_t
+  use period_watch, only: period_watch_t
+  use chain_motion, only: crank_pin, piston_pin
+  use case_definition, only: case_t, joint_case_t
+  use result_notes, only: notes_on_results, relative_residual
+  use number_text, only: short_text, quantity_text
+  use text_tools, only: integer_text, replaced
+  implicit none
+  private
+  public :: lines_for_user
+
+  character(len=*), parameter :: newline = achar(10)
+  integer, parameter :: digits = 3
+
+contains
+
+  !> The lines for the user.
+  function lines_for_user(case, report, wall_time, path, remark) result(text)
+    type(case_t), intent(in) :: case
+    type(run_report_t), intent(in) :: report
+    real(dp), intent(in) :: wall_time      !! [s]
+    character(len=*), intent(in) :: path   !! path of the results without suffix
+    character(len=*), intent(in) :: remark !! text about the certificate, or empty
+    character(len=:), allocatable :: text, notes
+    associate (s => report%statistics, f => report%figures)
+      text = case%name//': '//report%status//'; '//short_text(abs(f%crank_travel)/two_pi, digits)//' revolutions in '// &
+        quantity_text(f%time, 's')
+      if (report%periods%is_on .and. report%status == 'done') text = text//', '//period_text(report%periods)
+      text = text//'; '//pin_text(case%joint, f%pin(piston_pin), case%integrator%relative_tolerance)
+      if (case%crank_pin%has_clearance()) text = text//'; crank pin: '// &
+        pin_text(case%crank_pin, f%pin(crank_pin), case%integrator%relative_tolerance)
+      if (case%has_loose_guide()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
+        ' contacts, force up to '//quantity_text(maxval(f%corner%max_force), 'N')
+      if (report%exponent%is_known) text = text//'; Lyapunov exponent '//short_text(report%exponent%mean, digits)//' per revolution'
+      if (remark /= '') text = text//'; '//remark
+      text = text//newline//'  '//path//'.csv; '//integer_text(s%accepted)//' steps, '//integer_text(s%evaluations)// &
+        ' evaluations, '//short_text(wall_time, digits)//' s; relative energy residual '//short_text(relative_residual(report), 2)
+    end associate
+    notes = notes_on_results(case, report)
+    if (notes /= '') text = text//newline//'  note: '//replaced(notes, newline, newline//'  note: ')
+  end function lines_for_user
+
+  !> Text about the period of the motion.
+  function period_text(periods) result(text)
+    type(period_watch_t), intent(in) :: periods
+    character(len=:), allocatable :: text
+    text = 'not periodic within '//integer_text(periods%most_revolutions)//' revolutions'
+    if (periods%period == 0) return
+    text = 'repeats every revolution'
+    if (periods%period > 1) text = 'repeats every '//integer_text(periods%period)//' revolutions'
+    text = text//', recognised after '//integer_text(periods%found_after)
+  end function period_text
+
+  !> Text about one pin. The error of a table of the film is told if it is larger than the relative tolerance of the run.
+  function pin_text(joint, pin, tolerance) result(text)
+    type(joint_case_t), intent(in) :: joint
+    type(pin_figures_t), intent(in) :: pin
+    real(dp), intent(in) :: tolerance
+    character(len=:), allocatable :: text
+    text = ''
+    if (joint%has_clearance()) then
+      if (joint%can_touch()) text = integer_text(pin%contacts)//' contacts, '
+      if (joint%can_touch() .and. pin%contacts == 0) text = 'no contact, '
+      if (pin%min_film_thickness < 0) then
+        text = text//'penetration up to '//quantity_text(-pin%min_film_thickness, 'm')//', '
+      else if (allocated(joint%film)) then
+        text = text//'film of at least '//quantity_text(pin%min_film_thickness, 'm')//', '
+        if (joint%film%table_of /= '' .and. joint%film%table_error > tolerance) &
+          text = text//'its table good to '//short_text(100*joint%film%table_error, 2)//' %, '
+      end if
+    end if
+    text = text//'pin force up to '//quantity_text(pin%max_force, 'N')
+  end function pin_text
+end module run_line
