@@ -236,18 +236,20 @@ contains
     text = plain_text(real_text(value, wanted))
   end function short_text
 
-  !> A value with a unit that makes it readable, in three digits: 4.22 um, 3.61 kN, 100 ms.
-  pure function quantity_text(value, unit) result(text)
+  !> A value with a unit that makes it readable, in three (or `digits`) digits: 4.22 um, 3.61 kN, 100 ms.
+  pure function quantity_text(value, unit, digits) result(text)
     real(dp), intent(in) :: value
     character(len=*), intent(in) :: unit   !! of the value
+    integer, intent(in), optional :: digits
     character(len=:), allocatable :: text
     character(len=1), parameter :: prefixes(-4:4) = ['p', 'n', 'u', 'm', ' ', 'k', 'M', 'G', 'T']
-    integer, parameter :: digits = 3
-    integer :: power
+    integer :: power, wanted
+    wanted = 3
+    if (present(digits)) wanted = digits
     power = 0
-    if (abs(value) > 0) power = floor(log10(abs(value)*(1 + 0.5_dp*10.0_dp**(-digits)))/3)
+    if (abs(value) > 0) power = floor(log10(abs(value)*(1 + 0.5_dp*10.0_dp**(-wanted)))/3)
     if (power < lbound(prefixes, 1) .or. power > ubound(prefixes, 1)) power = 0
-    text = short_text(value/10.0_dp**(3*power), digits)//' '//trim(prefixes(power))//unit
+    text = short_text(value/10.0_dp**(3*power), wanted)//' '//trim(prefixes(power))//unit
   end function quantity_text
 
   !> A real with as few digits as read back as the same bits: 0.0508, 250, 2e-5.

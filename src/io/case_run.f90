@@ -15,7 +15,6 @@ module case_run
   use certificate_text, only: certificate_table, certificate_summary, certificate_clause
   use gudgeon_summary, only: summary_table
   use run_line, only: lines_for_user
-  use stability_advice, only: stability_advice_t, advice
   use gudgeon_progress, only: progress_t, clock
   use gudgeon_posix, only: synchronise_folder, file_length, error_text, interrupted
   use text_tools, only: printable, replaced
@@ -29,7 +28,7 @@ module case_run
   !> collected in `error`.
   type :: case_run_t
     type(error_t), allocatable :: error
-    character(len=:), allocatable :: line, notice        !! texts for the user: the outcome, and remarks
+    character(len=:), allocatable :: line                !! the outcome, for the user
     character(len=:), allocatable :: base                !! path of the results without suffix
     type(case_t) :: case
     character(len=:), allocatable, private :: case_text  !! the resolved case
@@ -39,7 +38,6 @@ module case_run
     type(column_list_t), private :: list
     logical, private :: shows_progress = .false., is_quiet = .false.
     type(progress_t), private :: progress
-    type(stability_advice_t), private :: advice
     real(dp), private :: began = 0                       !! time of `clock` [s]
     type(result_file_t), private :: summary
     type(run_report_t), private :: report
@@ -60,7 +58,6 @@ contains
     character(len=*), intent(in) :: base
     type(command_line_t), intent(in) :: options
     logical, intent(in) :: shows_progress
-    self%line = case%file//': correct'
     self%case = case
     self%case_text = case_text
     self%is_twin = is_twin
@@ -69,8 +66,6 @@ contains
     self%shows_progress = shows_progress
     self%is_quiet = options%quiet
     self%certifies = options%certify .and. .not. is_twin
-    self%notice = ''
-    if (.not. (is_twin .or. options%quiet)) self%advice%case = case
   end subroutine prepare
 
   !> Integrate, and write the results and the summary to the disk. The order is such that incomplete results never have their final
@@ -131,7 +126,6 @@ contains
       do while (.not. run%is_over)
         call run%advance(huge(1.0_dp), steps_between_looks)
         call self%progress%update(run%t/run%expected_end(), run%t)
-        call self%advice%consider(run%t, run%expected_end(), clock() - self%began, run%method%statistics, self%progress)
         if (any(files%file%has_failed())) call run%stop()
         if (interrupted()) call run%stop()
       end do
@@ -170,7 +164,7 @@ contains
     call collect_errors(self, files, folder_status)
   end subroutine close_files
 
-  !> Write the summary into its file, and its lines for the user into `line` and `notice`.
+  !> Write the summary into its file, and its lines for the user into `line`.
   subroutine write_summary(self, files)
     class(case_run_t), intent(inout) :: self
     type(trace_files_t), intent(inout) :: files
@@ -194,8 +188,6 @@ contains
     end if
     wall_time = clock() - self%began
     self%line = lines_for_user(case, self%report, wall_time, self%base, remark)
-    if (.not. self%advice%was_given) self%notice = advice(self%report%auto_saves)
-    if (self%notice /= '') self%notice = printable(case%file, 200)//': '//self%notice
     call self%summary%put(summary_table(case, self%report, wall_time, self%is_twin))
     if (allocated(self%certificate)) call self%summary%put(certificate_summary(self%certificate))
   end subroutine write_summary

@@ -5,11 +5,12 @@ module case_runner
   use gudgeon_errors, only: error_t, fail, keep_first, status_ok, status_command_line, status_integration
   use case_definition, only: case_t
   use accuracy_presets, only: with_preset
+  use case_description, only: description
   use case_file, only: read_case_values, complete_case
   use case_text, only: resolved_text
   use case_values, only: case_values_t
   use command_line, only: command_line_t
-  use film_files, only: provide_tables
+  use film_files, only: provide_tables, tell_tables
   use gudgeon_columns, only: column_list_t, choose_columns
   use gudgeon_scene, only: scene_t
   use gudgeon_summary, only: build_advice
@@ -87,7 +88,7 @@ contains
     type(case_t) :: case
     type(column_list_t) :: list, ideal_list
     type(scene_t), allocatable :: scene
-    character(len=:), allocatable :: base, text
+    character(len=:), allocatable :: base, text, tables
 
     job%path = path
     if (interrupted()) then
@@ -112,6 +113,13 @@ contains
     job%has_twin = case%output%ideal_twin .and. (case%has_clearance() .or. case%is_elastic())
     call job%run%prepare(case, text, .false., list, base, options, shows_progress)
     if (job%has_twin) call job%twin%prepare(case, text, .true., ideal_list, base//'.ideal', options, shows_progress)
+    if (.not. options%check) return
+    call tell_tables(case, tables, job%error)
+    if (allocated(job%error)) then
+      call name_file(path, job%error)
+    else
+      job%run%line = description(case, size(list%id), job%has_twin, base, tables)
+    end if
   end subroutine prepare
 
   !> Give the films of a case their tables, before the work is shared among processes. Error: the user interrupted.
@@ -214,12 +222,9 @@ contains
     call keep_first(job%error, error)
     call keep_first(job%run%error, error)
     call keep_first(job%twin%error, error)
-    if (allocated(error)) then
-      call tell(error%message)
-      status = max(status, error%status)
-    else if (.not. options%quiet) then
-      call say(job%run%line, status)
-      if (job%run%notice /= '') call tell(job%run%notice)
-    end if
+    if (allocated(job%run%line) .and. .not. options%quiet) call say(job%run%line, status)
+    if (.not. allocated(error)) return
+    call tell(error%message)
+    status = max(status, error%status)
   end subroutine say_outcome
 end module case_runner

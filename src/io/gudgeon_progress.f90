@@ -27,7 +27,6 @@ module gudgeon_progress
     procedure :: update
     procedure :: update_runs
     procedure :: finish
-    procedure :: tell => tell_above
   end type progress_t
 
 contains
@@ -111,14 +110,6 @@ contains
     self%is_on = .false.
     self%has_shown = .false.
   end subroutine finish
-
-  !> Write a message for the user in place of the progress line.
-  subroutine tell_above(self, line)
-    class(progress_t), intent(inout) :: self
-    character(len=*), intent(in) :: line
-    call clear_line(self)
-    call tell(line)
-  end subroutine tell_above
 
   !> Write one or more lines to standard error, in one call.
   subroutine tell(lines)

@@ -75,7 +75,6 @@ contains
           call add('steps_of_'//integer_text(2*order + 1)//'_stages', integer_text(s%stage_count(order)), '1')
         end do
       end if
-      if (report%auto_saves > 0) call add('evaluations_over_those_of_auto', real_text(report%auto_saves), '1')
       call add('max_pin_force', peak(f%pin(piston_pin)%max_force), 'N')
       call add('crank_revolutions', real_text(f%crank_travel/two_pi), '1')
       if (f%time > 0) call add('mean_crank_speed', real_text(f%crank_travel/f%time), 'rad/s')

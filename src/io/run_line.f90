@@ -19,7 +19,7 @@ module run_line
 
 contains
 
-  !> The lines for the user.
+  !> The lines for the user. Why a run ended early is in the message of its error.
   function lines_for_user(case, report, wall_time, path, remark) result(text)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
@@ -28,7 +28,9 @@ contains
     character(len=*), intent(in) :: remark !! text about the certificate, or empty
     character(len=:), allocatable :: text, notes
     associate (s => report%statistics, f => report%figures)
-      text = case%name//': '//report%status//'; '//short_text(abs(f%crank_travel)/two_pi, digits)//' revolutions in '// &
+      text = 'ended early'
+      if (report%status == 'done') text = report%status
+      text = case%name//': '//text//'; '//short_text(abs(f%crank_travel)/two_pi, digits)//' revolutions in '// &
         quantity_text(f%time, 's')
       if (report%periods%is_on .and. report%status == 'done') text = text//', '//period_text(report%periods)
       text = text//'; '//pin_text(case%joint, f%pin(piston_pin), case%integrator%relative_tolerance)

@@ -41,9 +41,7 @@ module summary_quantities
       'share of the time in this phase (free, film or contact) integrated by this method (method auto)'), &
     quantity_t('jacobians', '1', 'Jacobian matrices that Radau evaluated'), &
     quantity_t('steps_rejected_convergence', '1', 'steps rejected because the Newton iteration of Radau did not converge'), &
-    quantity_t('steps_of_N_stages', '1', 'accepted steps of Radau with N stages'), &
-    quantity_t('evaluations_over_those_of_auto', '1', &
-      'evaluations of this run over those that `method = ''auto''` would need; written where auto needs fewer')]
+    quantity_t('steps_of_N_stages', '1', 'accepted steps of Radau with N stages')]
 
   type(quantity_t), parameter :: of_motion(*) = [ &
     quantity_t('max_pin_force', 'N', 'largest force at the pin'), &
