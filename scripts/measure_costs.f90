@@ -146,9 +146,8 @@ contains
 
     if (allocated(scene%gas)) call scene%gas%start(1.5_dp*pi, 250.0_dp)
     if (index(name, 'contact') == 1) then
-      scene%joints(1)%phase = phase_contact
-      scene%joints(1)%impact_speed = 0.1_dp
-      scene%joints(1)%sliding = 1
+      call scene%joints(1)%begin_contact(0.1_dp)
+      scene%joints(1)%slots(scene%joints(1)%acting(phase_contact))%element%sliding = 1
     end if
     allocate (y(scene%n, n_states), source=0.0_dp)
     do i = 1, n_states
@@ -162,7 +161,7 @@ contains
       associate (at => scene%joints(1)%at)
         y(at%position:at%position + 1, i) = reach*[cos(turn), sin(turn)]
         y(at%rate:at%rate + 1, i) = 2e-3_dp*[cos(3*turn), sin(5*turn)]
-        if (scene%n_states() > 0) y(scene%joints(1)%friction_states%first, i) = 1e-6_dp*cos(7*turn)
+        if (scene%n_states() > 0) y(2*scene%n_positions + 1, i) = 1e-6_dp*cos(7*turn)
       end associate
     end do
   end subroutine make_states

@@ -11,7 +11,7 @@ module film_files
   use gudgeon_errors, only: error_t, fail, status_integration, status_case_file
   use gudgeon_bearing, only: bearing_t
   use gudgeon_checksum, only: checksum_t, mark_of, mark_length
-  use chain_motion, only: pin_names
+  use joint_places, only: places
   use case_definition, only: case_t, joint_case_t
   use film_snapshots, only: film_field_t
   use film_law, only: film_law_t, table_watch_t
@@ -187,7 +187,7 @@ contains
       do j = 1, size(fields(i)%angle)
         do k = 1, size(fields(i)%along)
           associate (field => fields(i))
-            call file%append(real_text(field%time)//','//real_text(field%crank_angle)//','//trim(pin_names(field%place))//',')
+            call file%append(real_text(field%time)//','//real_text(field%crank_angle)//','//trim(places(field%place)%name)//',')
             call file%append(real_text(field%angle(j) + field%direction)//',')
             call file%append(real_text(field%clearance - field%distance*cos(field%angle(j)))//',')
             call file%append(real_text(field%along(k))//','//real_text(field%pressure(j, k))//achar(10))

@@ -8,7 +8,7 @@ module gudgeon_summary
   use run_figures, only: pin_figures_t, elastic_figures_t
   use piston_guide, only: n_corners, corner_names
   use period_watch, only: period_watch_t
-  use chain_motion, only: crank_pin, piston_pin, name_prefix
+  use joint_places, only: crank_pin, piston_pin, name_prefix
   use archard_wear, only: of_pin, of_bore
   use case_definition, only: case_t, joint_case_t
   use number_text, only: real_text, short_text

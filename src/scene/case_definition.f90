@@ -8,19 +8,10 @@
 module case_definition
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
-  use gudgeon_bearing, only: bearing_t
   use run_length, only: run_length_t
-  use chain_motion, only: crank_pin, piston_pin, pin_names
-  use contact_law, only: contact_law_t
-  use contact_geometry, only: contact_geometry_t
-  use friction_law, only: friction_law_t
+  use joint_places, only: crank_pin, piston_pin, places
+  use joint_case, only: joint_case_t
   use guide_case, only: guide_case_t, guide_clearance
-  use film_law, only: film_law_t
-  use film_transition, only: film_transition_t
-  use oil_viscosity, only: oil_t
-  use elastic_film, only: elastic_film_t
-  use asperities, only: asperities_t
-  use archard_wear, only: wear_law_t
   use elastic_rod, only: elastic_rod_t
   use elastic_crankshaft, only: elastic_crankshaft_t
   use gas_law, only: gas_law_t
@@ -56,27 +47,6 @@ module case_definition
   contains
     procedure :: parameters => initial_parameters
   end type initial_case_t
-
-  !> A joint with the laws that act in it. An ideal joint has no laws.
-  type, extends(has_parameters_t) :: joint_case_t
-    character(len=:), allocatable :: kind
-    real(dp) :: clearance = 0, bearing_radius = 0, bearing_length = 0
-    class(contact_law_t), allocatable :: contact
-    class(friction_law_t), allocatable :: friction
-    logical :: reports_friction_work = .false.
-    class(film_law_t), allocatable :: film
-    type(film_transition_t) :: transition
-    logical :: reports_film = .false.
-    type(oil_t) :: oil
-    type(elastic_film_t) :: elastic
-    type(asperities_t), allocatable :: asperities
-    type(wear_law_t), allocatable :: wear
-  contains
-    procedure :: parameters => joint_parameters
-    procedure :: has_clearance
-    procedure :: can_touch
-    procedure :: bearing => bearing_of
-  end type joint_case_t
 
   type, extends(has_parameters_t) :: integrator_case_t
     character(len=:), allocatable :: method, contact_entry
@@ -133,7 +103,7 @@ module case_definition
 
   !> Names of the places of joints in a case. A group &joint that names no place describes the first joint; a group of a law that
   !> names no place applies to every joint with clearance that has no group of its own for that law.
-  character(len=*), parameter :: piston_pin_place = trim(pin_names(piston_pin)), crank_pin_place = trim(pin_names(crank_pin))
+  character(len=*), parameter :: piston_pin_place = trim(places(piston_pin)%name), crank_pin_place = trim(places(crank_pin)%name)
 
   interface
     !> Declare every group, key and law of a case to a visitor, in the order of the template and of the resolved case.
@@ -183,26 +153,6 @@ contains
     class(case_t), intent(in) :: self
     is_elastic = allocated(self%elastic_rod) .or. allocated(self%crankshaft)
   end function is_elastic
-
-  !> Whether a contact law acts in the joint. It does not where the contact is with the walls of an elastic film.
-  pure logical function can_touch(self)
-    class(joint_case_t), intent(in) :: self
-    can_touch = allocated(self%contact) .and. .not. (allocated(self%film) .and. self%elastic%is_wanted)
-  end function can_touch
-
-  !> Whether the joint has clearance.
-  pure logical function has_clearance(self)
-    class(joint_case_t), intent(in) :: self
-    has_clearance = .false.
-    if (allocated(self%kind)) has_clearance = self%kind == 'clearance'
-  end function has_clearance
-
-  !> The bearing of the joint; `rod_length` [m] is the length of the rod that carries its pin.
-  pure type(bearing_t) function bearing_of(self, rod_length)
-    class(joint_case_t), intent(in) :: self
-    real(dp), intent(in) :: rod_length
-    bearing_of = bearing_t(self%bearing_radius, self%bearing_length, self%clearance, rod_length)
-  end function bearing_of
 
   subroutine mechanism_parameters(self, list)
     class(mechanism_case_t), intent(inout) :: self
@@ -267,18 +217,6 @@ contains
     call list%add('piston_tilt', self%piston_tilt, 'tilt of the piston in its bore, positive from x to y', 'rad', default='0.0')
     call list%add('piston_tilt_rate', self%piston_tilt_rate, 'rate of piston_tilt', 'rad/s', default='0.0')
   end subroutine initial_parameters
-
-  subroutine joint_parameters(self, list)
-    class(joint_case_t), intent(inout) :: self
-    class(parameter_list_t), intent(inout) :: list
-    call list%word('kind', self%kind, 'ideal, clearance', 'ideal', 'ideal: no clearance', example='clearance')
-    call list%add('clearance', self%clearance, 'radial clearance: bearing radius minus pin radius', 'm', '> 0', default='0.0', &
-      example='2.0e-5')
-    call list%add('bearing_radius', self%bearing_radius, 'radius of the bearing', 'm', '> 0', default='0.0', example='0.010')
-    call list%add('bearing_length', self%bearing_length, &
-      'width of the bearing; needed with a film and with contact geometries other than hertz_sphere', &
-      'm', '> 0', default='0.0', example='0.015')
-  end subroutine joint_parameters
 
   subroutine integrator_parameters(self, list)
     class(integrator_case_t), intent(inout) :: self

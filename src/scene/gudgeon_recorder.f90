@@ -12,7 +12,7 @@ module gudgeon_recorder
   use chain_motion, only: crank_pin, piston_pin, most_pins => n_pins
   use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide, of_wear, phase_contact
   use inside_step, only: look_inside
-  use joint_events, only: penetration_and_rate, may_lose_force, force_share
+  use joint_events, only: penetration_and_rate, may_lose_force, find_lost_force
   use gudgeon_columns, only: column_list_t, row_values
   use angle_grid, only: angle_grid_t
   use crank_passage, only: find_turning
@@ -315,7 +315,7 @@ contains
         if (self%pins(i)%joint == 0) cycle
         associate (figures => f%pin(self%pins(i)%pin), joint => scene%joints(self%pins(i)%joint))
           if (self%pins(i)%is_touching(scene)) figures%contact_time = figures%contact_time + (t - f%time)
-          if (joint%has_friction_work()) figures%friction_work = joint%work_of_friction(y)
+          if (joint%integrates_friction) figures%friction_work = joint%work_of_friction(y)
         end associate
       end do
       call self%guide%take_time(scene, t - f%time, f)
@@ -360,7 +360,7 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     type(evaluation_t) :: now
-    real(dp) :: contact(2), share, share_rate
+    real(dp) :: contact(2)
     logical :: inside
     integer :: i, k, action
     select type (problem)
@@ -369,14 +369,13 @@ contains
       do i = 1, self%n_pins
         if (.not. allocated(self%pins(i)%wear)) cycle
         associate (joint => problem%joints(self%pins(i)%joint))
-          if (.not. allocated(joint%worn)) cycle
+          if (.not. joint%has_worn_bore()) cycle
           call self%pins(i)%wear%change_bore(joint)
           if (joint%phase /= phase_contact) cycle
           contact = penetration_and_rate(joint, y)
           if (contact(1) > 0 .and. may_lose_force(joint)) then
             call look_at(self, problem, t, y, now, inside)
-            if (inside) call force_share(joint, now%relative(self%pins(i)%joint), now%accelerations, share, share_rate)
-            if (inside) joint%force_is_lost = share < 0
+            if (inside) call find_lost_force(joint, now%joint(self%pins(i)%joint), joint%relative_rates(now%accelerations))
           end if
           if (contact(1) > 0) cycle
         end associate
@@ -437,7 +436,7 @@ contains
     if (allocated(scene%wear_cycle)) then
       do i = 1, self%n_pins
         if (.not. (allocated(self%pins(i)%wear) .and. scene%wear_cycle%is_over(scene%crank_angle(t, y)))) cycle
-        if (allocated(scene%joints(self%pins(i)%joint)%worn)) call self%pins(i)%wear%end_cycle(scene%joints(self%pins(i)%joint))
+        if (scene%joints(self%pins(i)%joint)%has_worn_bore()) call self%pins(i)%wear%end_cycle(scene%joints(self%pins(i)%joint))
       end do
     end if
     if (self%every_step) return

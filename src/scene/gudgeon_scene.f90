@@ -8,8 +8,8 @@ module gudgeon_scene
   use gudgeon_chain, only: chain_t
   use crank_rod, only: accelerate_crank_rod
   use ideal_chain, only: accelerate_ideal_chain
-  use joint_motion, only: joint_motion_t
-  use clearance_joint, only: clearance_joint_t, joint_loads_t, most_joints, n_phases, phase_free, phase_film, phase_contact
+  use joint_evaluation, only: joint_evaluation_t, clear_loads
+  use clearance_joint, only: clearance_joint_t, most_joints, n_phases, phase_free, phase_film, phase_contact
   use joint_events, only: penetration_and_rate
   use sticking, only: hold_surfaces
   use piston_guide, only: piston_guide_t, guide_loads_t
@@ -30,8 +30,7 @@ module gudgeon_scene
     type(motion_t) :: motion
     type(accelerations_t) :: accelerations
     type(loads_t) :: loads
-    type(joint_motion_t) :: relative(most_joints)
-    type(joint_loads_t) :: joint(most_joints)
+    type(joint_evaluation_t) :: joint(most_joints)
     type(guide_loads_t) :: guide    !! of a guide that is not ideal
     real(dp) :: crank_moment        !! moment of the drive on the crank [N m]
     real(dp) :: cylinder_pressure   !! [Pa]
@@ -213,7 +212,7 @@ contains
       dydt)
     if (allocated(self%chain%elastic)) call self%chain%elastic%put_rates(now%motion, now%accelerations, dydt)
     do i = 1, self%n_joints
-      if (self%joints(i)%has_own_rates) call self%joints(i)%put_own_rates(now%relative(i), now%joint(i), dydt)
+      if (self%joints(i)%has_own_rates) call self%joints(i)%put_own_rates(now%joint(i), dydt)
     end do
     if (self%measures%last < self%measures%first) return
     if (self%measures_loss) dydt(self%measures%last) = -sum(now%joint(:self%n_joints)%power)
@@ -229,11 +228,11 @@ contains
     real(dp), intent(inout) :: dydt(*)
     integer :: i
     do i = 1, n
-      associate (at => joints(i)%at, place => joints(i)%place)
-        dydt(at%position) = now%relative(i)%eccentricity_rate(1)
-        dydt(at%position + 1) = now%relative(i)%eccentricity_rate(2)
-        dydt(at%rate) = now%accelerations%pin(1, place)
-        dydt(at%rate + 1) = now%accelerations%pin(2, place)
+      associate (at => joints(i)%at, pin => joints(i)%site%pin)
+        dydt(at%position) = now%joint(i)%eccentricity_rate(1)
+        dydt(at%position + 1) = now%joint(i)%eccentricity_rate(2)
+        dydt(at%rate) = joints(i)%site%sense*now%accelerations%pin(1, pin)
+        dydt(at%rate + 1) = joints(i)%site%sense*now%accelerations%pin(2, pin)
       end associate
     end do
   end subroutine put_rates
@@ -251,10 +250,13 @@ contains
     evaluation%loads%moment = 0
     evaluation%motion%crank_pin = 0
     evaluation%motion%crank_pin_rate = 0
+    do i = 1, self%n_joints
+      call clear_loads(evaluation%joint(i))
+    end do
     call find_accelerations(self, self%n_joints, self%joints, t, y, evaluation, inside)
     if (inside) call self%chain%move_piston(evaluation%motion)
     do i = 1, self%n_joints
-      call self%joints(i)%complete(evaluation%motion, inside, evaluation%relative(i), evaluation%joint(i))
+      call self%joints(i)%complete(evaluation%motion, inside, y, evaluation%joint(i))
     end do
   end subroutine evaluate
 
@@ -289,7 +291,7 @@ contains
       end if
       if (self%may_stick) then
         now%accelerations%rod_end = -now%accelerations%rod
-        if (any(now%joint(:n)%sticks)) call hold_surfaces(self%chain, joints, motion, now%relative, now%joint, now%loads, &
+        if (any(now%joint(:n)%sticks)) call hold_surfaces(self%chain, joints, motion, now%joint, now%loads, &
           now%accelerations, now%crank_moment, now%power)
       end if
       now%power = (now%crank_moment - drive%damping*motion%crank_speed)*motion%crank_speed + now%power
@@ -320,21 +322,23 @@ contains
     real(dp), intent(in) :: y(self%n)
     type(evaluation_t), intent(inout) :: now
     logical, intent(out) :: inside
-    real(dp) :: offset(2), offset_rate(2)
+    real(dp) :: offset(2), offset_rate(2), shift(2), shift_rate(2)
     logical :: admitted
     integer :: i
     admitted = .true.
     offset = 0
     offset_rate = 0
     do i = 1, n
-      associate (joint => joints(i), relative => now%relative(i))
+      associate (joint => joints(i), relative => now%joint(i))
         call joint%read_state(y, relative)
-        admitted = admitted .and. joint%admits(relative)
-        offset = offset + relative%eccentricity
-        offset_rate = offset_rate + relative%eccentricity_rate
-        if (joint%place == piston_pin) cycle
-        now%motion%crank_pin = relative%eccentricity
-        now%motion%crank_pin_rate = relative%eccentricity_rate
+        admitted = admitted .and. joint%admits(y, relative)
+        shift = joint%site%sense*relative%eccentricity
+        shift_rate = joint%site%sense*relative%eccentricity_rate
+        offset = offset + shift
+        offset_rate = offset_rate + shift_rate
+        if (joint%site%pin == piston_pin) cycle
+        now%motion%crank_pin = shift
+        now%motion%crank_pin_rate = shift_rate
       end associate
     end do
     now%motion%offset = offset
@@ -352,7 +356,7 @@ contains
     integer :: i
     now%power = 0
     do i = 1, n
-      call joints(i)%loads(self%chain%bodies, now%motion, y, now%relative(i), now%joint(i), now%loads)
+      call joints(i)%loads(self%chain%bodies, now%motion, y, now%joint(i), now%loads)
       now%power = now%power + now%joint(i)%power
     end do
     now%loads%axial_force = 0

@@ -9,7 +9,7 @@ module step_peaks
   use ode_method, only: ode_method_t
   use chain_motion, only: piston_pin
   use chain_loads, only: force_size
-  use joint_motion, only: joint_motion_t
+  use joint_evaluation, only: joint_evaluation_t
   use gudgeon_scene, only: scene_t, evaluation_t, phase_free, phase_contact
   use inside_step, only: look_inside
   use peak_search, only: sample_t, peak_search_t, may_peak
@@ -83,7 +83,7 @@ contains
     values(of_penetration) = 0
     values(of_normal_force) = 0
     if (self%joint == 0) return
-    values(of_penetration) = now%relative(self%joint)%penetration
+    values(of_penetration) = now%joint(self%joint)%penetration
     values(of_normal_force) = now%joint(self%joint)%normal_force
   end function values
 
@@ -92,7 +92,7 @@ contains
     class(peak_watch_t), intent(in) :: self
     type(evaluation_t), intent(in) :: now
     rate = 0
-    if (self%joint > 0) rate = now%relative(self%joint)%penetration_rate
+    if (self%joint > 0) rate = now%joint(self%joint)%penetration_rate
   end function rate_of
 
   !> Search the last step of the method, from the end of the last interval or from the beginning of the step to t_to, for values
@@ -146,7 +146,7 @@ contains
     real(dp), intent(in) :: later_force   !! normal force at the end of the interval [N]
     real(dp), parameter :: next_to_none = 1e-9_dp
     type(evaluation_t) :: now
-    type(joint_motion_t) :: motion
+    type(joint_evaluation_t) :: motion
     real(dp) :: normal_force
     logical :: inside
 
@@ -225,10 +225,21 @@ contains
     type(sample_t), intent(in) :: left, right
     real(dp), intent(in) :: known
     real(dp), intent(inout) :: largest
+    if (may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, known)) &
+      call search_peak(self, method, scene, quantity, left, right, largest)
+  end subroutine search_between
+
+  !> Search the peak between two samples.
+  subroutine search_peak(self, method, scene, quantity, left, right, largest)
+    class(peak_watch_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: quantity
+    type(sample_t), intent(in) :: left, right
+    real(dp), intent(inout) :: largest
     type(peak_search_t) :: peak
     real(dp) :: t
     logical :: is_done
-    if (.not. may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, known)) return
     call peak%begin(left, right)
     do
       call peak%next_time(t, is_done)
@@ -236,7 +247,7 @@ contains
       call peak%take(t, value_inside(self, method, scene, quantity, t))
     end do
     largest = max(largest, peak%value(1))
-  end subroutine search_between
+  end subroutine search_peak
 
   !> The value of a quantity at a time inside the step; `no_peak` for a pin force where the scene is not defined.
   real(dp) function value_inside(self, method, scene, quantity, t) result(value)
@@ -246,7 +257,7 @@ contains
     integer, intent(in) :: quantity
     real(dp), intent(in) :: t
     type(evaluation_t) :: now
-    type(joint_motion_t) :: motion
+    type(joint_evaluation_t) :: motion
     real(dp) :: normal_force, y(size(method%y))
     logical :: inside
     if (quantity == of_pin_force) then

@@ -5,7 +5,7 @@ module stop_reason
   use ode_method, only: ode_settings_t, step_too_small, tolerance_too_small, start_outside, left_domain
   use gudgeon_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached
   use gudgeon_scene, only: scene_t, evaluation_t, phase_free
-  use chain_motion, only: crank_pin, piston_pin
+  use joint_places, only: crank_pin
   implicit none
   private
   public :: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, &
@@ -110,7 +110,7 @@ contains
     largest = -1
     do i = 1, scene%n_joints
       associate (at => scene%joints(i)%at%position)
-        part = norm2(y(at:at + 1))/scene%joints(i)%reach()
+        part = norm2(y(at:at + 1))/scene%joints(i)%reach(scene%joints(i)%phase)
       end associate
       if (part > largest) text = 'the '//joint_name(scene, i)
       largest = max(largest, part)
@@ -128,8 +128,7 @@ contains
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: i
     character(len=:), allocatable :: text
-    text = merge('piston pin', 'crank pin ', scene%joints(i)%place == piston_pin)
-    text = trim(text)
+    text = trim(scene%joints(i)%site%title)
   end function joint_name
 
   !> Text that says why no step size was small enough.
