@@ -25,7 +25,7 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(inout) :: y(:)
     real(dp), intent(in) :: eccentricity(2), rate(2)
-    associate (at => scene%joints(scene%joint_of_pin(piston_pin))%at)
+    associate (at => scene%joints(scene%joint_at(piston_pin))%at)
       y(at%position:at%position + 1) = eccentricity
       y(at%rate:at%rate + 1) = rate
     end associate
@@ -45,7 +45,7 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:)
     real(dp) :: eccentricity(2)
-    associate (at => scene%joints(scene%joint_of_pin(piston_pin))%at)
+    associate (at => scene%joints(scene%joint_at(piston_pin))%at)
       eccentricity = y(at%position:at%position + 1)
     end associate
   end function pin_of

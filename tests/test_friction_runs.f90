@@ -151,7 +151,7 @@ contains
     do i = 1, 4
       y = scene%initial_state()
       call put_crank(scene, y, 0.3_dp*i, 520.0_dp)
-      call put_pin(scene, y, 1.03_dp*case%joint%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)], &
+      call put_pin(scene, y, 1.03_dp*case%joints(piston_pin)%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)], &
         [0.4_dp*cos(2.1_dp*i), 2*sin(1.7_dp*i)])
       call put_contact(scene%joints(1), 1.0_dp, 1)
       if (scene%n_states() > 0) y(scene%joints(1)%slots(1)%element%states%first) = 1.4e-6_dp*(2*i - 5)

@@ -280,7 +280,7 @@ contains
       allocate (turned(size(rows%values, 2)))
       turned(:) = (rows%values(2, :) - rows%values(2, 1))/two_pi
       rounding = 1e-12_dp
-      if (case%joint%kind == 'ideal') rounding = 1e-6_dp   ! the statistics of an ideal joint change its steps
+      if (case%joints(piston_pin)%kind == 'ideal') rounding = 1e-6_dp   ! the statistics of an ideal joint change its steps
       do k = 1, watch%statistics%cycles
         do pin = 1, n_places
           if (pin == crank_pin .and. column(rows, 'crank_pin_phase[-]') == 0) cycle

@@ -145,7 +145,7 @@ contains
       call build_scene(case, .false., scene, error)
       allocate (y(scene%n), f(scene%n))
       y = scene%initial_state()
-      call put_pin(scene, y, 1.02_dp*case%joint%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)], &
+      call put_pin(scene, y, 1.02_dp*case%joints(piston_pin)%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)], &
         [0.4_dp*cos(2.1_dp*i), 0.3_dp*sin(1.7_dp*i)])
       call put_contact(scene%joints(1), 1.0_dp, 0)
       t = 1e-3_dp*i
@@ -179,7 +179,7 @@ contains
     call scene%evaluate(0.0_dp, y, now, inside)
     call check%that(.not. inside, 'the film is not defined beyond the wall')
     call check%relative(now%motion%crank_angle, 0.4_dp, 1e-15_dp, 'the crank angle is known beyond the wall')
-    call check%relative(now%joint(1)%penetration, 5e-5_dp - case%joint%clearance, 1e-12_dp, &
+    call check%relative(now%joint(1)%penetration, 5e-5_dp - case%joints(piston_pin)%clearance, 1e-12_dp, &
       'the penetration is known beyond the wall')
     call check%relative(now%joint(1)%penetration_rate, 0.5_dp, 1e-12_dp, 'the penetration rate is known beyond the wall')
     call put_pin(scene, y, [0.0_dp, -1.0_dp], [0.0_dp, 0.0_dp])

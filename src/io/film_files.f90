@@ -11,8 +11,9 @@ module film_files
   use gudgeon_errors, only: error_t, fail, status_integration, status_case_file
   use gudgeon_bearing, only: bearing_t
   use gudgeon_checksum, only: checksum_t, mark_of, mark_length
-  use joint_places, only: places
-  use case_definition, only: case_t, joint_case_t
+  use joint_places, only: places, n_places, in_order
+  use case_definition, only: case_t
+  use joint_case, only: joint_case_t
   use film_snapshots, only: film_field_t
   use film_law, only: film_law_t, table_watch_t
   use gudgeon_posix, only: make_directory, interrupted
@@ -37,15 +38,17 @@ module film_files
 
 contains
 
-  !> Give the films of a case their tables, stored or new ones. `announces`: the user is told, in one line, that a table is computed.
-  !> Errors: the user interrupted (status_integration); the file that the case names is not a table (status_case_file) or cannot be
-  !> written (status_output).
+  !> Give the films of a case their tables, stored or new ones. `announces`: the user is told, in one line, that a table is
+  !> computed. Errors: the user interrupted (status_integration); the file that the case names is not a table (status_case_file) or
+  !> cannot be written (status_output).
   subroutine provide_tables(case, announces, shows_progress, error)
     type(case_t), intent(inout) :: case
     logical, intent(in) :: announces, shows_progress
     type(error_t), allocatable, intent(out) :: error
-    call provide_table(case%joint, case, announces, shows_progress, error)
-    if (.not. allocated(error)) call provide_table(case%crank_pin, case, announces, shows_progress, error)
+    integer :: i
+    do i = 1, n_places
+      if (.not. allocated(error)) call provide_table(case%joints(in_order(i)), case, announces, shows_progress, error)
+    end do
   end subroutine provide_tables
 
   subroutine provide_table(joint, case, announces, shows_progress, error)

@@ -63,13 +63,13 @@ module joint_case
 contains
 
   !> Whether a contact law acts in the joint. It does not where the contact is with the walls of an elastic film.
-  pure logical function can_touch(self)
+  elemental logical function can_touch(self)
     class(joint_case_t), intent(in) :: self
     can_touch = allocated(self%contact) .and. .not. self%has_elastic_film()
   end function can_touch
 
   !> Whether the joint has a film between elastic walls.
-  pure logical function has_elastic_film(self)
+  elemental logical function has_elastic_film(self)
     class(joint_case_t), intent(in) :: self
     has_elastic_film = allocated(self%contact) .and. allocated(self%film) .and. self%elastic%is_wanted
   end function has_elastic_film
@@ -98,7 +98,7 @@ contains
   end subroutine make_film
 
   !> Whether the joint has clearance.
-  pure logical function has_clearance(self)
+  elemental logical function has_clearance(self)
     class(joint_case_t), intent(in) :: self
     has_clearance = .false.
     if (allocated(self%kind)) has_clearance = self%kind == 'clearance'

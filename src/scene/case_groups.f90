@@ -13,6 +13,7 @@ contains
     type(elastic_rod_t) :: rod
     type(elastic_crankshaft_t) :: crankshaft
     type(measured_pressure_t) :: measured
+    integer :: i
     call list%group('case', 'All values are in SI units; angles are in degrees only where the key ends in _deg', .false.)
     call list%text('title', case%title, 'title of the case, for pictures and pages', '')
     call list%group('mechanism', &
@@ -23,12 +24,13 @@ contains
     call list%group('initial', &
       'Initial state. Velocities are those of the mechanism with ideal joints, plus the rates given here', .false.)
     call case%initial%parameters(list)
-    call visit_joint(case%joint, piston_pin_place, .false., list)
-    call visit_joint(case%crank_pin, crank_pin_place, case%joint%has_clearance(), list)
-    if (list%sets .and. case%has_play()) then
-      call drop_laws(case%joint)
-      call drop_laws(case%crank_pin)
-    end if
+    do i = 1, n_places
+      call visit_joint(case%joints(in_order(i)), trim(places(in_order(i))%name), &
+        any(case%joints(in_order(:i - 1))%has_clearance()), list)
+    end do
+    do i = 1, merge(n_places, 0, list%sets .and. case%has_play())
+      call drop_laws(case%joints(i))
+    end do
     call visit_guide(case%guide, list)
     call list%group('elastic_rod', 'Elastic connecting rod. Without this group the rod is rigid', .true.)
     call rod%parameters(list)

@@ -35,10 +35,10 @@ contains
   !> Prepare the record of a pin of a scene.
   subroutine prepare(self, pin, scene)
     class(pin_record_t), intent(out) :: self
-    integer, intent(in) :: pin
+    integer, intent(in) :: pin   !! index in `places`
     type(scene_t), intent(in) :: scene
     self%pin = pin
-    self%joint = scene%joint_of_pin(pin)
+    self%joint = scene%joint_at(pin)
     self%contact%pin = pin
     if (self%joint == 0) return
     self%reports_film = scene%joints(self%joint)%reports_film
@@ -135,7 +135,7 @@ contains
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
     type(film_figures_t) :: film
-    call put_values(self, self%is_touching(scene), self%values(now), figures, cycles)
+    call put_values(self, self%is_touching(scene), self%values(scene, now), figures, cycles)
     if (.not. self%reports_film) return
     film = scene%joints(self%joint)%film_figures(now%joint(self%joint))
     figures%pin(self%pin)%max_film_pressure = max(figures%pin(self%pin)%max_film_pressure, film%max_pressure)

@@ -37,7 +37,7 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     type(evaluation_t), intent(inout) :: now
     logical, intent(out) :: inside
-    if (self%joint_of_pin(crank_pin) == 0) then   ! not every closed form reads it
+    if (.not. self%chain%is_loose(crank_pin)) then   ! not every closed form reads it
       now%motion%crank_pin = 0
       now%motion%crank_pin_rate = 0
     end if

@@ -4,10 +4,9 @@ module scene_builder
   use gudgeon_constants, only: two_pi, degree
   use gudgeon_errors, only: error_t
   use case_definition, only: case_t
-  use joint_case, only: joint_case_t
   use ode_method, only: ode_settings_t
   use chain_motion, only: body_piston
-  use joint_places, only: piston_pin, crank_pin
+  use joint_places, only: n_places, in_order
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
   use joint_events, only: may_touch, may_pass_static
   use load_elements, only: add_elements
@@ -101,20 +100,23 @@ contains
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint, makes_tables
     type(scene_t), allocatable, intent(out) :: scene
-    logical :: is_loose(2)
-    integer :: n
-
+    integer :: i, n
     allocate (scene)
-    is_loose = [case%joint%has_clearance(), case%crank_pin%has_clearance()] .and. .not. ideal_joint
-    allocate (scene%joints(count(is_loose)))
-    scene%n_joints = size(scene%joints)
-    associate (initial => case%initial)
-      if (is_loose(1)) call build_joint(case, case%joint, piston_pin, initial%eccentricity, initial%eccentricity_rate, &
-        makes_tables, scene%joints(1))
-      if (is_loose(2)) call build_joint(case, case%crank_pin, crank_pin, initial%crank_pin_eccentricity, &
-        initial%crank_pin_eccentricity_rate, makes_tables, scene%joints(scene%n_joints))
-    end associate
-    scene%chain%is_loose([piston_pin, crank_pin]) = is_loose
+    if (ideal_joint) then
+      allocate (scene%joints(0))
+    else
+      allocate (scene%joints(count(case%joints%has_clearance())))
+    end if
+    n = 0
+    do i = 1, merge(n_places, 0, size(scene%joints) > 0)
+      associate (place => in_order(i))
+        if (.not. case%joints(place)%has_clearance()) cycle
+        n = n + 1
+        call build_joint(case, place, makes_tables, scene%joints(n))
+      end associate
+    end do
+    scene%n_joints = n
+    if (n > 0) scene%chain%is_loose = case%loose_pins()
     if (allocated(case%guide) .and. .not. (ideal_joint .and. case%has_loose_guide())) then
       allocate (scene%guide)
       call case%guide%build(scene%guide)
@@ -186,21 +188,21 @@ contains
   end subroutine choose_entry
 
   !> Build a joint with the elements for the laws that the case names.
-  subroutine build_joint(case, wanted, place, eccentricity, rate, makes_tables, joint)
+  subroutine build_joint(case, place, makes_tables, joint)
     type(case_t), intent(in) :: case
-    type(joint_case_t), intent(in) :: wanted
     integer, intent(in) :: place   !! index in `places`
-    real(dp), intent(in) :: eccentricity(2), rate(2)   !! initial values [m], [m/s]
     logical, intent(in) :: makes_tables
     type(clearance_joint_t), intent(out) :: joint
-    joint%start_eccentricity = eccentricity
-    joint%start_rate = rate
+    joint%start_eccentricity = case%initial%eccentricity(:, place)
+    joint%start_rate = case%initial%eccentricity_rate(:, place)
     call joint%put_at(place)
-    joint%bearing = wanted%bearing(case%mechanism%rod_length)
-    joint%pin_radius = joint%bearing%pin_radius()
-    call add_elements(wanted, case%integrator%relative_tolerance, makes_tables, joint)
-    if (allocated(wanted%wear)) allocate (joint%wear, source=wanted%wear)
-    joint%reports_film = wanted%reports_film .and. allocated(wanted%film)
+    associate (wanted => case%joints(place))
+      joint%bearing = wanted%bearing(case%mechanism%rod_length)
+      joint%pin_radius = joint%bearing%pin_radius()
+      call add_elements(wanted, case%integrator%relative_tolerance, makes_tables, joint)
+      if (allocated(wanted%wear)) allocate (joint%wear, source=wanted%wear)
+      joint%reports_film = wanted%reports_film .and. allocated(wanted%film)
+    end associate
   end subroutine build_joint
 
   !> Duration of the simulation [s] as far as it follows from the case: revolutions are counted at the starting speed; for turns of

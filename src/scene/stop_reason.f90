@@ -5,7 +5,7 @@ module stop_reason
   use ode_method, only: ode_settings_t, step_too_small, tolerance_too_small, start_outside, left_domain
   use gudgeon_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached
   use gudgeon_scene, only: scene_t, evaluation_t, phase_free
-  use joint_places, only: crank_pin
+  use joint_places, only: in_order
   implicit none
   private
   public :: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, &
@@ -117,10 +117,10 @@ contains
     end do
   end function leaving_pin
 
-  !> Whether the piston pin has the only joint with clearance, so that texts need not name it.
+  !> Whether no place but the first has a joint with clearance, so that texts need not name it.
   pure logical function has_plain_names(scene)
     type(scene_t), intent(in) :: scene
-    has_plain_names = scene%joint_of_pin(crank_pin) == 0
+    has_plain_names = all(scene%joint_at(in_order(2:)) == 0)
   end function has_plain_names
 
   !> The name of the pin of a joint, for messages.
