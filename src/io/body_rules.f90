@@ -6,7 +6,7 @@ module body_rules
   use number_text, only: short_text
   use case_definition, only: case_t
   use case_values, only: case_values_t
-  use ambrosio, only: ambrosio_t
+  use friction_law, only: friction_law_t
   use piston_guide, only: piston_guide_t, corner_t, n_corners
   use chain_motion, only: tilting_t, motion_t, accelerations_t, turn_crank, piston_pin, n_pins
   use chain_bodies, only: rod_t, crank_t, piston_t, bodies_t, new_bodies, drive_t
@@ -70,11 +70,11 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     real(dp) :: most, speed
     logical :: is_loose(n_pins)
-    select type (law => c%guide%friction)
-    type is (ambrosio_t)
-      call values%forbid(law%coefficient > 0 .and. .not. law%v1 > 0, 'guide', 'v1', &
-        'must be > 0: friction on the guide is a function of the speed', error)
-    end select
+    class(friction_law_t), allocatable :: law
+    allocate (law, source=c%guide%friction)
+    call law%prepare()
+    call values%forbid(law%coefficient > 0 .and. law%set_valued, 'guide', 'v1', &
+      'must be > 0: friction on the guide is a function of the speed', error)
     is_loose = c%loose_pins()
     if (allocated(error) .or. c%has_loose_guide() .or. is_loose(piston_pin)) return
     associate (m => c%mechanism)

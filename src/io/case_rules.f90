@@ -194,7 +194,7 @@ contains
       call forbid(.not. allocated(joint%contact), own, 'elastic_film', &
         'needs the group contact, whose geometry is the stiffness of the walls')
       if (allocated(error)) return
-      call forbid(joint%contact%name /= 'hertz', contact, 'law', 'must be hertz with elastic_film: the film dissipates, '// &
+      call forbid(.not. joint%contact%is_elastic(), contact, 'law', 'must be hertz with elastic_film: the film dissipates, '// &
         'the walls do not')
       call forbid(allocated(joint%friction), own, 'elastic_film', &
         'cannot be combined with the group friction: the surfaces never touch')
@@ -242,7 +242,7 @@ contains
       end if
       call forbid(allocated(joint%film), group, 'bore', 'must be round with lubrication: the films are those of round bores')
       if (allocated(error)) return
-      call forbid(joint%contact%geometry%name /= 'winkler', group, 'bore', 'worn needs &contact geometry = ''winkler''')
+      call forbid(.not. joint%contact%geometry%has_foundation(), group, 'bore', 'worn needs &contact geometry = ''winkler''')
       call forbid(turns, group, 'bore', 'worn is for the piston pin in a piston that does not tilt')
       call forbid(.not. joint%wear%rate(of_bore) > 0, group, 'rate', 'must be > 0 for the bore with bore = ''worn''')
       call forbid(joint%wear%bins < least_bins, group, 'bins', 'must be >= 36 with bore = ''worn''')

@@ -1,7 +1,7 @@
 !> The groups of a case: every group with its keys and laws, in the order of the template.
 submodule (case_definition) case_groups
   use gudgeon_parameters, only: law_t
-  use contact_laws, only: offer_contact_laws
+  use contact_laws, only: offer_contact_laws, new_power_geometry
   use friction_laws, only: offer_speed_laws
   use joint_case, only: visit_joint, drop_laws, select_contact, select_friction
   use gas_laws, only: offer_gas_cycles
@@ -84,6 +84,8 @@ contains
     call list%choice('contact_law', 'exact', 'energy loss of an impact of the skirt, for kind = ''clearance''')
     call offer_contact_laws(list)
     call select_contact(list%chosen, described%contact)
+    if (allocated(described%contact)) &
+      call new_power_geometry(described%stiffness, described%exponent, described%contact%geometry)
     if (list%sets) guide = described
     if (list%is_absent()) deallocate (guide)
   end subroutine visit_guide
