@@ -20,7 +20,7 @@ module gudgeon_summary
   public :: summary_table, summary_value, summary_line, energy_warning, build_advice, relative_residual
 
   character(len=*), parameter :: newline = achar(10)
-  character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: the runs that measure it could not continue'
+  character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: '
 
 contains
 
@@ -85,8 +85,8 @@ contains
         call add('lyapunov_exponent', real_text(report%exponent%mean), '1/revolution')
         call add('lyapunov_exponent_error', real_text(report%exponent%error), '1/revolution')
         call add('lyapunov_revolutions', integer_text(report%exponent%revolutions), '1')
-      else if (case%run%lyapunov_revolutions > 0 .and. report%status == 'done') then
-        call add('lyapunov_warning', '"'//no_exponent//'"', '')
+      else if (allocated(report%exponent%reason)) then
+        call add('lyapunov_warning', quoted(no_exponent//report%exponent%reason, '"'), '')
       end if
       call add('max_energy_residual', peak(max(f%max_energy_residual, f%row_energy_residual)), 'J')
       call add('max_energy_residual_relative', real_text(relative_residual(report)), '1')
@@ -299,8 +299,8 @@ contains
       if (report%periods%is_on .and. report%status == 'done') text = text//period_text(report%periods)//'; '
       if (report%exponent%is_known) then
         text = text//'Lyapunov exponent '//short_text(report%exponent%mean)//' per revolution; '
-      else if (case%run%lyapunov_revolutions > 0 .and. report%status == 'done') then
-        text = text//no_exponent//'; '
+      else if (allocated(report%exponent%reason)) then
+        text = text//no_exponent//report%exponent%reason//'; '
       end if
       text = text//short_text(f%time)//' s in '//short_text(wall_time)//' s, '// &
         integer_text(s%accepted)//' steps, '//integer_text(s%evaluations)//' evaluations; '
