@@ -24,7 +24,8 @@ module lyapunov
   use ode_method, only: ode_method_t
   use ode_problem, only: ode_problem_t
   use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_interrupted, integration_done
+  use gudgeon_solver, only: integrate, silent_observer_t, integration_interrupted, integration_done, &
+    integration_stopped
   use gudgeon_scene, only: scene_t
   use scene_builder, only: settings_for
   use crank_passage, only: find_passage
@@ -209,8 +210,8 @@ contains
     call integrate(scene, method, t, y, self%t + patience*two_pi/scene%speed_scale(), 0, self, status)
     if (status /= integration_interrupted) self%is_there = .false.
     if (.not. self%is_there) then
-      self%reason = 'the crank takes too long for a quarter of a revolution'
-      if (status /= integration_done) self%reason = reason(status, scene, method%settings, t, y)
+      self%reason = 'the crank stops, turns back or takes too long for a quarter of a revolution'
+      if (all(status /= [integration_done, integration_stopped])) self%reason = reason(status, scene, method%settings, t, y)
       self%reason = self%reason//' at '//place(scene, t, y)
     end if
     call move_alloc(scene, self%scene)
