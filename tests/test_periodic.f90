@@ -221,8 +221,8 @@ contains
       'integrator.crank_revolutions=1', exponent, 'output.ideal_twin=F'])
     call check%that(trace%report%status == 'done' .and. .not. trace%report%exponent%is_known, 'a crank that stops: no exponent')
     if (.not. allocated(trace%report%exponent%reason)) trace%report%exponent%reason = ''
-    call check%begins_with(trace%report%exponent%reason, 'the crank stops, turns back or takes too long for a quarter of a revolution at t = ', &
-      'a crank that stops: the reason')
+    call check%begins_with(trace%report%exponent%reason, 'the crank stops, turns back or takes too long for a quarter of a '// &
+      'revolution at t = ', 'a crank that stops: the reason')
   end subroutine no_exponent
 
   !> Settling films: at constant speed after a ramp, in a compressor, and with a free crank under a measured pressure of two
