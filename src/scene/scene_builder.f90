@@ -167,8 +167,9 @@ contains
         call case%combustion%prepare(m%crank_length, m%rod_length, tolerance, scene%gas, error)
       end if
     end associate
-    if (.not. allocated(error)) &
-      call scene%gas%start(scene%start_angle, merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
+    if (allocated(error)) return
+    scene%gas%sense = sign(1.0_dp, scene%start_speed)   ! an engine that turns backwards is the mirror image of the other
+    call scene%gas%start(scene%start_angle, merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
   end subroutine prepare_gas
 
   !> How contacts begin, and which steps may be refused.
