@@ -48,6 +48,7 @@ program gudgeon_tests
   use test_friction_runs, only: run_test_friction_runs
   use test_guide, only: run_test_guide
   use test_joint, only: run_test_joint
+  use test_load_elements, only: run_test_load_elements
   use test_loose_piston, only: run_test_loose_piston
   use test_lost_force, only: run_test_lost_force
   use test_notes, only: run_test_notes
@@ -130,6 +131,7 @@ program gudgeon_tests
   call run('friction_runs', run_test_friction_runs)
   call run('guide', run_test_guide)
   call run('joint', run_test_joint)
+  call run('load_elements', run_test_load_elements)
   call run('loose_piston', run_test_loose_piston)
   call run('lost_force', run_test_lost_force)
   call run('notes', run_test_notes)

@@ -15,6 +15,7 @@ module test_pauses
   use row_store, only: row_store_t
   use trace_sink, only: trace_event_t
   use checks, only: checks_t
+  use joint_places, only: piston_pin
   implicit none
   private
   public :: run_test_pauses
@@ -76,8 +77,8 @@ contains
     type(case_t), intent(inout) :: case
     type(error_t), allocatable :: error
     type(case_t) :: small
-    if (.not. allocated(case%joint%film)) return
-    if (case%joint%film%name /= 'finite_bearing') return
+    if (.not. allocated(case%joints(piston_pin)%film)) return
+    if (case%joints(piston_pin)%film%name /= 'finite_bearing') return
     call read_case(case%file, [character(len=long) :: 'integrator.max_steps=1200', 'lubrication.table_points=17', &
       'lubrication.film_points=32'], small, error)
     case = small

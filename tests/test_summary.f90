@@ -7,6 +7,7 @@ module test_summary
   use case_definition, only: case_t
   use gudgeon_simulation, only: run_report_t
   use text_tools, only: integer_text
+  use joint_places, only: crank_pin
   implicit none
   private
   public :: run_test_summary
@@ -55,13 +56,13 @@ contains
     deallocate (report%time_with)
     allocate (report%time_with(2, 0:8), source=0.0_dp)
     report%time_with(1, 2 + 3*1) = 1
-    case%joint%kind = 'clearance'
-    case%crank_pin%kind = 'clearance'
+    case%joints(piston_pin)%kind = 'clearance'
+    case%joints(crank_pin)%kind = 'clearance'
     call has(case, report, 'contact_film_time_fraction_with_adams,5.000000000E-01,1')
     deallocate (report%time_with)
     allocate (report%time_with(2, 0:2), source=0.0_dp)
     report%time_with(2, 1) = 0.2_dp
-    case%joint%kind = 'ideal'
+    case%joints(piston_pin)%kind = 'ideal'
     call has(case, report, 'crank_pin_film_time_fraction_with_radau,1.000000000E-01,1')
 
   contains

@@ -335,10 +335,10 @@ contains
     step = 1e-5_dp*[room, room, rate*room/clearance, rate*room/clearance, rate/clearance]
   end function difference_steps
 
-  !> The motion with a change of one of e_x, e_y, e_x', e_y' and the pin speed.
+  !> The motion with a change of one of e_x, e_y, e_x', e_y' and the angular speeds of pin and bearing.
   pure type(film_motion_t) function moved(motion, which, by)
     type(film_motion_t), intent(in) :: motion
-    integer, intent(in) :: which    !! number of the changed quantity, 1 to 5
+    integer, intent(in) :: which    !! number of the changed quantity, 1 to 6
     real(dp), intent(in) :: by
     moved = motion
     select case (which)
@@ -348,7 +348,7 @@ contains
       moved%eccentricity_rate(which - 2) = moved%eccentricity_rate(which - 2) + by
     case default
       moved%pin_speed = moved%pin_speed + by
-      moved%turning_speed = moved%turning_speed + by
+      moved%turning_speed = moved%turning_speed + merge(by, -by, which == 5)
     end select
   end function moved
 end module film_law

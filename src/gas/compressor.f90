@@ -22,6 +22,8 @@ module compressor
     procedure :: parameters
     procedure :: conflict
     procedure :: prepare
+    procedure :: fastest_piston
+    procedure :: description
   end type compressor_t
 
 contains
@@ -66,4 +68,19 @@ contains
     gas%cylinder = valves%cylinder
     gas%crankcase_pressure = self%crankcase_pressure
   end subroutine prepare
+
+  pure real(dp) function fastest_piston(self)
+    class(compressor_t), intent(in) :: self
+    associate (unused => self)
+    end associate
+    fastest_piston = 12
+  end function fastest_piston
+
+  function description(self) result(text)
+    class(compressor_t), intent(in) :: self
+    character(len=:), allocatable :: text
+    real(dp), parameter :: bar = 1e5_dp   !! [Pa]
+    text = trim(self%name)//', '//short_text(self%suction_pressure/bar, 4)//' to '//short_text(self%discharge_pressure/bar, 4)// &
+      ' bar, dead space '//short_text(100*self%dead_space, 3)//' %'
+  end function description
 end module compressor

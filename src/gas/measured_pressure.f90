@@ -3,6 +3,7 @@ module measured_pressure
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree
   use gudgeon_errors, only: error_t
+  use text_tools, only: integer_text
   use gudgeon_parameters, only: parameter_list_t
   use measured_curve, only: measured_curve_t
   use monotone_cubic, only: new_periodic_cubic
@@ -24,6 +25,7 @@ module measured_pressure
     procedure :: parameters
     procedure :: prepare
     procedure :: revolutions
+    procedure :: description
   end type measured_pressure_t
 
 contains
@@ -65,4 +67,10 @@ contains
     class(measured_pressure_t), intent(in) :: self
     revolutions = self%period_deg/360
   end function revolutions
+
+  function description(self) result(text)
+    class(measured_pressure_t), intent(in) :: self
+    character(len=:), allocatable :: text
+    text = 'measured pressure, repeated every '//integer_text(self%period_deg)//' degrees'
+  end function description
 end module measured_pressure

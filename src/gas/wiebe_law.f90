@@ -3,6 +3,7 @@ module wiebe_law
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree, two_pi
   use gudgeon_errors, only: error_t
+  use number_text, only: short_text, quantity_text
   use gudgeon_parameters, only: parameter_list_t
   use cylinder, only: new_cylinder
   use gas_cycle, only: gas_cycle_t, heat_release_t, new_gas_cycle
@@ -24,6 +25,8 @@ module wiebe_law
     procedure, non_overridable :: wiebe_parameters
     procedure :: prepare
     procedure :: revolutions
+    procedure :: heat_of_cycle
+    procedure :: description
     procedure(timing), deferred :: timing
   end type wiebe_law_t
 
@@ -90,4 +93,16 @@ contains
     call self%timing(period, half_closed)
     revolutions = nint(period/two_pi)
   end function revolutions
+
+  pure real(dp) function heat_of_cycle(self)
+    class(wiebe_law_t), intent(in) :: self
+    heat_of_cycle = self%heat
+  end function heat_of_cycle
+
+  function description(self) result(text)
+    class(wiebe_law_t), intent(in) :: self
+    character(len=:), allocatable :: text
+    text = trim(self%name)//', compression ratio '//short_text(self%compression_ratio, 3)//', '//quantity_text(self%heat, 'J')// &
+      ' a cycle from '//short_text(self%start_deg)//' to '//short_text(self%start_deg + self%duration_deg)//' degrees'
+  end function description
 end module wiebe_law

@@ -20,8 +20,9 @@ module working_gas
   type :: working_gas_t
     integer :: n_events = 0          !! number of event functions, set by `start`
     integer :: revolutions = 1       !! period of the pressure [revolutions]
+    real(dp) :: sense = 1            !! 1 or -1: a cycle follows the crank angle times this
     integer :: part = 0              !! present part of the cycle
-    real(dp) :: cycle_start = 0      !! crank angle at which the present cycle began [rad]
+    real(dp) :: cycle_start = 0      !! that angle at which the present cycle began [rad]
     type(cylinder_t) :: cylinder
     real(dp) :: crankcase_pressure = 0   !! [Pa]
     type(gas_cycle_t), allocatable :: cycle
@@ -46,7 +47,7 @@ contains
     real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
     if (allocated(self%cycle)) then
       self%n_events = n_cycle_events
-      call self%cycle%part_at(crank_angle, crank_speed < 0, self%part, self%cycle_start)
+      call self%cycle%part_at(self%sense*crank_angle, self%sense*crank_speed < 0, self%part, self%cycle_start)
     else if (allocated(self%valves)) then
       self%n_events = n_valve_events
       call self%valves%find_state(crank_angle, crank_speed)
@@ -67,7 +68,7 @@ contains
     class(working_gas_t), intent(in) :: self
     real(dp), value, intent(in) :: crank_angle
     if (allocated(self%cycle)) then
-      pressure = self%cycle%pressure(crank_angle, self%part, self%cycle_start)
+      pressure = self%cycle%pressure(self%sense*crank_angle, self%part, self%cycle_start)
     else if (allocated(self%valves)) then
       pressure = self%valves%pressure(crank_angle)
     else
@@ -101,7 +102,7 @@ contains
     class(working_gas_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle
     if (allocated(self%cycle)) then
-      force_slope = self%cycle%pressure_slope(crank_angle, self%part, self%cycle_start)
+      force_slope = self%sense*self%cycle%pressure_slope(self%sense*crank_angle, self%part, self%cycle_start)
     else if (allocated(self%valves)) then
       force_slope = self%valves%pressure_slope(crank_angle)
     else
@@ -117,9 +118,9 @@ contains
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
     real(dp) :: angle
     if (allocated(self%cycle)) then
-      angle = crank_angle - self%cycle_start
+      angle = self%sense*crank_angle - self%cycle_start
       g = [angle - self%cycle%bound(self%part), self%cycle%bound(self%part - 1) - angle]
-      g_rate = [crank_speed, -crank_speed]
+      g_rate = self%sense*[crank_speed, -crank_speed]
     else if (allocated(self%valves)) then
       call self%valves%events(crank_angle, crank_speed, g, g_rate)
     end if

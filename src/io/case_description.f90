@@ -2,9 +2,9 @@
 module case_description
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, two_pi
-  use case_definition, only: case_t, joint_case_t
-  use compressor, only: compressor_t
-  use wiebe_law, only: wiebe_law_t
+  use case_definition, only: case_t
+  use joint_case, only: joint_case_t
+  use joint_places, only: places, n_places, in_order
   use scene_builder, only: simulated_time, sample_interval
   use number_text, only: short_text, quantity_text
   use text_tools, only: integer_text, printable
@@ -26,12 +26,17 @@ contains
     character(len=*), intent(in) :: base     !! path of the results without suffix
     character(len=*), intent(in) :: tables   !! text about the tables of films; may be empty
     character(len=:), allocatable :: text
+    integer :: i
     text = printable(case%file, 200)//': correct'
     call add('machine', machine_text(case))
     call add('speed', speed_text(case))
-    if (allocated(case%combustion) .or. allocated(case%measured)) call add('gas', gas_text(case))
-    call add('piston pin', joint_text(case%joint))
-    if (case%crank_pin%has_clearance()) call add('crank pin', joint_text(case%crank_pin))
+    if (allocated(case%combustion)) call add('gas', case%combustion%description())
+    if (allocated(case%measured)) call add('gas', case%measured%description())
+    do i = 1, n_places
+      associate (place => in_order(i))
+        if (i == 1 .or. case%joints(place)%has_clearance()) call add(trim(places(place)%title), joint_text(case%joints(place)))
+      end associate
+    end do
     if (allocated(case%guide)) call add('guide', guide_text(case))
     call add('run', run_text(case))
     call add('results', results_text(case, columns, has_twin, base))
@@ -84,30 +89,6 @@ contains
     character(len=:), allocatable :: text
     text = short_text(30*speed/pi, digits)//' rpm'
   end function rpm_text
-
-  function gas_text(case) result(text)
-    type(case_t), intent(in) :: case
-    character(len=:), allocatable :: text
-    if (allocated(case%measured)) then
-      text = 'measured pressure, repeated every '//integer_text(case%measured%period_deg)//' degrees'
-      return
-    end if
-    text = trim(case%combustion%name)
-    select type (gas => case%combustion)
-    class is (wiebe_law_t)
-      text = text//', compression ratio '//short_text(gas%compression_ratio, 3)//', '//quantity_text(gas%heat, 'J', digits)// &
-        ' a cycle from '//short_text(gas%start_deg)//' to '//short_text(gas%start_deg + gas%duration_deg)//' degrees'
-    type is (compressor_t)
-      text = text//', '//bar_text(gas%suction_pressure)//' to '//bar_text(gas%discharge_pressure)//', dead space '// &
-        short_text(100*gas%dead_space, 3)//' %'
-    end select
-  end function gas_text
-
-  function bar_text(pressure) result(text)
-    real(dp), intent(in) :: pressure   !! [Pa]
-    character(len=:), allocatable :: text
-    text = short_text(1e-5_dp*pressure, digits)//' bar'
-  end function bar_text
 
   !> Clearance and models of a joint.
   function joint_text(joint) result(text)

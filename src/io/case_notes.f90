@@ -3,11 +3,12 @@
 module case_notes
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
-  use case_definition, only: case_t, joint_case_t, piston_pin_place, crank_pin_place
+  use case_definition, only: case_t
+  use joint_case, only: joint_case_t
+  use joint_places, only: places, n_places, in_order, name_prefix, joint_group
+  use chain_motion, only: body_piston
   use case_schema, only: find_group, shown_group, real_kind
   use case_values, only: case_values_t
-  use compressor, only: compressor_t
-  use wiebe_law, only: wiebe_law_t
   use number_text, only: short_text
   use text_tools, only: replaced
   use unit_hints, only: likely_unit
@@ -39,8 +40,9 @@ contains
     call note_masses()
     call note_inertias()
     call note_speed()
-    call note_joint(c%joint, 'joint', piston_pin_place)
-    call note_joint(c%crank_pin, crank_pin_place//'.joint', crank_pin_place)
+    do i = 1, n_places
+      call note_joint(c%joints(in_order(i)), joint_group(in_order(i)), in_order(i))
+    end do
     call note_guide()
     call note_gas()
     call note_rod()
@@ -228,12 +230,7 @@ contains
     subroutine note_speed()
       real(dp) :: most   !! [m/s]
       most = 40
-      if (allocated(c%combustion)) then
-        select type (gas => c%combustion)
-        type is (compressor_t)
-          most = 12
-        end select
-      end if
+      if (allocated(c%combustion)) most = c%combustion%fastest_piston()
       call expect('initial', 'crank_speed', c%initial%crank_speed, pi/stroke, 0.0_dp, most, 'is a mean piston speed of # m/s', &
         'mechanism.crank_length')
     end subroutine note_speed
@@ -241,11 +238,12 @@ contains
     !> Clearance and size of a bearing.
     subroutine note_joint(joint, group, place)
       type(joint_case_t), intent(in) :: joint
-      character(len=*), intent(in) :: group, place
+      character(len=*), intent(in) :: group
+      integer, intent(in) :: place   !! index in `places`
       logical :: at_piston
       real(dp) :: room   !! [m]
       if (.not. joint%has_clearance()) return
-      at_piston = place == piston_pin_place
+      at_piston = places(place)%bearing == body_piston
       associate (r => joint%bearing_radius, length => c%mechanism%crank_length)
         call expect(group, 'clearance', joint%clearance, r, 1e-4_dp, 0.1_dp, 'is # of bearing_radius = @ m', &
           group//'.bearing_radius')
@@ -257,13 +255,8 @@ contains
         call expect(group, 'bearing_length', joint%bearing_length, 2*r, 0.1_dp, 3.0_dp, &
           'is # of the diameter of the bearing, @ m', group//'.bearing_radius')
       end associate
-      if (at_piston) then
-        call expect('initial', 'eccentricity', norm2(c%initial%eccentricity), joint%clearance, 0.0_dp, 1.2_dp, &
-          'is # of clearance = @ m', group//'.clearance')
-      else
-        call expect('initial', place//'_eccentricity', norm2(c%initial%crank_pin_eccentricity), joint%clearance, 0.0_dp, 1.2_dp, &
-          'is # of clearance = @ m', group//'.clearance')
-      end if
+      call expect('initial', name_prefix(place)//'eccentricity', norm2(c%initial%eccentricity(:, place)), joint%clearance, &
+        0.0_dp, 1.2_dp, 'is # of clearance = @ m', group//'.clearance')
     end subroutine note_joint
 
     !> The piston in its bore.
@@ -287,11 +280,8 @@ contains
     !> Heat for the volume of the cylinder.
     subroutine note_gas()
       if (.not. allocated(c%combustion)) return
-      select type (gas => c%combustion)
-      class is (wiebe_law_t)
-        call expect('combustion', 'heat', gas%heat, 1e6_dp*pi/4*bore**2*stroke, 0.03_dp, 10.0_dp, &
-          'is # J for each cm^3 of displacement (@ cm^3)', 'mechanism.crank_length combustion.bore')
-      end select
+      call expect('combustion', 'heat', c%combustion%heat_of_cycle(), 1e6_dp*pi/4*bore**2*stroke, 0.03_dp, 10.0_dp, &
+        'is # J for each cm^3 of displacement (@ cm^3)', 'mechanism.crank_length combustion.bore')
     end subroutine note_gas
 
     !> Section of an elastic rod.

@@ -18,6 +18,7 @@ module case_run
   use gudgeon_progress, only: progress_t, clock
   use gudgeon_posix, only: synchronise_folder, file_length, error_text, interrupted
   use text_tools, only: printable, replaced
+  use joint_places, only: n_places
   implicit none
   private
   public :: case_run_t, name_file
@@ -172,11 +173,13 @@ contains
     type(case_t) :: case
     character(len=:), allocatable :: remark
     real(dp) :: wall_time   ! [s]
+    integer :: i
     call files%tell_error(error)
     if (allocated(error)) self%report%status = 'stopped: '//error%message
     case = self%case
-    if (self%is_twin) case%joint%kind = 'ideal'
-    if (self%is_twin) case%crank_pin%kind = 'ideal'
+    do i = 1, merge(n_places, 0, self%is_twin)
+      case%joints(i)%kind = 'ideal'
+    end do
     if (self%is_twin .and. allocated(case%notes)) deallocate (case%notes)
     remark = ''
     if (allocated(self%certificate)) then

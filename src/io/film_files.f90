@@ -11,8 +11,9 @@ module film_files
   use gudgeon_errors, only: error_t, fail, status_integration, status_case_file
   use gudgeon_bearing, only: bearing_t
   use gudgeon_checksum, only: checksum_t, mark_of, mark_length
-  use chain_motion, only: pin_names
-  use case_definition, only: case_t, joint_case_t
+  use joint_places, only: places, n_places, in_order
+  use case_definition, only: case_t
+  use joint_case, only: joint_case_t
   use film_snapshots, only: film_field_t
   use film_law, only: film_law_t, table_watch_t
   use gudgeon_posix, only: make_directory, interrupted, error_text, error_no_entry
@@ -54,8 +55,10 @@ contains
     type(case_t), intent(inout) :: case
     logical, intent(in) :: announces, shows_progress
     type(error_t), allocatable, intent(out) :: error
-    call provide_table(case%joint, case, announces, shows_progress, error)
-    if (.not. allocated(error)) call provide_table(case%crank_pin, case, announces, shows_progress, error)
+    integer :: i
+    do i = 1, n_places
+      if (.not. allocated(error)) call provide_table(case%joints(in_order(i)), case, announces, shows_progress, error)
+    end do
   end subroutine provide_tables
 
   subroutine provide_table(joint, case, announces, shows_progress, error)
@@ -100,12 +103,15 @@ contains
     character(len=:), allocatable, intent(out) :: text
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: more
-    call tell_table(case%joint, case, text, error)
-    if (.not. allocated(error)) call tell_table(case%crank_pin, case, more, error)
-    if (allocated(error)) return
-    if (more /= '') more = 'crank pin: '//more
-    if (text /= '' .and. more /= '') text = text//'; '
-    text = text//more
+    integer :: i
+    text = ''
+    do i = 1, n_places
+      call tell_table(case%joints(in_order(i)), case, more, error)
+      if (allocated(error)) return
+      if (more == '') cycle
+      if (text /= '') text = text//'; '
+      text = text//trim(places(in_order(i))%title)//': '//more
+    end do
   end subroutine tell_tables
 
   !> The same for one joint.
@@ -260,7 +266,7 @@ contains
       do j = 1, size(fields(i)%angle)
         do k = 1, size(fields(i)%along)
           associate (field => fields(i))
-            call file%append(real_text(field%time)//','//real_text(field%crank_angle)//','//trim(pin_names(field%place))//',')
+            call file%append(real_text(field%time)//','//real_text(field%crank_angle)//','//trim(places(field%place)%name)//',')
             call file%append(real_text(field%angle(j) + field%direction)//',')
             call file%append(real_text(field%clearance - field%distance*cos(field%angle(j)))//',')
             call file%append(real_text(field%along(k))//','//real_text(field%pressure(j, k))//achar(10))

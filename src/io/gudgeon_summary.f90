@@ -8,10 +8,11 @@ module gudgeon_summary
   use run_figures, only: pin_figures_t, elastic_figures_t
   use piston_guide, only: n_corners, corner_names
   use period_watch, only: period_watch_t
-  use chain_motion, only: crank_pin, piston_pin, name_prefix
+  use joint_places, only: places, n_places, in_order, name_prefix
   use archard_wear, only: of_pin, of_bore
-  use case_definition, only: case_t, joint_case_t
-  use result_notes, only: notes_on_results, relative_residual, energy_warning
+  use case_definition, only: case_t
+  use joint_case, only: joint_case_t
+  use result_notes, only: notes_on_results, relative_residual, energy_warning, no_exponent
   use number_text, only: real_text
   use text_tools, only: integer_text, quoted, next_line
   use gudgeon_version, only: program_version
@@ -32,7 +33,7 @@ contains
     logical, intent(in), optional :: is_twin                        !! true for the ideal twin, whose bodies are rigid
     character(len=:), allocatable :: text
     character(len=5), parameter :: method_names(2) = ['adams', 'radau']
-    integer :: order, limit, mode, method, corner
+    integer :: order, limit, mode, method, corner, i
 
     text = 'quantity,value,unit'//newline
     call add('status', quoted(report%status, '"'), '')
@@ -75,7 +76,7 @@ contains
           call add('steps_of_'//integer_text(2*order + 1)//'_stages', integer_text(s%stage_count(order)), '1')
         end do
       end if
-      call add('max_pin_force', peak(f%pin(piston_pin)%max_force), 'N')
+      call add('max_pin_force', peak(f%pin(in_order(1))%max_force), 'N')
       call add('crank_revolutions', real_text(f%crank_travel/two_pi), '1')
       if (f%time > 0) call add('mean_crank_speed', real_text(f%crank_travel/f%time), 'rad/s')
       if (report%periods%is_on) call add_period(report%periods)
@@ -83,16 +84,18 @@ contains
         call add('lyapunov_exponent', real_text(report%exponent%mean), '1/revolution')
         call add('lyapunov_exponent_error', real_text(report%exponent%error), '1/revolution')
         call add('lyapunov_revolutions', integer_text(report%exponent%revolutions), '1')
+      else if (allocated(report%exponent%reason)) then
+        call add('lyapunov_warning', quoted(no_exponent//report%exponent%reason, '"'), '')
       end if
       call add('max_energy_residual', peak(max(f%max_energy_residual, f%row_energy_residual)), 'J')
       call add('max_energy_residual_relative', real_text(relative_residual(report)), '1')
       if (report%energy_is_poor) call add('energy_warning', quoted(energy_warning(case, report), '"'), '')
       call add_notes()
-      if (case%joint%has_clearance()) call add_joint('', case%joint, f%pin(piston_pin))
-      if (case%crank_pin%has_clearance()) then
-        call add(name_prefix(crank_pin)//'max_pin_force', peak(f%pin(crank_pin)%max_force), 'N')
-        call add_joint(name_prefix(crank_pin), case%crank_pin, f%pin(crank_pin))
-      end if
+      do i = 1, n_places
+        if (.not. case%joints(in_order(i))%has_clearance()) cycle
+        if (i > 1) call add(name_prefix(in_order(i))//'max_pin_force', peak(f%pin(in_order(i))%max_force), 'N')
+        call add_joint(name_prefix(in_order(i)), case%joints(in_order(i)), f%pin(in_order(i)))
+      end do
       if (case%has_loose_guide()) then
         do corner = 1, n_corners
           associate (c => f%corner(corner), prefix => corner_names(corner)//'_')
@@ -229,25 +232,29 @@ contains
     end subroutine add
   end function summary_table
 
-  !> Names of the phases of the joints in a mode of the scene, the piston pin first: the digits of the mode in base three. For a
-  !> guide with clearance its phase precedes them; it is the highest digit.
+  !> Names of the phases of the joints in a mode of the scene, in the order of the places: the digits of the mode in base three. If
+  !> the first place has none, the place of the first name precedes it. For a guide with clearance its phase precedes them; it is
+  !> the highest digit.
   function phases_of(case, mode) result(text)
     type(case_t), intent(in) :: case
     integer, intent(in) :: mode   !! number >= 0
     character(len=:), allocatable :: text
     character(len=7), parameter :: names(0:2) = ['free   ', 'film   ', 'contact']
-    integer :: pins
+    integer :: pins, i
     pins = mode
     text = ''
     if (case%has_loose_guide()) then
-      pins = mod(mode, size(names)**count([case%joint%has_clearance(), case%crank_pin%has_clearance()]))
+      pins = mod(mode, size(names)**count(case%joints%has_clearance()))
       text = trim(merge('guide_free   ', 'guide_contact', pins == mode))
-      if (.not. case%has_play()) return
-      text = text//'_'
     end if
-    if (case%crank_pin%has_clearance() .and. .not. case%joint%has_clearance()) text = text//name_prefix(crank_pin)
-    text = text//trim(names(mod(pins, size(names))))
-    if (case%crank_pin%has_clearance() .and. case%joint%has_clearance()) text = text//'_'//trim(names(pins/size(names)))
+    do i = 1, n_places
+      if (.not. case%joints(in_order(i))%has_clearance()) cycle
+      if (text /= '') text = text//'_'
+      if (.not. any(case%joints(in_order(:i - 1))%has_clearance())) text = text//name_prefix(in_order(i))
+      text = text//trim(names(mod(pins, size(names))))
+      pins = pins/size(names)
+    end do
+    if (text == '') text = trim(names(mod(pins, size(names))))
   end function phases_of
 
   !> The value of a quantity in the text of a summary; empty if it is not there.

@@ -3,15 +3,17 @@ module result_notes
   use gudgeon_kinds, only: dp
   use gudgeon_simulation, only: run_report_t
   use run_figures, only: pin_figures_t
-  use chain_motion, only: crank_pin, piston_pin
-  use case_definition, only: case_t, joint_case_t
+  use joint_places, only: places, n_places, in_order
+  use case_definition, only: case_t
+  use joint_case, only: joint_case_t
   use number_text, only: short_text, quantity_text
   use text_tools, only: integer_text
   implicit none
   private
-  public :: notes_on_results, relative_residual, energy_warning
+  public :: notes_on_results, relative_residual, energy_warning, no_exponent
 
   real(dp), parameter :: thinnest_film = 10e-9_dp      !! below this oil is no continuous fluid, and no surface is smooth [m]
+  character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: '
   real(dp), parameter :: largest_pressure = 5e9_dp     !! beyond the strength of every bearing [Pa]
 
 contains
@@ -21,12 +23,16 @@ contains
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
     character(len=:), allocatable :: notes
+    integer :: i
     notes = ''
-    call note_joint(case%joint, report%figures%pin(piston_pin), 'piston pin: ')
-    call note_joint(case%crank_pin, report%figures%pin(crank_pin), 'crank pin: ')
+    do i = 1, n_places
+      associate (place => in_order(i))
+        call note_joint(case%joints(place), report%figures%pin(place), trim(places(place)%title)//': ')
+      end associate
+    end do
     if (report%energy_is_poor) call add_line(energy_warning(case, report))
-    if (case%run%lyapunov_revolutions > 0 .and. report%status == 'done' .and. .not. report%exponent%is_known) &
-      call add_line('no Lyapunov exponent: the runs that measure it could not continue')
+    if (.not. report%exponent%is_known .and. allocated(report%exponent%reason)) &
+      call add_line(no_exponent//report%exponent%reason)
     if (notes /= '') notes = notes(:len(notes) - 1)
 
   contains

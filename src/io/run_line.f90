@@ -5,8 +5,9 @@ module run_line
   use gudgeon_simulation, only: run_report_t
   use run_figures, only: pin_figures_t
   use period_watch, only: period_watch_t
-  use chain_motion, only: crank_pin, piston_pin
-  use case_definition, only: case_t, joint_case_t
+  use joint_places, only: places, n_places, in_order
+  use case_definition, only: case_t
+  use joint_case, only: joint_case_t
   use result_notes, only: notes_on_results, relative_residual
   use number_text, only: short_text, quantity_text
   use text_tools, only: integer_text, replaced
@@ -27,15 +28,21 @@ contains
     character(len=*), intent(in) :: path   !! path of the results without suffix
     character(len=*), intent(in) :: remark !! text about the certificate, or empty
     character(len=:), allocatable :: text, notes
+    integer :: i
     associate (s => report%statistics, f => report%figures)
       text = 'ended early'
       if (report%status == 'done') text = report%status
       text = case%name//': '//text//'; '//short_text(abs(f%crank_travel)/two_pi, digits)//' revolutions in '// &
         quantity_text(f%time, 's')
       if (report%periods%is_on .and. report%status == 'done') text = text//', '//period_text(report%periods)
-      text = text//'; '//pin_text(case%joint, f%pin(piston_pin), case%integrator%relative_tolerance)
-      if (case%crank_pin%has_clearance()) text = text//'; crank pin: '// &
-        pin_text(case%crank_pin, f%pin(crank_pin), case%integrator%relative_tolerance)
+      do i = 1, n_places
+        associate (place => in_order(i))
+          if (i > 1 .and. .not. case%joints(place)%has_clearance()) cycle
+          text = text//'; '
+          if (i > 1) text = text//trim(places(place)%title)//': '
+          text = text//pin_text(case%joints(place), f%pin(place), case%integrator%relative_tolerance)
+        end associate
+      end do
       if (case%has_loose_guide()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
         ' contacts, force up to '//quantity_text(maxval(f%corner%max_force), 'N')
       if (report%exponent%is_known) text = text//'; Lyapunov exponent '//short_text(report%exponent%mean, digits)//' per revolution'

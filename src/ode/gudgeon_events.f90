@@ -241,7 +241,7 @@ contains
         return
       end if
     end if
-    if (low .and. start%g < 0 .and. right%g >= 0) then
+    if (low .and. start%g < 0 .and. right%g >= 0 .and. .not. falls_in_resolution(start, right)) then
       found = .true.
       t_found = passage(self, method, problem, index, start, right)
     else if (low .and. start%g < 0 .and. start%rate > 0 .and. right%rate < 0) then
@@ -253,6 +253,15 @@ contains
     end if
     low = low .or. right%g < 0
   end subroutine search_piece
+
+  !> Whether a function falls at both ends, and its values there are no larger than its change while the time advances by a few
+  !> roundings: steps may be shorter than these (after a contact has begun), and the sign is then rounding too.
+  pure logical function falls_in_resolution(left, right)
+    type(sample_t), intent(in) :: left, right
+    real(dp) :: change
+    change = -4*epsilon(right%t)*abs(right%t)*min(left%rate, right%rate)
+    falls_in_resolution = left%rate < 0 .and. right%rate < 0 .and. -left%g <= change .and. right%g <= change
+  end function falls_in_resolution
 
   !> The first instant, within the resolution of the time, at which the function is non-negative.
   real(dp) function passage(self, method, problem, index, left, right)

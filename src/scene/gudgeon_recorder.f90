@@ -1,7 +1,7 @@
 !> The observer of a run. It records samples on a fixed grid of time or crank angle, the events of contact, the values for the
 !> summary and, on request, the results of each revolution.
 !>
-!> Results that belong to a pin are in its `pin_record`: one for the piston pin, and one for a crank pin with clearance. Peaks are
+!> Results that belong to a pin are in its `pin_record`: one for each of the scene's reported places. Peaks are
 !> searched also between accepted points, and no peak is below the largest value of a row. The energy is checked at accepted points.
 module gudgeon_recorder
   use gudgeon_kinds, only: dp
@@ -9,10 +9,10 @@ module gudgeon_recorder
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use gudgeon_solver, only: observer_t
-  use chain_motion, only: crank_pin, piston_pin, most_pins => n_pins
+  use joint_places, only: n_places
   use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide, of_wear, phase_contact
   use inside_step, only: look_inside
-  use joint_events, only: penetration_and_rate, may_lose_force, force_share
+  use joint_events, only: penetration_and_rate, may_lose_force, find_lost_force
   use gudgeon_columns, only: column_list_t, row_values
   use angle_grid, only: angle_grid_t
   use crank_passage, only: find_turning
@@ -54,8 +54,8 @@ module gudgeon_recorder
     integer, private :: next_row = 0
     integer, private :: evaluations_then = 0        !! number of evaluations at the beginning of the present revolution
     real(dp), private :: time_then = 0, angle_then = 0   !! time [s] and crank angle [rad] at that beginning
-    integer, private :: n_pins = 1                 !! number of pins that have a record
-    type(pin_record_t), private :: pins(most_pins)
+    integer, private :: n_pins = 0                 !! number of pins that have a record
+    type(pin_record_t), private :: pins(n_places)
     type(guide_record_t), private :: guide         !! record of a piston with clearance in its bore
     type(elastic_record_t), private :: elastic     !! record of elastic members
     real(dp), allocatable, private :: y(:), values(:)
@@ -76,11 +76,11 @@ contains
   subroutine prepare(self, scene)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    call self%pins(1)%prepare(piston_pin, scene)
-    if (scene%joint_of_pin(crank_pin) > 0) then
-      self%n_pins = 2
-      call self%pins(2)%prepare(crank_pin, scene)
-    end if
+    integer :: i
+    self%n_pins = size(scene%reported)
+    do i = 1, self%n_pins
+      call self%pins(i)%prepare(scene%reported(i), scene)
+    end do
     call self%guide%prepare(scene)
     call self%elastic%prepare(scene, self%figures%elastic)
     allocate (self%y(scene%n), self%values(size(self%list%id)))
@@ -109,7 +109,7 @@ contains
     end if
     do i = 1, self%n_pins
       if (inside .and. self%pins(i)%is_touching(scene)) call take_contact(self, self%pins(i), event_contact_begins, 0.0_dp, now)
-      call self%pins(i)%begin(0.0_dp, now)
+      call self%pins(i)%begin(scene, 0.0_dp, now)
       if (inside) call self%pins(i)%take_values(scene, now, self%figures, self%cycles)
     end do
     if (inside .and. self%guide%is_there) then
@@ -315,7 +315,7 @@ contains
         if (self%pins(i)%joint == 0) cycle
         associate (figures => f%pin(self%pins(i)%pin), joint => scene%joints(self%pins(i)%joint))
           if (self%pins(i)%is_touching(scene)) figures%contact_time = figures%contact_time + (t - f%time)
-          if (joint%has_friction_work()) figures%friction_work = joint%work_of_friction(y)
+          if (joint%integrates_friction) figures%friction_work = joint%work_of_friction(y)
         end associate
       end do
       call self%guide%take_time(scene, t - f%time, f)
@@ -360,7 +360,7 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     type(evaluation_t) :: now
-    real(dp) :: contact(2), share, share_rate
+    real(dp) :: contact(2)
     logical :: inside
     integer :: i, k, action
     select type (problem)
@@ -369,14 +369,13 @@ contains
       do i = 1, self%n_pins
         if (.not. allocated(self%pins(i)%wear)) cycle
         associate (joint => problem%joints(self%pins(i)%joint))
-          if (.not. allocated(joint%worn)) cycle
+          if (.not. joint%has_worn_bore()) cycle
           call self%pins(i)%wear%change_bore(joint)
           if (joint%phase /= phase_contact) cycle
           contact = penetration_and_rate(joint, y)
           if (contact(1) > 0 .and. may_lose_force(joint)) then
             call look_at(self, problem, t, y, now, inside)
-            if (inside) call force_share(joint, now%relative(self%pins(i)%joint), now%accelerations, share, share_rate)
-            if (inside) joint%force_is_lost = share < 0
+            if (inside) call find_lost_force(joint, now%joint(self%pins(i)%joint), joint%relative_rates(now%accelerations))
           end if
           if (contact(1) > 0) cycle
         end associate
@@ -437,7 +436,7 @@ contains
     if (allocated(scene%wear_cycle)) then
       do i = 1, self%n_pins
         if (.not. (allocated(self%pins(i)%wear) .and. scene%wear_cycle%is_over(scene%crank_angle(t, y)))) cycle
-        if (allocated(scene%joints(self%pins(i)%joint)%worn)) call self%pins(i)%wear%end_cycle(scene%joints(self%pins(i)%joint))
+        if (scene%joints(self%pins(i)%joint)%has_worn_bore()) call self%pins(i)%wear%end_cycle(scene%joints(self%pins(i)%joint))
       end do
     end if
     if (self%every_step) return

@@ -5,7 +5,7 @@
 module guide_record
   use gudgeon_kinds, only: dp
   use ode_method, only: ode_method_t
-  use chain_motion, only: n_pins
+  use joint_places, only: n_places
   use piston_guide, only: corner_t, n_corners
   use gudgeon_scene, only: scene_t, evaluation_t, event_contact_begins
   use peak_search, only: sample_t, peak_search_t, may_peak
@@ -47,7 +47,7 @@ contains
     integer :: i
     if (allocated(scene%guide)) self%is_there = scene%guide%is_loose
     do i = 1, n_corners
-      self%contact(i)%pin = n_pins + i
+      self%contact(i)%pin = n_places + i
     end do
   end subroutine prepare
 

@@ -24,10 +24,12 @@ module lyapunov
   use ode_method, only: ode_method_t
   use ode_problem, only: ode_problem_t
   use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_interrupted
+  use gudgeon_solver, only: integrate, silent_observer_t, integration_interrupted, integration_done, &
+    integration_stopped
   use gudgeon_scene, only: scene_t
   use scene_builder, only: settings_for
   use crank_passage, only: find_passage
+  use stop_reason, only: reason, place
   use state_differences, only: differences_t, new_differences, most_directions, first_size
   implicit none
   private
@@ -45,6 +47,7 @@ module lyapunov
     real(dp) :: mean = 0          !! per revolution
     real(dp) :: error = 0  !! standard error of the mean, from the scatter between periods or, without a period, between revolutions
     integer :: revolutions = 0    !! number of revolutions of which it is the mean
+    character(len=:), allocatable :: reason   !! why it is not known
   end type exponent_t
 
   !> One of the scenes.
@@ -55,6 +58,7 @@ module lyapunov
     real(dp), allocatable :: y(:)
     real(dp) :: target = 0, direction = 1    !! crank angle to which it runs [rad], and the sense of rotation
     logical :: is_there = .false.
+    character(len=:), allocatable :: reason  !! why it has not reached that angle
     type(scene_t), allocatable :: kept       !! the scene at that angle, before an event at the end of the last step
   contains
     procedure :: run_to
@@ -92,6 +96,7 @@ contains
     revolutions = self%block*self%blocks
     self%i = 1 - self%block*((max(2, min(20, revolutions/5)) - 1)/self%block + 1)
     self%differences = new_differences(scene)
+    self%differences%most_lasts = per_revolution*max(2, self%block)   ! no cycle of a gas is longer than two revolutions
     call prepare(case, scene, t, y, self%one)
     do d = 1, size(self%differences%state, 2)
       call prepare(case, scene, t, y, self%other(d))
@@ -102,13 +107,12 @@ contains
   subroutine advance(self)
     class(measurement_t), intent(inout) :: self
     real(dp) :: factors(most_directions, most_directions)
-    logical :: is_there
     integer :: k
     associate (i => self%i, block => self%block, blocks => self%blocks, exponent => self%exponent)
       if (i == 1 - block) call self%differences%begin_period()
       do k = 1, per_revolution
-        call follow(self%one, self%other, self%differences, is_there)
-        self%is_over = .not. is_there
+        call follow(self%one, self%other, self%differences, exponent%reason)
+        self%is_over = allocated(exponent%reason)
         if (self%is_over) return
         call self%differences%straighten(factors)
         self%growth = self%growth + log(max(factors(1, 1), smallest_growth))
@@ -130,11 +134,11 @@ contains
     end associate
   end subroutine advance
 
-  !> Let all scenes run for a quarter of a revolution and measure the differences at its end; `is_there`: all have reached it.
-  subroutine follow(one, other, differences, is_there)
+  !> Let all scenes run for a quarter of a revolution and measure the differences at its end, or say why one has not reached it.
+  subroutine follow(one, other, differences, reason)
     type(companion_t), intent(inout) :: one, other(:)
     type(differences_t), intent(inout) :: differences
-    logical, intent(out) :: is_there
+    character(len=:), allocatable, intent(out) :: reason
     real(dp) :: angle
     integer :: d
     do d = 1, size(differences%state, 2)
@@ -142,11 +146,12 @@ contains
     end do
     angle = one%scene%crank_angle(one%t, one%y) + one%direction*two_pi/per_revolution
     call one%run_to(angle)
-    is_there = one%is_there
+    if (.not. one%is_there) reason = one%reason
     do d = 1, size(differences%state, 2)
-      if (is_there) call other(d)%run_to(angle)
-      is_there = is_there .and. other(d)%is_there
-      if (is_there) call differences%take(d, one%scene, one%y, other(d)%scene, other(d)%y)
+      if (allocated(reason)) exit
+      call other(d)%run_to(angle)
+      if (.not. other(d)%is_there) reason = other(d)%reason
+      if (other(d)%is_there) call differences%take(d, one%scene, one%y, other(d)%scene, other(d)%y)
     end do
   end subroutine follow
 
@@ -204,6 +209,11 @@ contains
     y = self%y
     call integrate(scene, method, t, y, self%t + patience*two_pi/scene%speed_scale(), 0, self, status)
     if (status /= integration_interrupted) self%is_there = .false.
+    if (.not. self%is_there) then
+      self%reason = 'the crank stops, turns back or takes too long for a quarter of a revolution'
+      if (all(status /= [integration_done, integration_stopped])) self%reason = reason(status, scene, method%settings, t, y)
+      self%reason = self%reason//' at '//place(scene, t, y)
+    end if
     call move_alloc(scene, self%scene)
     call move_alloc(method, self%method)
     if (allocated(self%kept)) call move_alloc(self%kept, self%scene)

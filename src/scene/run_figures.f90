@@ -1,7 +1,7 @@
 !> The results of a run that are single numbers, most of them for its summary.
 module run_figures
   use gudgeon_kinds, only: dp
-  use chain_motion, only: n_pins
+  use joint_places, only: n_places
   use piston_guide, only: n_corners
   implicit none
   private
@@ -38,7 +38,7 @@ module run_figures
   end type elastic_figures_t
 
   type :: run_figures_t
-    type(pin_figures_t) :: pin(n_pins)        !! crank_pin, piston_pin
+    type(pin_figures_t) :: pin(n_places)        !! by place
     type(pin_figures_t) :: corner(n_corners)
     type(elastic_figures_t) :: elastic
     integer :: evaluations = 0                !! number of evaluations of the scene for rows, events and these results
@@ -48,6 +48,5 @@ module run_figures
     real(dp) :: row_energy_residual = 0       !! the same in the rows of the trace, also inside the steps [J]
     real(dp) :: crank_travel = 0              !! crank angle turned through, signed [rad]
     real(dp) :: time = 0                      !! time simulated [s]
-  contains
   end type run_figures_t
 end module run_figures

@@ -1,14 +1,14 @@
 !> Receiver of the results of a run. The code that writes files and tests extend it by what they need of the results.
 module trace_sink
   use gudgeon_kinds, only: dp
-  use chain_motion, only: piston_pin, pin_names, n_pins
+  use joint_places, only: piston_pin, places, n_places
   use piston_guide, only: corner_names, n_corners
   implicit none
   private
   public :: trace_sink_t, trace_event_t, joint_names
 
   !> Names of the places of contacts: the pins, and the corners of the skirt in the bore.
-  character(len=*), parameter :: joint_names(n_pins + n_corners) = [character(len=10) :: pin_names, corner_names]
+  character(len=*), parameter :: joint_names(n_places + n_corners) = [character(len=10) :: places%name, corner_names]
 
   !> One event in the trace.
   type :: trace_event_t
