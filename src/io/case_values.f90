@@ -387,7 +387,7 @@ contains
     integer, intent(in) :: place
     integer :: element
     associate (key => self%keys(place), value => self%values(place))
-      if (key%kind > integer_kind .or. key%required .and. .not. value%given(1)) return
+      if (key%kind > integer_kind .or. key%required .and. value%written(1) == '') return   ! not given, or unreadable
       do element = 1, key%count
         if (is_within(merge(value%reals(element), real(value%whole, dp), key%kind == real_kind), key%range)) cycle
         if (is_default(key, value, element)) cycle

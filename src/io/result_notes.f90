@@ -7,7 +7,6 @@ module result_notes
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use number_text, only: short_text, quantity_text
-  use text_tools, only: integer_text
   implicit none
   private
   public :: notes_on_results, relative_residual, energy_warning, no_exponent
@@ -52,10 +51,6 @@ contains
       if (allocated(joint%film) .and. pin%min_film_thickness > 0 .and. pin%min_film_thickness < thinnest_film) &
         call add_line(name//'a film of '//quantity_text(pin%min_film_thickness, 'm')//' is thinner than 10 nm, where oil is '// &
         'not a continuous fluid')
-      if (pin%impacts_beyond_validity > 0) call add_line(name//integer_text(pin%impacts_beyond_validity)//' of '// &
-        integer_text(pin%contacts)//' impacts are faster than the theory of elastic contact holds')
-      if (pin%contacts_beyond_validity > 0) call add_line(name//integer_text(pin%contacts_beyond_validity)//' of '// &
-        integer_text(pin%contacts)//' contacts are deeper than their geometry holds')
       length = joint%bearing_length
       if (.not. length > 0) length = 2*joint%bearing_radius
       area = joint%bearing_radius*length

@@ -65,6 +65,17 @@ contains
     text = text//', recognised after '//integer_text(periods%found_after)
   end function period_text
 
+  !> Text about the contacts of a pin to which the theory of their law does not apply; empty if there are none.
+  function beyond_text(pin) result(text)
+    type(pin_figures_t), intent(in) :: pin
+    character(len=:), allocatable :: text
+    text = ''
+    if (pin%impacts_beyond_validity > 0) text = integer_text(pin%impacts_beyond_validity)//' faster'
+    if (pin%impacts_beyond_validity > 0 .and. pin%contacts_beyond_validity > 0) text = text//' and '
+    if (pin%contacts_beyond_validity > 0) text = text//integer_text(pin%contacts_beyond_validity)//' deeper'
+    if (text /= '') text = ' ('//text//' than the theory holds)'
+  end function beyond_text
+
   !> Text about one pin. The error of a table of the film is told if it is larger than the relative tolerance of the run.
   function pin_text(joint, pin, tolerance) result(text)
     type(joint_case_t), intent(in) :: joint
@@ -73,7 +84,7 @@ contains
     character(len=:), allocatable :: text
     text = ''
     if (joint%has_clearance()) then
-      if (joint%can_touch()) text = integer_text(pin%contacts)//' contacts, '
+      if (joint%can_touch()) text = integer_text(pin%contacts)//' contacts'//beyond_text(pin)//', '
       if (joint%can_touch() .and. pin%contacts == 0) text = 'no contact, '
       if (pin%min_film_thickness < 0) then
         text = text//'penetration up to '//quantity_text(-pin%min_film_thickness, 'm')//', '
