@@ -259,10 +259,15 @@ contains
       pin%impacts_beyond_validity = 5
       pin%contacts_beyond_validity = 2
       lines = lines_for_user(case, report, 1.0_dp, 'results/x', '')
-      call check%that(index(lines, '7 contacts, penetration up to 10 um, pin force up to 5.4 TN') > 0, 'the line of the run')
+      call check%that(index(lines, '7 contacts (5 faster and 2 deeper than the theory holds), penetration up to 10 um, pin '// &
+        'force up to 5.4 TN') > 0, 'the line of the run: '//lines)
       call check%that(index(lines, 'a force of 5.4 TN is larger than E R L = 31 MN') > 0, 'a large force: '//lines)
-      call check%that(index(lines, 'note: piston pin: 5 of 7 impacts are faster than the theory') > 0, 'fast impacts')
-      call check%that(index(lines, 'note: piston pin: 2 of 7 contacts are deeper than their geometry holds') > 0, 'deep contacts')
+      pin%impacts_beyond_validity = 0
+      lines = lines_for_user(case, report, 1.0_dp, 'results/x', '')
+      call check%that(index(lines, '7 contacts (2 deeper than the theory holds), ') > 0, 'deep contacts')
+      pin%contacts_beyond_validity = 0
+      lines = lines_for_user(case, report, 1.0_dp, 'results/x', '')
+      call check%that(index(lines, '7 contacts, ') > 0, 'contacts to which the theory applies')
       call check%that(index(lines, 'thinner') == 0, 'no film is thin where surfaces touch')
     end associate
     report%energy_is_poor = .true.

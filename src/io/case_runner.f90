@@ -98,6 +98,7 @@ contains
     call read_case_values(path, with_preset(options%accuracy, options%overrides), values, job%error)
     if (.not. allocated(job%error)) call complete_case(values, path, case, job%error)
     if (allocated(job%error)) return
+    if (options%name /= '') case%name = options%name
     call choose_columns(case, .false., list, job%error)
     if (.not. allocated(job%error)) call choose_columns(case, .true., ideal_list, job%error)
     if (.not. allocated(job%error)) call build_scene(case, .false., scene, job%error, without_tables=.true.)

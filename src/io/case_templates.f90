@@ -4,6 +4,7 @@ module case_templates
   private
   public :: short_template, template_kinds
 
+  !> The kinds of short templates.
   character(len=*), parameter :: template_kinds = 'dry, film, engine, compressor, slap, elastic, wear'
 
   character, parameter :: n = achar(10)
