@@ -77,7 +77,7 @@ contains
       key = joint%film%table_key(bearing, tolerance)
       if (key == joint%film%table_of) return
       began = clock()
-      call find_file(joint%film, case, key, path, is_named)
+      call find_file(joint%film, case, key, .true., path, is_named)
       call load(path, key, joint%film, is_named, is_there, error)
       if (.not. (is_there .or. allocated(error))) then
         if (announces) call tell(printable(case%file, 200)//': computing the film table of a bearing with L/D = '// &
@@ -131,7 +131,7 @@ contains
     bearing = joint%bearing(case%mechanism%rod_length)
     key = film%table_key(bearing, case%integrator%relative_tolerance)
     if (key == '') return
-    call find_file(film, case, key, path, is_named)
+    call find_file(film, case, key, .false., path, is_named)
     call load(path, key, film, is_named, is_there, error)
     if (allocated(error)) return
     text = 'stored in '//printable(path, 200)
@@ -142,10 +142,11 @@ contains
   end subroutine tell_table
 
   !> The file that keeps a table; an empty path if there is none.
-  subroutine find_file(film, case, key, path, is_named)
+  subroutine find_file(film, case, key, makes_folder, path, is_named)
     class(film_law_t), intent(in) :: film
     type(case_t), intent(in) :: case
     character(len=*), intent(in) :: key
+    logical, intent(in) :: makes_folder   !! the cache folder is made if it is not there
     character(len=:), allocatable, intent(out) :: path
     logical, intent(out) :: is_named   !! the case names it
     is_named = .false.
@@ -153,7 +154,7 @@ contains
     if (is_named) then
       path = path_beside(case%file, film%table_file)
     else
-      path = path_for(key)
+      path = path_for(key, makes_folder)
     end if
   end subroutine find_file
 
@@ -181,8 +182,9 @@ contains
   end function place_of
 
   !> Path of a stored table; empty if there is no cache folder.
-  function path_for(key) result(path)
+  function path_for(key, makes_folder) result(path)
     character(len=*), intent(in) :: key
+    logical, intent(in) :: makes_folder
     character(len=:), allocatable :: path
     type(checksum_t) :: sum
     integer :: status
@@ -193,7 +195,8 @@ contains
       path = path//'/.cache'
     end if
     path = path//'/gudgeon'
-    call make_directory(path, status)
+    status = 0
+    if (makes_folder) call make_directory(path, status)
     call sum%add(key)
     path = path//'/film-'//sum%hexadecimal()//'.table'
     if (status /= 0) path = ''
