@@ -13,6 +13,7 @@ module test_notes
   use run_line, only: lines_for_user
   use value_reader, only: read_bounds, read_real
   use unit_hints, only: likely_unit
+  use settling, only: settling_t
   use checks, only: checks_t
   implicit none
   private
@@ -99,6 +100,7 @@ contains
     call every_key_is_usual(check)
     call units_of_errors(check)
     call implausible_results(check)
+    call films_that_have_not_settled(check)
   end subroutine run_test_notes
 
   !> A shipped case with changes.
@@ -275,4 +277,39 @@ contains
     report%figures%max_energy_residual = 1e-3_dp
     call check%that(index(notes_on_results(case, report), 'the energy is conserved only to 0.001') > 0, 'energy that is lost')
   end subroutine implausible_results
+
+  !> The change of a film from cycle to cycle, of thicknesses that are known, and the text about it on the line of a driven crank.
+  subroutine films_that_have_not_settled(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: turn = 6.283185307179586_dp
+    type(settling_t) :: film
+    type(case_t) :: case
+    type(run_report_t) :: report
+    type(error_t), allocatable :: error
+    integer :: i
+    film%revolutions = 2
+    do i = 0, 79   ! ten points in each revolution, backwards; the first cycle has the smallest thickness
+      call film%take(-(i + 0.5_dp)*turn/10, merge(1.0_dp, 8*0.5_dp**(i/20), i < 20) + abs(mod(i, 20) - 10))
+      if (i < 60) call check%that(abs(film%change()) <= 0, 'no change before the end of the third cycle')
+    end do
+    call check%relative(film%change(), -0.5_dp, 1e-12_dp, 'change of the smallest film thickness')   ! 4, 2; the present cycle: 1
+    call film%take(-8.01_dp*turn, 7.0_dp)
+    call check%relative(film%change(), -0.5_dp, 1e-12_dp, 'a cycle counts when it has ended')
+    call film%take(-8.02_dp*turn, -1.0_dp)
+    call film%take(-10.02_dp*turn, 1.0_dp)
+    call check%that(abs(film%change()) <= 0, 'no change where surfaces touch')
+
+    call read_changed('gas/compressor', '', case, error)
+    report%status = 'done'
+    report%figures%time = 0.2_dp
+    report%figures%pin(piston_pin)%min_film_thickness = 3e-6_dp
+    report%figures%pin(piston_pin)%film_change = -0.12_dp
+    call check%that(index(lines_for_user(case, report, 1.0_dp, 'x', ''), ', not settled: the film thickness still changes by 12 '// &
+      '% from cycle to cycle (--set run.until=periodic)') > 0, 'a film that has not settled')
+    report%figures%pin(piston_pin)%film_change = -0.04_dp
+    call check%that(index(lines_for_user(case, report, 1.0_dp, 'x', ''), 'settled') == 0, 'a film that has settled')
+    call read_changed('sim_I', '', case, error)
+    report%figures%pin(piston_pin)%film_change = -0.12_dp
+    call check%that(index(lines_for_user(case, report, 1.0_dp, 'x', ''), 'settled') == 0, 'a crank that nothing drives')
+  end subroutine films_that_have_not_settled
 end module test_notes

@@ -119,6 +119,16 @@ check "reference of one group" [ "$(grep -c '^## ' "$work/out")" = 1 -a "$(grep 
 run -o "$work/first" cases/sim_I.nml
 check "the first run prints its result alone" [ "$status" = 0 -a ! -s "$work/err" -a "$(wc -l <"$work/out")" = 2 ]
 
+# a film that has not settled
+run -o "$work/first" -s integrator.revolutions=6 cases/gas/compressor.nml
+check "a film that has not settled" grep -q 'not settled: the film thickness still changes by 11 % from cycle to cycle' "$work/out"
+run -o "$work/first" -s integrator.revolutions=20 cases/gas/compressor.nml
+check "a film that has settled" [ "$status" = 0 -a "$(grep -c settled "$work/out")" = 0 ]
+
+# no shipped case has values or results that are noted
+run -o "$work/shipped" -s output.ideal_twin=F $(find cases -name '*.nml' -not -path '*/studies/*' -not -name worn_bore.nml -not -path '*/wear/*')
+check "no note on a shipped case: $(grep note: "$work/out" "$work/err")" [ "$status" = 0 -a "$(grep -c 'note: ' "$work/out")" = 0 -a ! -s "$work/err" ]
+
 # the dissertation's integration of its own cases
 for case in cases/sim_*.nml cases/flores/*.nml; do
   run -o "$work/reis" -a dissertation -s integrator.revolutions=0.2 -s output.ideal_twin=F "$case"

@@ -155,6 +155,8 @@ contains
         end if
       end if
       call add(prefix//'min_film_thickness', peak(pin%min_film_thickness), 'm')
+      if (allocated(joint%film) .and. abs(pin%film_change) > 0) &
+        call add(prefix//'film_thickness_change', real_text(pin%film_change), '1')
       call add_contacts(prefix, pin)
       call add(prefix//'max_entry_penetration', peak(pin%max_entry_penetration), 'm')
       call add(prefix//'impacts_beyond_validity', integer_text(pin%impacts_beyond_validity), '1')

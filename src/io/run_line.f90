@@ -41,6 +41,7 @@ contains
           text = text//'; '
           if (i > 1) text = text//trim(places(place)%title)//': '
           text = text//pin_text(case%joints(place), f%pin(place), case%integrator%relative_tolerance)
+          if (.not. report%periods%is_on .and. is_driven(case)) text = text//settling_text(case%joints(place), f%pin(place))
         end associate
       end do
       if (case%has_loose_guide()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
@@ -64,6 +65,24 @@ contains
     if (periods%period > 1) text = 'repeats every '//integer_text(periods%period)//' revolutions'
     text = text//', recognised after '//integer_text(periods%found_after)
   end function period_text
+
+  !> Whether the crank is driven, so that the motion settles; otherwise it comes to rest.
+  pure logical function is_driven(case)
+    type(case_t), intent(in) :: case
+    is_driven = case%drive%kind == 'constant_speed' .or. abs(case%drive%torque) > 0 .or. case%drive%table%is_wanted() .or. &
+      allocated(case%combustion) .or. allocated(case%measured)
+  end function is_driven
+
+  !> Text about a film that has not settled; empty if it has.
+  function settling_text(joint, pin) result(text)
+    type(joint_case_t), intent(in) :: joint
+    type(pin_figures_t), intent(in) :: pin
+    character(len=:), allocatable :: text
+    real(dp), parameter :: most = 0.05_dp   !! change from cycle to cycle
+    text = ''
+    if (allocated(joint%film) .and. abs(pin%film_change) > most) text = ', not settled: the film thickness still changes by '// &
+      short_text(100*abs(pin%film_change), 2)//' % from cycle to cycle (--set run.until=periodic)'
+  end function settling_text
 
   !> Text about the contacts of a pin to which the theory of their law does not apply; empty if there are none.
   function beyond_text(pin) result(text)
