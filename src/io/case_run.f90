@@ -8,6 +8,8 @@ module case_run
   use film_files, only: write_film_file
   use wear_file, only: write_wear_file
   use gudgeon_simulation, only: run_t, run_report_t
+  use run_state, only: run_state_t
+  use state_file, only: state_text, state_suffix
   use patient_run, only: steps_between_looks
   use trace_files, only: trace_files_t
   use result_file, only: result_file_t, remove_result, write_text
@@ -23,6 +25,7 @@ module case_run
   private
   public :: case_run_t, name_file
 
+  real(dp), parameter :: between_states = 60       !! [s] of the clock, between two files of the state
   integer, parameter :: room_for_summary = 12288   !! [bytes], twice the length of the longest summaries
 
   !> A run. Call `prepare` first, then `go`. Its files are BASE.csv, with contacts BASE.events.csv, and BASE.summary.csv. Errors are
@@ -125,21 +128,41 @@ contains
     class(case_run_t), intent(inout) :: self
     type(trace_files_t), target, intent(inout) :: files
     type(run_t) :: run
+    type(error_t), allocatable :: state_error
+    real(dp) :: last   !! time of the last file of the state [s]
     call self%progress%start(self%case%name, self%shows_progress)
     call run%begin(self%case, self%is_twin, self%list, files, self%error)
     if (.not. allocated(self%error)) then
+      last = self%began
       do while (.not. run%is_over)
         call run%advance(huge(1.0_dp), steps_between_looks)
         call self%progress%update(run%t/run%expected_end(), run%t)
         call self%advice%consider(run%t, run%expected_end(), clock() - self%began, run%method%statistics, self%progress)
         if (any(files%file%has_failed())) call run%stop()
         if (interrupted()) call run%stop()
+        if (run%is_over .or. clock() - last > between_states) then
+          call write_state(self, run, state_error)
+          last = clock()
+        end if
       end do
       call run%finish(self%report, self%error)
+      if (allocated(state_error)) call move_alloc(state_error, self%error)
     end if
     call self%progress%finish()
     if (.not. allocated(self%report%status)) self%report%status = self%error%message
   end subroutine carry_out
+
+  !> Write the state that the run has reached. The ideal twin has none: it starts as its case says.
+  subroutine write_state(self, run, error)
+    class(case_run_t), intent(in) :: self
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+    type(run_state_t) :: state
+    if (self%is_twin) return
+    call run%state(state)
+    call write_text(self%base//state_suffix, state_text(state, 'State of '//printable(self%case%file, 200)// &
+      ': gudgeon '//printable(self%case%file, 200)//' --from '//printable(self%base, 200)//state_suffix//' goes on from it'), error)
+  end subroutine write_state
 
   !> Close the files of a run that has ended. If the run is done, the trace gets its final name before the summary, which reports it
   !> as done. Otherwise the summary is written first; if that fails, the trace keeps its temporary name.
