@@ -56,7 +56,7 @@ contains
     if (self%of_totals .and. .not. self%goes_on) return
     do i = 1, size(self%numbers)
       associate (number => self%numbers(i))
-        if (number%name /= name .or. number%is_total .neqv. self%of_totals) cycle
+        if (number%name /= name .or. (number%is_total .neqv. self%of_totals)) cycle
         number%is_set = .true.
         if (size(number%values) == size(values)) then
           values = number%values
