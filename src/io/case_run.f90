@@ -9,7 +9,7 @@ module case_run
   use wear_file, only: write_wear_file
   use gudgeon_simulation, only: run_t, run_report_t
   use run_state, only: run_state_t
-  use state_file, only: state_text, state_suffix
+  use state_file, only: state_text, state_suffix, reached
   use patient_run, only: steps_between_looks
   use trace_files, only: trace_files_t
   use result_file, only: result_file_t, remove_result, write_text
@@ -17,14 +17,16 @@ module case_run
   use certificate_text, only: certificate_table, certificate_summary, certificate_clause
   use gudgeon_summary, only: summary_table, summary_line
   use stability_advice, only: stability_advice_t, advice
-  use gudgeon_progress, only: progress_t, clock
-  use gudgeon_posix, only: synchronise_folder, file_length, error_text, interrupted
+  use gudgeon_progress, only: progress_t, clock, tell
+  use text_file, only: read_whole
+  use gudgeon_posix, only: synchronise_folder, file_length, absolute_path, error_text, interrupted
   use text_tools, only: printable
   use joint_places, only: n_places
   implicit none
   private
   public :: case_run_t, name_file
 
+  character(len=*), parameter :: newline = achar(10)
   real(dp), parameter :: between_states = 60       !! [s] of the clock, between two files of the state
   integer, parameter :: room_for_summary = 12288   !! [bytes], twice the length of the longest summaries
 
@@ -110,6 +112,7 @@ contains
       '.events.csv', '.film.csv', '.wear.csv', '.certificate.csv', '.ideal.csv']
     logical :: was_there, keeps_twin
     integer :: i, status, ignored
+    if (.not. self%is_twin) call remove_state(self)
     was_there = .false.
     status = 0
     keeps_twin = file_length(self%base//'.ideal.resolved.nml') >= 0
@@ -122,6 +125,28 @@ contains
     if (status /= 0) call fail(self%error, printable(self%base, 200)//': earlier results cannot be removed: '// &
       error_text(status), status_output)
   end subroutine remove_earlier
+
+  !> Remove the state of an earlier run of this name, unless this run starts from it. The user is told what is discarded if that run
+  !> was stopped, or if this one goes on from it.
+  subroutine remove_state(self)
+    class(case_run_t), intent(in) :: self
+    character(len=:), allocatable :: summary, path, what
+    logical :: unused, starts_from_it
+    integer :: status, ignored
+    path = self%base//state_suffix
+    starts_from_it = .false.
+    if (allocated(self%case%initial%state)) starts_from_it = self%case%initial%state%file == printable(absolute_path(path), 200)
+    call read_whole(self%base//'.summary.csv', summary, status)
+    what = ''
+    if (starts_from_it .and. status == 0) then
+      what = 'replaces the results of the run from which it goes on; another folder with --out keeps both'
+    else if (file_length(self%base//'.csv.part') >= 0 .or. status == 0 .and. index(summary, newline//'status,"done"') == 0) then
+      what = 'discards the results of an earlier run that was stopped'//reached(path)
+    end if
+    if (what /= '' .and. .not. self%is_quiet) call tell(printable(self%case%file, 200)//': '//what)
+    status = 0
+    if (.not. starts_from_it) call remove_result(path, unused, ignored, keeps_part=.false.)
+  end subroutine remove_state
 
   !> Run the case to its end, unless the user interrupts or a file cannot be written.
   subroutine carry_out(self, files)

@@ -20,7 +20,7 @@ module case_runner
   use gudgeon_progress, only: tell, say, clock, progress_wanted
   use measured_curve, only: measured_curve_t
   use process_pool, only: tasks_t, note_t, share, available_processors
-  use text_tools, only: printable, integer_text
+  use text_tools, only: printable, integer_text, path_beside
   implicit none
   private
   public :: run_cases, tell_warning
@@ -120,7 +120,7 @@ contains
     integer :: n
     n = size(options%overrides)
     from = ''
-    if (options%from /= '') from = 'initial.from='//absolute_path(options%from)
+    if (options%from /= '') from = 'initial.from='//path_beside(absolute_path('.')//'/', options%from)
     allocate (character(len=max(len(from), len(options%overrides))) :: given(n + merge(1, 0, from /= '')))
     given(:n) = options%overrides
     given(n + 1:) = from

@@ -14,7 +14,7 @@ module state_file
   use text_tools, only: printable, integer_text, path_beside
   implicit none
   private
-  public :: state_text, provide_state, state_suffix
+  public :: state_text, provide_state, reached, state_suffix
 
   character(len=*), parameter :: state_suffix = '.state.nml'
   character(len=*), parameter :: groups(2) = [character(len=7) :: 'initial', 'so_far']
@@ -85,6 +85,25 @@ contains
       call move_alloc(state, into%initial%state)
     end if
   end subroutine provide_state
+
+  !> What the state in a file has reached, with the option that goes on from it; empty if there is none.
+  function reached(path) result(text)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: text, content
+    type(namelist_t) :: list
+    type(error_t), allocatable :: error
+    integer :: i
+    text = ''
+    call read_text_file(path, largest_file, 'file of a state', content, error)
+    if (.not. allocated(error)) call read_namelist(content, path, list, error)
+    if (allocated(error)) return
+    do i = 1, size(list%entries)
+      associate (entry => list%entries(i))
+        if (entry%group == groups(2) .and. entry%key == 'time') text = ' at t = '//printable(entry%tokens(1)%text, 40)// &
+          ' s; --from '//printable(path, 200)//' would have gone on from there'
+      end associate
+    end do
+  end function reached
 
   !> The numbers of a file.
   subroutine read_state(list, state, error)

@@ -214,11 +214,11 @@ contains
       end do
       if (.not. list%sets) return
       distance = norm2(e)
-      if (self%phase == phase_contact) then
-        if (self%acting(phase_contact) == 0) call list%refuse(pre//'phase', 'the case has no contact at the '//pin)
+      if (self%phase == phase_contact .and. self%acting(phase_contact) > 0) then
         if (distance < clearance*(1 - 1e-6_dp)) call list%refuse(pre//'phase', 'is 2, but the '//pin//' is away from the wall')
         if (distance > 0) e = e*(1 + (self%bearing%clearance - clearance)/distance)
       else
+        if (self%phase /= self%phase_apart()) call list%refuse(pre//'phase', 'the '//pin//' of the case does not have this phase')
         self%phase = self%phase_apart()
         if (abs(clearance - self%bearing%clearance) > 0) e = e*(self%bearing%clearance/clearance)
       end if

@@ -42,6 +42,7 @@ contains
     character(len=*), intent(in) :: name, unit, says
     real(dp), intent(inout) :: values(:)
     type(state_number_t) :: new
+    character(len=60) :: counts
     integer :: i
     if (.not. self%sets) then
       new%name = name
@@ -61,12 +62,13 @@ contains
         if (size(number%values) == size(values)) then
           values = number%values
         else
-          call self%refuse(name, 'does not have as many values as the case has places for it')
+          write (counts, '(i0, a, i0)') size(number%values), ' values, but the case needs ', size(values)
+          call self%refuse(name, trim(counts))
         end if
         return
       end associate
     end do
-    call self%refuse(name, 'is missing: the case has this state')
+    call self%refuse(name, 'missing: the case needs it')
   end subroutine add_reals
 
   !> Declare a number.
