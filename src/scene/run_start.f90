@@ -14,8 +14,8 @@ module run_start
 contains
 
   !> Time and state at which a run of a case begins, in a scene that has just been built: those of the run from which it starts, or
-  !> those that the case gives. Error: the state from which it starts does not fit (status_case_file); without the recorder its totals
-  !> are not examined.
+  !> those that the case gives. Error: the state from which it starts does not fit (status_case_file); without the recorder its
+  !> totals are not examined.
   subroutine find_start(case, ideal_joint, scene, t, y, error, recorder)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint   !! the run of the ideal twin, which starts as the case says
