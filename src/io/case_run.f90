@@ -154,7 +154,7 @@ contains
     type(trace_files_t), target, intent(inout) :: files
     type(run_t) :: run
     type(error_t), allocatable :: state_error
-    real(dp) :: last   !! time of the last file of the state [s]
+    real(dp) :: now, last   !! of the last file of the state [s]
     call self%progress%start(self%case%name, self%shows_progress)
     call run%begin(self%case, self%is_twin, self%list, files, self%error)
     if (.not. allocated(self%error)) then
@@ -165,11 +165,12 @@ contains
         call self%advice%consider(run%t, run%expected_end(), clock() - self%began, run%method%statistics, self%progress)
         if (any(files%file%has_failed())) call run%stop()
         if (interrupted()) call run%stop()
-        if (run%is_over .or. clock() - last > between_states) then
-          call write_state(self, run, state_error)
-          last = clock()
-        end if
+        now = clock()
+        if (now - last < between_states) cycle
+        call write_state(self, run, state_error)
+        last = now
       end do
+      call write_state(self, run, state_error)
       call run%finish(self%report, self%error)
       if (allocated(state_error)) call move_alloc(state_error, self%error)
     end if

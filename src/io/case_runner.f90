@@ -116,15 +116,15 @@ contains
   !> The overrides of the command line, with those for which an option stands.
   function settings_of(options) result(settings)
     type(command_line_t), intent(in) :: options
-    character(len=:), allocatable :: settings(:), from, given(:)
+    character(len=:), allocatable :: settings(:)
+    integer, parameter :: longest_path = 4096
+    character(len=max(len(options%overrides), longest_path + len(options%from))) :: given(size(options%overrides) + 1)
     integer :: n
     n = size(options%overrides)
-    from = ''
-    if (options%from /= '') from = 'initial.from='//path_beside(absolute_path('.')//'/', options%from)
-    allocate (character(len=max(len(from), len(options%overrides))) :: given(n + merge(1, 0, from /= '')))
     given(:n) = options%overrides
-    given(n + 1:) = from
-    allocate (settings, source=with_preset(options%accuracy, given))
+    given(n + 1) = 'initial.from='//path_beside(absolute_path('.')//'/', options%from)
+    if (options%from /= '') n = n + 1
+    allocate (settings, source=with_preset(options%accuracy, given(:n)))
   end function settings_of
 
   !> Give the films of a case their tables, before the work is shared among processes. Error: the user interrupted.
