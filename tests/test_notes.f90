@@ -288,6 +288,7 @@ contains
     type(error_t), allocatable :: error
     integer :: i
     film%revolutions = 2
+    call film%take(0.0_dp, 9.0_dp)
     do i = 0, 79   ! ten points in each revolution, backwards; the first cycle has the smallest thickness
       call film%take(-(i + 0.5_dp)*turn/10, merge(1.0_dp, 8*0.5_dp**(i/20), i < 20) + abs(mod(i, 20) - 10))
       if (i < 60) call check%that(abs(film%change()) <= 0, 'no change before the end of the third cycle')

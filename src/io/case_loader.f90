@@ -7,6 +7,7 @@ module case_loader
   use value_reader, only: set_to_default, read_times
   use case_values, only: case_values_t
   use case_curves, only: provide_curves
+  use state_file, only: provide_state
   implicit none
   private
   public :: load_case, load_model
@@ -43,6 +44,7 @@ contains
     call visit_case(into, loader)
     call read_times(into%output%film_times, into%output%snapshot_times)
     call provide_curves(values, into)
+    call provide_state(values, into)
   end subroutine load_case
 
   !> Set the parameters of one model, which are the keys of one group.

@@ -57,11 +57,11 @@ module cycle_watch
 
 contains
 
-  !> Begin a run.
-  subroutine begin(self, scene, y, initial_energy)
+  !> Begin a run at (t, y).
+  subroutine begin(self, scene, t, y, initial_energy)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: y(:)
+    real(dp), intent(in) :: t, y(:)
     real(dp), intent(in) :: initial_energy   !! [J]
     self%statistics = cycle_statistics_t()
     self%present = cycle_t()
@@ -69,13 +69,13 @@ contains
     self%ended = 0
     self%passed = 0
     self%strobes = 0
-    self%t = 0
-    self%cycle_start = 0
+    self%t = t
+    self%cycle_start = t
     self%force_integral = 0
-    self%loss = 0
+    self%loss = scene%joint_loss(t, y)
     self%direction = sign(1.0_dp, scene%chain%drive%torque)
     if (abs(scene%start_speed) > 0) self%direction = sign(1.0_dp, scene%start_speed)
-    self%start_angle = scene%start_angle
+    self%start_angle = scene%crank_angle(t, y)
     self%initial_energy = initial_energy
     self%strobe_offset = two_pi - modulo(-self%direction*(self%strobe_angle - self%start_angle), two_pi)
     self%has_strobe = .false.

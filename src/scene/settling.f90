@@ -10,6 +10,7 @@ module settling
   type :: settling_t
     integer :: revolutions = 1       !! in a cycle
     integer, private :: cycles = 0   !! number of cycles that have ended
+    real(dp), private :: start = huge(1.0_dp)   !! crank travel at the first point [rad]
     real(dp), private :: least(0:2) = huge(1.0_dp)   !! in the present cycle, in the last one and in the one before that
   contains
     procedure :: take
@@ -23,7 +24,8 @@ contains
     class(settling_t), intent(inout) :: self
     real(dp), intent(in) :: crank_travel   !! crank angle turned through, signed [rad]
     real(dp), intent(in) :: thickness      !! [m]
-    if (abs(crank_travel) >= two_pi*self%revolutions*(self%cycles + 1)) then
+    if (self%start >= huge(self%start)) self%start = crank_travel
+    if (abs(crank_travel - self%start) >= two_pi*self%revolutions*(self%cycles + 1)) then
       self%cycles = self%cycles + 1
       self%least = [huge(1.0_dp), self%least(:1)]
     end if
