@@ -731,7 +731,7 @@ contains
       'x.nml:3: &initial crank_sped: unknown key; did you mean crank_speed? (allowed: crank_angle_deg, crank_speed, '// &
       'eccentricity, '// &
       'eccentricity_rate, crank_pin_eccentricity, crank_pin_eccentricity_rate, piston_offset, piston_offset_rate, piston_tilt, '// &
-      'piston_tilt_rate)'//n//'x.nml:4: &friction coefficient = abc: must be a number'//n// &
+      'piston_tilt_rate, from, goes_on)'//n//'x.nml:4: &friction coefficient = abc: must be a number'//n// &
       'x.nml: &friction v1: required with law = ''ambrosio'' (m/s)'//n// &
       'x.nml: --set joint.clearance=twenty: &joint clearance = twenty: must be a number (m)'//n// &
       'x.nml: &output digits = 99: must be >= 9 and <= 17')

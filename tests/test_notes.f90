@@ -305,8 +305,8 @@ contains
     report%figures%time = 0.2_dp
     report%figures%pin(piston_pin)%min_film_thickness = 3e-6_dp
     report%figures%pin(piston_pin)%film_change = -0.12_dp
-    call check%that(index(lines_for_user(case, report, 1.0_dp, 'x', ''), ', not settled: the film thickness still changes by 12 '// &
-      '% from cycle to cycle (--set run.until=periodic)') > 0, 'a film that has not settled')
+    call check%that(index(lines_for_user(case, report, 1.0_dp, 'x', ''), ', not settled: the film thickness still changes by '// &
+      '12 % from cycle to cycle (--set run.until=periodic)') > 0, 'a film that has not settled')
     report%figures%pin(piston_pin)%film_change = -0.04_dp
     call check%that(index(lines_for_user(case, report, 1.0_dp, 'x', ''), 'settled') == 0, 'a film that has settled')
     call read_changed('sim_I', '', case, error)
