@@ -84,7 +84,7 @@ contains
     call self%guide%prepare(scene)
     call self%elastic%prepare(scene, self%figures%elastic)
     allocate (self%y(scene%n), self%values(size(self%list%id)))
-    if (self%periods%is_on) call self%periods%begin(scene)
+    if (self%periods%is_on .or. allocated(self%cycles)) call self%periods%begin(scene)
     if (self%periods%keeps_one_more) self%first_sample = huge(self%first_sample)        ! no rows until the window begins
   end subroutine prepare
 
@@ -104,7 +104,7 @@ contains
     end if
     if (inside) call self%elastic%begin(scene, 0.0_dp, now)
     if (allocated(self%cycles)) then
-      call self%cycles%begin(scene, y, self%initial_energy)
+      call self%cycles%begin(scene, y, now, self%initial_energy)
       call self%guide%begin_revolution()
     end if
     do i = 1, self%n_pins
@@ -136,7 +136,7 @@ contains
     class is (scene_t)
       t_end = t_to
       call self%patience%limit_end(t_end)
-      if (self%periods%is_on) call watch_periods(self, method, problem, t_end)
+      if (self%periods%is_on .or. allocated(self%cycles)) call watch_periods(self, method, problem, t_end)
       if (.not. self%every_step .and. size(self%values) > 0) call put_samples(self, method, problem, t_end)
       if (allocated(self%films)) call self%films%take(method, problem, t_end, self%figures%evaluations)
       if (t_end < method%t) then
@@ -241,7 +241,7 @@ contains
         call look_at(self, scene, t_cycle, self%cycles%y, now, inside)
         if (inside) call search_peaks(self, method, scene, t_cycle, now)
         call self%guide%end_revolution(self%cycles)
-        call self%cycles%end_cycle(scene, t_cycle)
+        call self%cycles%end_cycle(scene, t_cycle, now)
         call self%guide%begin_revolution()
       end do
       call self%cycles%take_strobes(method, scene, t, y)
@@ -265,6 +265,7 @@ contains
     end do
     call self%guide%search(method, scene, t, now, self%figures)
     call self%elastic%search(method, scene, t, now, self%figures%elastic)
+    if (allocated(self%cycles)) call self%cycles%search_machine(method, scene, t, now)
   end subroutine search_peaks
 
   !> Check the number of evaluations in the present revolution. A revolution that takes longer than the first would have taken is
