@@ -542,11 +542,14 @@ contains
     if (k == 0) return
     associate (element => self%slots(k)%element)
       if (.not. allocated(element%film)) then
-        rates(of_contact) = -joint%normal_force*dot_product(joint%normal, joint%eccentricity_rate)
+        rates(of_contact) = -joint%normal_force*(joint%normal(1)*joint%eccentricity_rate(1) &
+          + joint%normal(2)*joint%eccentricity_rate(2))
         rates(of_friction) = joint%friction_force*joint%sliding_speed
       else if (element%rubs .or. allocated(element%walls)) then
         whole = joint
         whole%states(:element%n_states) = y(element%states%first:element%states%last)
+        call self%find_gap(y, whole)
+        call find_sliding(self%pin_radius, whole)
         rates = element%powers(whole)
       else
         rates(of_film) = joint%power

@@ -239,7 +239,7 @@ contains
         call self%cycles%find_end(method, scene, t, y, t_cycle, ends)
         if (.not. ends) exit
         call look_at(self, scene, t_cycle, self%cycles%y, now, inside)
-        if (inside) call search_peaks(self, method, scene, t_cycle, now)
+        if (inside) call search_peaks(self, method, scene, t_cycle, now, is_end=.false.)
         call self%guide%end_revolution(self%cycles)
         call self%cycles%end_cycle(scene, t_cycle, now)
         call self%guide%begin_revolution()
@@ -247,21 +247,22 @@ contains
       call self%cycles%take_strobes(method, scene, t, y)
     end if
     call look_at(self, scene, t, y, now, inside)
-    if (inside) call search_peaks(self, method, scene, t, now)
+    if (inside) call search_peaks(self, method, scene, t, now, is_end=.true.)
     call take_point(self, scene, t, y, now, inside, self%every_step .and. t >= self%first_sample)
   end subroutine take_end
 
   !> Search for peaks between the last point recorded (or the beginning of a step after an event) and t, where the scene is
   !> evaluated.
-  subroutine search_peaks(self, method, scene, t, now)
+  subroutine search_peaks(self, method, scene, t, now, is_end)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: is_end   !! t is the end of the step, or of its final part
     integer :: i
     do i = 1, self%n_pins
-      call self%pins(i)%search(method, scene, t, now, self%figures, self%cycles)
+      call self%pins(i)%search(method, scene, t, now, is_end, self%figures, self%cycles)
     end do
     call self%guide%search(method, scene, t, now, self%figures)
     call self%elastic%search(method, scene, t, now, self%figures%elastic)

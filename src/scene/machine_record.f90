@@ -45,11 +45,15 @@ contains
     type(evaluation_t), intent(in) :: now
     type(cycle_t), intent(inout) :: cycle   !! extremes of the present revolution
     type(machine_record_t) :: next
-    real(dp) :: y(scene%n)
     call next%begin(scene, t, now)
     if (allocated(scene%gas)) call search_one(of_pressure, cycle%max_pressure, cycle%max_pressure_angle)
-    call search_one(of_speed, cycle%max_speed)
-    call search_one(of_slowness, cycle%max_slowness)
+    if (scene%crank_moves) then
+      call search_one(of_speed, cycle%max_speed)
+      call search_one(of_slowness, cycle%max_slowness)
+    else
+      cycle%max_speed = max(cycle%max_speed, next%speed)
+      cycle%max_slowness = max(cycle%max_slowness, -next%speed)
+    end if
     self%t = next%t
     self%angle = next%angle
     self%speed = next%speed
@@ -64,24 +68,37 @@ contains
       real(dp), intent(inout), optional :: angle   !! crank angle there [rad]
       type(peak_search_t) :: peak
       type(sample_t) :: left, right
-      real(dp) :: time
-      logical :: is_done
       left = sample_at(self, scene, quantity)
       right = sample_at(next, scene, quantity)
       call peak%begin(left, right)
       if (left%slope > 0 .and. right%slope < 0) then
-        is_done = .not. may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, largest)
-        do while (.not. is_done)
-          call peak%next_time(time, is_done)
-          if (.not. is_done) call peak%take(time, value_at(quantity, time))
-        end do
+        if (may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, largest)) call climb(quantity, peak)
       end if
       if (.not. peak%value(1) > largest) return
       largest = peak%value(1)
-      if (.not. present(angle)) return
-      call method%interpolate(peak%t(1), y)
-      angle = scene%crank_angle(peak%t(1), y)
+      if (present(angle)) angle = angle_at(peak%t(1))
     end subroutine search_one
+
+    !> Crank angle at a time inside the step [rad].
+    real(dp) function angle_at(time)
+      real(dp), intent(in) :: time
+      real(dp) :: y(scene%n)
+      call method%interpolate(time, y)
+      angle_at = scene%crank_angle(time, y)
+    end function angle_at
+
+    !> Search the peak of a quantity that rises and then falls.
+    subroutine climb(quantity, peak)
+      integer, intent(in) :: quantity
+      type(peak_search_t), intent(inout) :: peak
+      real(dp) :: time
+      logical :: is_done
+      do
+        call peak%next_time(time, is_done)
+        if (is_done) exit
+        call peak%take(time, value_at(quantity, time))
+      end do
+    end subroutine climb
 
     !> The value of a quantity at a time inside the step.
     real(dp) function value_at(quantity, time) result(value)
@@ -89,6 +106,7 @@ contains
       real(dp), intent(in) :: time
       type(machine_record_t) :: point
       type(sample_t) :: sample
+      real(dp) :: y(scene%n)
       call method%interpolate(time, y)
       point%angle = scene%crank_angle(time, y)
       point%speed = scene%crank_speed(time, y)

@@ -107,10 +107,10 @@ contains
       target = self%start_angle + self%direction*two_pi*(self%made + 1)
       if (t_to < method%t) then
         call method%interpolate(t_to, self%y)
+        if (self%direction*(scene%crank_angle(t_to, self%y) - target) < 0) exit
       else
-        self%y = method%y
+        if (self%direction*(scene%crank_angle(t_to, method%y) - target) < 0) exit
       end if
-      if (self%direction*(scene%crank_angle(t_to, self%y) - target) < 0) exit
       call find_passage(method, scene, target, self%direction, method%t_old, t_to, 0.0_dp, self%t, self%y)
       call close_revolution(self)
     end do

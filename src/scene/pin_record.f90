@@ -63,12 +63,13 @@ contains
 
   !> Search the peaks between the last point recorded (or the beginning of a step after an event) and t, where the scene is
   !> evaluated.
-  subroutine search(self, method, scene, t, now, figures, cycles)
+  subroutine search(self, method, scene, t, now, is_end, figures, cycles)
     class(pin_record_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: is_end   !! t is the end of the step, or of its final part, to which wear is counted at once
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
     real(dp) :: known(n_peaks), largest(n_peaks)
@@ -91,7 +92,7 @@ contains
     call put_values(self, touches, largest, figures)
     if (present(cycles)) call cycles%take_peaks(self%pin, touches, largest, angle_at(self%thinnest_time))
     if (self%reports_film) call sum_film(self, method, scene, t, now, figures, cycles)
-    if (.not. allocated(self%wear)) return
+    if (.not. (allocated(self%wear) .and. is_end)) return
     before = self%wear%evaluations
     call self%wear%follow(method, scene, t)
     figures%evaluations = figures%evaluations + (self%wear%evaluations - before)
