@@ -6,9 +6,10 @@ module clearance_joint
   use gudgeon_kinds, only: dp
   use gudgeon_bearing, only: bearing_t, crossing_speed
   use state_layout, only: layout_t, coordinates_t, slice_t
+  use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, angular_acceleration, body_crank, body_big_end, body_small_end, body_piston, &
     n_bodies
-  use joint_places, only: place_t, places, piston_pin
+  use joint_places, only: place_t, places, piston_pin, name_prefix
   use chain_bodies, only: bodies_t
   use ideal_chain, only: ideal_rod
   use chain_loads, only: loads_t, bearing_moment
@@ -75,6 +76,7 @@ module clearance_joint
     procedure :: claim
     procedure :: own_speed
     procedure :: put_start
+    procedure :: declare
     procedure :: put_own_rates
     procedure :: reset_states
     procedure :: work_of_friction
@@ -184,6 +186,50 @@ contains
       end associate
     end do
   end subroutine put_start
+
+  !> Declare the joint's state, which is in part in the state vector. A position in a bearing of another clearance keeps its
+  !> penetration in contact, else its ratio to the clearance.
+  subroutine declare(self, list, y)
+    class(clearance_joint_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    real(dp), intent(inout) :: y(:)
+    character(len=:), allocatable :: pre, pin
+    real(dp) :: clearance, distance, outward
+    integer :: k
+    pre = name_prefix(self%place)
+    pin = trim(self%site%title)
+    clearance = self%bearing%clearance
+    associate (e => y(self%at%position:self%at%position + 1), rate => y(self%at%rate:self%at%rate + 1))
+      call list%add(pre//'phase', self%phase, pin//': 0 free flight, 1 film, 2 contact')
+      call list%add(pre//'clearance', clearance, 'm', 'clearance of this position')
+      call list%add(pre//'eccentricity', e, 'm', 'centre of the '//pin//' from the centre of its bearing (x, y)')
+      call list%add(pre//'eccentricity_rate', rate, 'm/s', 'its rate')
+      call list%add(pre//'impact_speed', self%impact_speed, 'm/s', 'speed at which the present or last contact began')
+      do k = 1, self%n_elements
+        associate (element => self%slots(k)%element)
+          if (element%n_states > 0) call list%add(pre//trim(element%state_name), &
+            y(element%states%first:element%states%last), trim(element%state_unit), '')
+          if (element%may_stick) call list%add(pre//'sliding', element%sliding, 'sense of sliding; 0 while the surfaces stick')
+          list%of_totals = .true.
+          if (element%integrates_friction) &
+            call list%add(pre//'friction_work', y(element%friction_work%first), 'J', 'work of friction on the bodies')
+          list%of_totals = .false.
+        end associate
+      end do
+      if (.not. list%sets) return
+      distance = norm2(e)
+      if (self%phase == phase_contact .and. self%acting(phase_contact) > 0) then
+        if (distance < clearance*(1 - 1e-6_dp)) call list%refuse(pre//'phase', 'is 2, but the '//pin//' is away from the wall')
+        if (distance > 0) e = e*(1 + (self%bearing%clearance - clearance)/distance)
+      else
+        if (self%phase /= self%phase_apart()) call list%refuse(pre//'phase', 'the '//pin//' of the case does not have this phase')
+        self%phase = self%phase_apart()
+        if (abs(clearance - self%bearing%clearance) > 0) e = e*(self%bearing%clearance/clearance)
+      end if
+      outward = dot_product(e, rate)
+      call self%begin_at(norm2(e), outward)
+    end associate
+  end subroutine declare
 
   !> Rates of the states of the elements, and of the work of friction. They are 0 while an element does not act, and without
   !> contact.

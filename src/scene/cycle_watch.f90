@@ -65,29 +65,32 @@ module cycle_watch
 
 contains
 
-  !> Begin a run at y, where the scene has been evaluated.
-  subroutine begin(self, scene, y, now, initial_energy)
+  !> Begin a run at (t, y), where the scene has been evaluated if that is inside the model.
+  subroutine begin(self, scene, t, y, now, inside, initial_energy)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: y(:)
+    real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: inside
     real(dp), intent(in) :: initial_energy   !! [J]
-    call self%machine%begin(scene, 0.0_dp, now)
+    if (inside) call self%machine%begin(scene, t, now)
     self%statistics = cycle_statistics_t()
     self%present = cycle_t()
     self%uncounted = self%settle
     self%ended = 0
     self%passed = 0
     self%strobes = 0
-    self%t = 0
-    self%cycle_start = 0
+    self%t = t
+    self%cycle_start = t
     self%force_integral = 0
-    self%loss = 0
+    self%loss = scene%joint_loss(t, y)
     self%works = 0
-    self%energy = initial_energy
+    if (allocated(scene%parts)) self%works(:size(scene%parts)) = scene%works(t, y)
+    self%energy = 0
+    if (inside) self%energy = scene%chain%energy(now%motion)
     self%direction = sign(1.0_dp, scene%chain%drive%torque)
     if (abs(scene%start_speed) > 0) self%direction = sign(1.0_dp, scene%start_speed)
-    self%start_angle = scene%start_angle
+    self%start_angle = scene%crank_angle(t, y)
     self%initial_energy = initial_energy
     self%strobe_offset = two_pi - modulo(-self%direction*(self%strobe_angle - self%start_angle), two_pi)
     self%has_strobe = .false.

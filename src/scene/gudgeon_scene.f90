@@ -3,6 +3,7 @@ module gudgeon_scene
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, max_events
   use state_layout, only: layout_t, coordinates_t, slice_t
+  use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
   use joint_places, only: places, n_places, in_order
   use chain_loads, only: loads_t, force_size
@@ -101,6 +102,8 @@ module gudgeon_scene
     procedure :: jacobian
     procedure :: initial_state
     procedure :: prepare_start
+    procedure :: declare
+    procedure :: take_up
     procedure :: events => all_events
     procedure :: handle_event
     procedure :: reported_event
@@ -178,6 +181,19 @@ module gudgeon_scene
     module subroutine prepare_start(self)
       class(scene_t), intent(inout) :: self
     end subroutine prepare_start
+
+    !> Declare the state at (t, y) to a list that records it, or set it from a list; then call `take_up`.
+    module subroutine declare(self, list, t, y)
+      class(scene_t), intent(inout) :: self
+      type(run_state_t), intent(inout) :: list
+      real(dp), intent(inout) :: t, y(:)
+    end subroutine declare
+
+    !> Find the part of the discrete state that follows from a state that has been set.
+    module subroutine take_up(self, t, y)
+      class(scene_t), intent(inout) :: self
+      real(dp), intent(in) :: t, y(:)
+    end subroutine take_up
 
     !> `find_accelerations` of a scene that is not plain: with elastic members, a guide that is not ideal or a drive that varies.
     pure module subroutine find_general_accelerations(self, joints, t, y, now, inside)

@@ -2,6 +2,7 @@
 module gudgeon_simulation
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_integration
+  use run_state, only: run_state_t
   use case_definition, only: case_t
   use ode_method, only: ode_method_t, step_statistics_t, limit_stability, left_domain
   use gudgeon_methods, only: new_method
@@ -18,6 +19,7 @@ module gudgeon_simulation
   use period_watch, only: period_watch_t
   use lyapunov, only: exponent_t, measurement_t
   use gudgeon_recorder, only: recorder_t
+  use run_start, only: find_start
   use run_figures, only: run_figures_t
   use film_snapshots, only: film_field_t
   use wear_record, only: wear_profile_t
@@ -62,6 +64,7 @@ module gudgeon_simulation
     procedure :: begin
     procedure :: advance
     procedure :: look
+    procedure :: state
     procedure :: stop
     procedure :: expected_end
     procedure :: finish
@@ -98,6 +101,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(cycle_watch_t), allocatable, intent(inout), optional :: cycles
     real(dp), allocatable :: y(:)
+    real(dp) :: t
 
     self%case = case
     self%ideal_joint = ideal_joint
@@ -133,14 +137,16 @@ contains
         call scene%measure_works()
       end if
       self%method%settings = settings_for(case, scene)
-      y = scene%initial_state()
       call recorder%prepare(scene)
+      call find_start(case, ideal_joint, scene, t, y, error, recorder)
+      if (allocated(error)) return
       if (case%output%film_times /= '' .and. .not. ideal_joint) then
         allocate (recorder%films)
-        call recorder%films%prepare(case%output%snapshot_times, scene)
+        call recorder%films%prepare(pack(case%output%snapshot_times, case%output%snapshot_times >= t), scene)
       end if
-      call recorder%begin(scene, y)
-      call self%integration%begin(scene, self%method, 0.0_dp, y, recorder%end_time, case%integrator%max_steps)
+      call recorder%begin(scene, t, y)
+      self%t = t
+      call self%integration%begin(scene, self%method, t, y, recorder%end_time, case%integrator%max_steps)
     end associate
   end subroutine begin
 
@@ -182,6 +188,19 @@ contains
     end if
     if (inside) call self%recorder%row(self%scene, self%t, y, now, values)
   end subroutine look
+
+  !> The state that the run has reached, from which another one may start. The run must not pause inside a step.
+  subroutine state(self, list)
+    class(run_t), intent(inout) :: self
+    type(run_state_t), intent(out) :: list
+    real(dp) :: t, y(self%scene%n)
+    t = self%integration%t
+    y = self%integration%y
+    if (.not. self%has_ended) y = self%integration%state(self%method)
+    allocate (list%numbers(0))
+    call self%scene%declare(list, t, y)
+    call self%recorder%declare(list, self%scene)
+  end subroutine state
 
   !> End the run here, as interrupted.
   subroutine stop(self)
@@ -339,8 +358,8 @@ contains
     if (.not. allocated(error)) call new_method('auto', method, error)
     if (allocated(error)) return
     method%settings = settings_for(case, scene)
-    allocate (y(scene%n), source=scene%initial_state())
-    t = 0
+    call find_start(case, .false., scene, t, y, error)
+    if (allocated(error)) return
     call integrate(scene, method, t, y, time, max_steps, observer, status)
     needed = method%totals()
     if (status == integration_done .or. status == integration_stopped) evaluations = needed%evaluations

@@ -41,6 +41,7 @@ module period_watch
     real(dp), allocatable :: y(:)          !! state at that time
     integer, private :: forcing = 1        !! period of the excitation [revolutions]
     integer, private :: made = 0           !! number of complete revolutions
+    integer, private :: earlier = 0        !! number of revolutions before the beginning
     real(dp), private :: start_angle = 0, direction = 1
     integer, allocatable, private :: at(:)       !! indices of the components that are compared
     real(dp), allocatable, private :: smallest_range(:)
@@ -58,10 +59,11 @@ module period_watch
 
 contains
 
-  !> Prepare for a scene that is ready to run.
-  subroutine begin(self, scene)
+  !> Begin with a scene at (t, y). Revolutions that it has made before count as a part of the largest number.
+  subroutine begin(self, scene, t, y)
     class(period_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
     real(dp) :: scales(scene%n)
     logical :: growing(scene%n)
     integer :: i, n
@@ -71,7 +73,8 @@ contains
     self%smallest_range = least_range*scales(self%at)
     self%turning = merge(1.0_dp, 0.0_dp, growing(self%at))
     if (allocated(scene%gas)) self%forcing = scene%gas%revolutions
-    self%start_angle = scene%start_angle
+    self%start_angle = scene%crank_angle(t, y)
+    self%earlier = int(abs(self%start_angle - scene%start_angle)/two_pi)
     self%direction = sign(1.0_dp, scene%chain%drive%torque)
     if (abs(scene%start_speed) > 0) self%direction = sign(1.0_dp, scene%start_speed)
     allocate (self%states(size(self%at), 0:depth - 1), source=0.0_dp)
@@ -136,7 +139,7 @@ contains
     call look_for_period(self)
     if (.not. self%keeps_one_more) then
       self%has_ended = self%period > 0
-    else if (self%period > 0 .or. self%made >= self%most_revolutions - self%longest) then
+    else if (self%period > 0 .or. self%made + self%earlier >= self%most_revolutions - self%longest) then
       self%window_after = self%made
       self%window_start = self%t
     end if

@@ -2,6 +2,8 @@
 module pin_record
   use gudgeon_kinds, only: dp
   use ode_method, only: ode_method_t
+  use run_state, only: run_state_t
+  use joint_places, only: name_prefix
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins
   use joint_events, only: may_touch
   use inside_step, only: look_inside
@@ -24,6 +26,8 @@ module pin_record
     type(wear_record_t), allocatable :: wear   !! not allocated: wear is not counted
   contains
     procedure, non_overridable :: prepare
+    procedure, non_overridable :: declare
+    procedure, non_overridable :: count_from
     procedure, non_overridable :: search
     procedure, non_overridable :: take_values
     procedure, non_overridable :: take_contact
@@ -52,6 +56,26 @@ contains
       self%deepest = joint%slots(joint%acting(phase_contact))%element%deepest
     end associate
   end subroutine prepare
+
+  !> Declare the totals of the pin, and with them the worn shape of its bore.
+  subroutine declare(self, list, figures, scene)
+    class(pin_record_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    type(run_figures_t), intent(inout) :: figures
+    type(scene_t), intent(inout) :: scene
+    call figures%pin(self%pin)%declare(name_prefix(self%pin), list)
+    if (self%joint == 0) return
+    call self%contact%declare(list)
+    if (allocated(self%wear)) call self%wear%declare(name_prefix(self%pin), list, scene%joints(self%joint))
+  end subroutine declare
+
+  !> Count what is integrated from a time [s].
+  pure subroutine count_from(self, t)
+    class(pin_record_t), intent(inout) :: self
+    real(dp), intent(in) :: t
+    self%film_time = t
+    if (allocated(self%wear)) self%wear%time = t
+  end subroutine count_from
 
   !> Whether the joint at the pin is in contact.
   pure logical function is_touching(self, scene)
