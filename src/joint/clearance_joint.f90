@@ -574,8 +574,8 @@ contains
     end do
   end function shares_load
 
-  !> The same as `powers`, from what the right-hand side computes: loads that the present phase does not have need not be set, unless
-  !> the joint shares its load.
+  !> The same as `powers`, from what the right-hand side computes: loads that the present phase does not have need not be set,
+  !> unless the joint shares its load.
   pure function work_rates(self, joint, y) result(rates)
     class(clearance_joint_t), intent(in) :: self
     type(joint_evaluation_t), intent(in) :: joint

@@ -154,6 +154,7 @@ contains
     integer :: k
     change = -1
     if (self%made < 2*p) return
+    change = 0
     range = self%smallest_range
     do k = self%made - p + 1, self%made
       range = max(range, self%high(:, mod(k, depth)) - self%low(:, mod(k, depth)))

@@ -53,8 +53,8 @@ contains
     is_constant_torque = scene%chain%drive%free_crank .and. .not. (allocated(scene%chain%varying) .or. scene%chain%has_crankshaft())
   end function is_constant_torque
 
-  !> Claim the quadrature of a part. Where the state has nothing but quadratures it takes part in the error control, since otherwise the
-  !> steps would be too long for it.
+  !> Claim the quadrature of a part. Where the state has nothing but quadratures it takes part in the error control, since otherwise
+  !> the steps would be too long for it.
   subroutine claim_quadrature(scene, part)
     type(scene_t), intent(inout) :: scene
     type(work_part_t), intent(inout) :: part
