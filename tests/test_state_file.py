@@ -30,6 +30,7 @@ HALVES = {
     "friction/coulomb_static": ("revolutions=0.6", 0.5, 1e-4),
     "contact/sliding_coulomb": ("", 0.2, 1e-5),
     "sim_I": ("revolutions=2", 0.3, 1e-5),
+    "sim_III": ("crank_revolutions=3", 0.6, 1e-5),
     "sim_III_oscillating": ("revolutions=1", 0.47, 1e-4),
     "sim_VI_oscillating": ("revolutions=1", 0.47, 1e-4),
     "film/elastic": ("revolutions=1", 0.47, 1e-5),

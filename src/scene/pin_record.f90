@@ -63,9 +63,11 @@ contains
     type(run_state_t), intent(inout) :: list
     type(run_figures_t), intent(inout) :: figures
     type(scene_t), intent(inout) :: scene
-    call figures%pin(self%pin)%declare(name_prefix(self%pin), list)
-    if (self%joint == 0) return
-    call self%contact%declare(list)
+    logical :: touches
+    touches = .false.
+    if (self%joint > 0) touches = may_touch(scene%joints(self%joint))
+    call figures%pin(self%pin)%declare(name_prefix(self%pin), list, self%joint > 0, touches, self%reports_film)
+    if (touches) call self%contact%declare(list)
     if (allocated(self%wear)) call self%wear%declare(name_prefix(self%pin), list, scene%joints(self%joint))
   end subroutine declare
 
