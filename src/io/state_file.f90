@@ -9,7 +9,7 @@ module state_file
   use case_values, only: case_values_t
   use gudgeon_posix, only: absolute_path
   use namelist_reader, only: namelist_t, read_namelist
-  use number_text, only: real_text
+  use number_text, only: exact_text
   use text_file, only: read_text_file
   use text_tools, only: printable, integer_text, path_beside
   implicit none
@@ -43,7 +43,7 @@ contains
             if (number%is_whole) then
               line = line//' '//integer_text(nint(number%values(k)))
             else
-              line = line//' '//real_text(number%values(k), 17)
+              line = line//' '//exact_text(number%values(k))
             end if
           end do
           line = line//'   ! '//number%says

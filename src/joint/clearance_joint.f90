@@ -16,7 +16,8 @@ module clearance_joint
   use archard_wear, only: wear_law_t
   use contact_arc, only: contact_arc_t
   use joint_evaluation, only: joint_evaluation_t, joint_rates_t, most_element_states, find_polar, find_sliding
-  use load_element, only: load_element_t, n_motions, n_slopes, n_kinds
+  use load_element, only: load_element_t, n_motions, n_slopes, n_kinds, of_contact, of_friction, &
+    of_film
   use film_figures, only: film_figures_t, film_figures_of
   implicit none
   private
@@ -98,6 +99,9 @@ module clearance_joint
     procedure :: has_worn_bore
     procedure :: film_figures => figures_of_joint
     procedure :: powers
+    procedure :: has_kind
+    procedure :: shares_load
+    procedure :: work_rates
     procedure :: rubs
     procedure :: sliding_load
   end type clearance_joint_t
@@ -535,6 +539,69 @@ contains
     powers = 0
     if (self%acting(self%phase) > 0) powers = self%slots(self%acting(self%phase))%element%powers(joint)
   end function powers
+
+  !> Whether the joint has this kind of load in any of its phases.
+  pure logical function has_kind(self, kind)
+    class(clearance_joint_t), intent(in) :: self
+    integer, intent(in) :: kind
+    integer :: k
+    has_kind = .false.
+    do k = 1, self%n_elements
+      associate (element => self%slots(k)%element)
+        select case (kind)
+        case (of_film)
+          has_kind = has_kind .or. allocated(element%film)
+        case (of_contact)
+          has_kind = has_kind .or. element%rubs .and. element%normal_kind == kind .or. allocated(element%walls)
+        case (of_friction)
+          has_kind = has_kind .or. element%rubs .and. element%friction_kind == kind .and. element%has_friction
+        case default
+          has_kind = has_kind .or. element%rubs .and. element%normal_kind == kind
+        end select
+      end associate
+    end do
+  end function has_kind
+
+  !> Whether a film and another kind of load act at the same time.
+  pure logical function shares_load(self)
+    class(clearance_joint_t), intent(in) :: self
+    integer :: k
+    shares_load = .false.
+    do k = 1, self%n_elements
+      associate (element => self%slots(k)%element)
+        shares_load = shares_load .or. allocated(element%film) .and. (element%rubs .or. allocated(element%walls))
+      end associate
+    end do
+  end function shares_load
+
+  !> The same as `powers`, from what the right-hand side computes: loads that the present phase does not have need not be set,
+  !> unless the joint shares its load.
+  pure function work_rates(self, joint, y) result(rates)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    real(dp), intent(in) :: y(*)   !! the whole state vector
+    real(dp) :: rates(n_kinds)
+    type(joint_evaluation_t) :: whole
+    integer :: k
+    rates = 0
+    k = self%acting(self%phase)
+    if (k == 0) return
+    associate (element => self%slots(k)%element)
+      if (.not. allocated(element%film)) then
+        rates(of_contact) = -joint%normal_force*(joint%normal(1)*joint%eccentricity_rate(1) &
+          + joint%normal(2)*joint%eccentricity_rate(2))
+        rates(of_friction) = joint%friction_force*joint%sliding_speed
+      else if (element%rubs .or. allocated(element%walls)) then
+        whole = joint
+        whole%states(:element%n_states) = y(element%states%first:element%states%last)
+        call self%find_gap(y, whole)
+        call find_sliding(self%pin_radius, whole)
+        rates = element%powers(whole)
+      else
+        rates(of_film) = joint%power
+      end if
+    end associate
+  end function work_rates
 
   !> Whether surfaces may touch in the present phase.
   pure logical function rubs(self)

@@ -46,6 +46,7 @@ contains
     if (.not. allocated(wanted%friction)) return
     allocate (self%friction, source=wanted%friction)
     call self%friction%prepare()
+    self%has_friction = .true.
     self%may_stick = self%friction%set_valued
     self%holding_ratio = self%friction%holding_ratio()
     self%static_speed = self%friction%static_speed()

@@ -73,6 +73,7 @@ module case_definition
     real(dp), allocatable :: snapshot_times(:)   !! the same as numbers, increasing [s]; not allocated if there are none
     integer :: digits = 0                      !! significant digits of the numbers in traces
     logical :: every_step = .false., ideal_twin = .false.
+    logical :: answers = .true.
     character(len=:), allocatable :: window    !! 'all' or 'last_period'
   contains
     procedure :: parameters => output_parameters
@@ -306,6 +307,7 @@ contains
       'times [s] of pressure fields in NAME.film.csv: t1, t2, ... or from:to:count', '')
     call list%add('every_step', self%every_step, &
       'write rows at the steps of the integrator instead of those at equal times', '.false.')
+    call list%add('answers', self%answers, 'extremes, losses and work of the last whole cycle in the summary', '.true.')
     call list%add('ideal_twin', self%ideal_twin, 'also run the same mechanism with ideal joints and rigid bodies', '.false.')
     call list%word('window', self%window, 'all, last_period', 'all', &
       'all: the whole run; last_period: only the last period of a run until = ''periodic''')

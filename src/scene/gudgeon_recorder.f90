@@ -126,10 +126,10 @@ contains
       self%initial_energy = scene%chain%energy(now%motion)
       self%start_angle = now%motion%crank_angle
     end if
-    if (self%periods%is_on) call self%periods%begin(scene, t, y)
+    if (self%periods%is_on .or. allocated(self%cycles)) call self%periods%begin(scene, t, y)
     if (inside) call self%elastic%begin(scene, t, now)
     if (allocated(self%cycles)) then
-      call self%cycles%begin(scene, t, y, self%initial_energy)
+      call self%cycles%begin(scene, t, y, now, inside, self%initial_energy)
       call self%guide%begin_revolution()
     end if
     do i = 1, self%n_pins
@@ -180,7 +180,7 @@ contains
     class is (scene_t)
       t_end = t_to
       call self%patience%limit_end(t_end)
-      if (self%periods%is_on) call watch_periods(self, method, problem, t_end)
+      if (self%periods%is_on .or. allocated(self%cycles)) call watch_periods(self, method, problem, t_end)
       if (.not. self%every_step .and. size(self%values) > 0) call put_samples(self, method, problem, t_end)
       if (allocated(self%films)) call self%films%take(method, problem, t_end, self%figures%evaluations)
       if (t_end < method%t) then
@@ -283,32 +283,34 @@ contains
         call self%cycles%find_end(method, scene, t, y, t_cycle, ends)
         if (.not. ends) exit
         call look_at(self, scene, t_cycle, self%cycles%y, now, inside)
-        if (inside) call search_peaks(self, method, scene, t_cycle, now)
+        if (inside) call search_peaks(self, method, scene, t_cycle, now, is_end=.false.)
         call self%guide%end_revolution(self%cycles)
-        call self%cycles%end_cycle(scene, t_cycle)
+        call self%cycles%end_cycle(scene, t_cycle, now)
         call self%guide%begin_revolution()
       end do
       call self%cycles%take_strobes(method, scene, t, y)
     end if
     call look_at(self, scene, t, y, now, inside)
-    if (inside) call search_peaks(self, method, scene, t, now)
+    if (inside) call search_peaks(self, method, scene, t, now, is_end=.true.)
     call take_point(self, scene, t, y, now, inside, self%every_step .and. t >= self%first_sample)
   end subroutine take_end
 
   !> Search for peaks between the last point recorded (or the beginning of a step after an event) and t, where the scene is
   !> evaluated.
-  subroutine search_peaks(self, method, scene, t, now)
+  subroutine search_peaks(self, method, scene, t, now, is_end)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: is_end   !! t is the end of the step, or of its final part
     integer :: i
     do i = 1, self%n_pins
-      call self%pins(i)%search(method, scene, t, now, self%figures, self%cycles)
+      call self%pins(i)%search(method, scene, t, now, is_end, self%figures, self%cycles)
     end do
     call self%guide%search(method, scene, t, now, self%figures)
     call self%elastic%search(method, scene, t, now, self%figures%elastic)
+    if (allocated(self%cycles)) call self%cycles%search_machine(method, scene, t, now)
   end subroutine search_peaks
 
   !> Check the number of evaluations in the present revolution. A revolution that takes longer than the first would have taken is

@@ -15,6 +15,7 @@ module gudgeon_simulation
   use crank_turns, only: all_made, turned_back
   use gudgeon_columns, only: column_list_t
   use cycle_watch, only: cycle_watch_t
+  use cycle_answers, only: answer_t, find_answers
   use period_watch, only: period_watch_t
   use lyapunov, only: exponent_t, measurement_t
   use gudgeon_recorder, only: recorder_t
@@ -39,6 +40,7 @@ module gudgeon_simulation
     logical :: can_go_on = .false.  !! the run was stopped from outside or by a limit
     logical :: energy_is_poor = .false.          !! the run is done, but the user must be told of its energy residual
     type(period_watch_t) :: periods              !! search for a periodic motion that ends the run
+    type(answer_t), allocatable :: answers(:)    !! of the last whole cycle, if the case asks for them
     type(exponent_t) :: exponent                 !! Lyapunov exponent, if it is requested
   end type run_report_t
 
@@ -129,6 +131,9 @@ contains
       if (self%has_cycles) then
         call scene%measure_joint()
         call move_alloc(cycles, recorder%cycles)
+      else if (case%output%answers .and. .not. ideal_joint) then
+        allocate (recorder%cycles)
+        call scene%measure_works()
       end if
       self%method%settings = settings_for(case, scene)
       call recorder%prepare(scene)
@@ -263,6 +268,8 @@ contains
     if (allocated(self%method%time_with)) report%time_with = self%method%time_with
     report%figures = self%recorder%figures
     report%wear = self%recorder%wear(self%scene)
+    allocate (report%answers(0))
+    if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, self%recorder%periods)
     if (allocated(self%recorder%films)) report%films = self%recorder%films%fields(self%scene)
     associate (case => self%case, scene => self%scene, t => self%integration%t, y => self%integration%y)
       report%status = 'done'

@@ -60,7 +60,7 @@ contains
     type(run_figures_t), intent(inout) :: figures
     integer :: i
     do i = 1, merge(n_corners, 0, self%is_there)
-      call figures%corner(i)%declare(corner_names(i)//'_', list)
+      call figures%corner(i)%declare(corner_names(i)//'_', list, has_gap=.false., has_contacts=.true., has_film=.false.)
       call self%contact(i)%declare(list)
     end do
   end subroutine declare

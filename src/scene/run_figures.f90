@@ -69,19 +69,24 @@ contains
     call list%add('row_energy_residual', self%row_energy_residual, 'J', 'largest energy residual of a row')
   end subroutine declare
 
-  !> Declare the totals of a pin or corner, with a prefix.
-  subroutine declare_pin(self, pre, list)
+  !> Declare the totals of a pin or corner, with a prefix: those of its force, its gap, its contacts and its film, as far as it has
+  !> them.
+  subroutine declare_pin(self, pre, list, has_gap, has_contacts, has_film)
     class(pin_figures_t), intent(inout) :: self
     character(len=*), intent(in) :: pre
     type(run_state_t), intent(inout) :: list
-    call list%add(pre//'contacts', self%contacts, 'contacts that began')
-    call list%add(pre//'impacts_beyond_validity', self%impacts_beyond_validity, 'impacts too fast for the contact law')
-    call list%add(pre//'contacts_beyond_validity', self%contacts_beyond_validity, 'contacts too deep for the contact geometry')
-    call list%add(pre//'contact_time', self%contact_time, 's', 'time in contact')
-    call list%add(pre//'max_penetration', self%max_penetration, 'm', 'largest penetration')
-    call list%add(pre//'max_entry_penetration', self%max_entry_penetration, 'm', 'largest penetration at a beginning of contact')
+    logical, intent(in) :: has_gap, has_contacts, has_film
     call list%add(pre//'max_force', self%max_force, 'N', 'largest force')
-    call list%add(pre//'min_film_thickness', self%min_film_thickness, 'm', 'least film thickness')
+    if (has_gap) call list%add(pre//'min_film_thickness', self%min_film_thickness, 'm', 'least film thickness')
+    if (has_contacts) then
+      call list%add(pre//'contacts', self%contacts, 'contacts that began')
+      call list%add(pre//'impacts_beyond_validity', self%impacts_beyond_validity, 'impacts too fast for the contact law')
+      call list%add(pre//'contacts_beyond_validity', self%contacts_beyond_validity, 'contacts too deep for the contact geometry')
+      call list%add(pre//'contact_time', self%contact_time, 's', 'time in contact')
+      call list%add(pre//'max_penetration', self%max_penetration, 'm', 'largest penetration')
+      call list%add(pre//'max_entry_penetration', self%max_entry_penetration, 'm', 'largest penetration at a beginning of contact')
+    end if
+    if (.not. has_film) return
     call list%add(pre//'film_energy_lost', self%film_energy_lost, 'J', 'energy that the film has taken from the bodies')
     call list%add(pre//'neglected_shear_loss', self%neglected_shear_loss, 'J', 'energy that neglected shear would have taken')
     call list%add(pre//'film_volume', self%film_volume, 'm3', 'oil that has left the film')
