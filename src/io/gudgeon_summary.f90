@@ -5,6 +5,7 @@ module gudgeon_summary
   use gudgeon_constants, only: two_pi
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
   use gudgeon_simulation, only: run_report_t
+  use cycle_answers, only: answer_t
   use run_figures, only: pin_figures_t, elastic_figures_t
   use piston_guide, only: n_corners, corner_names
   use period_watch, only: period_watch_t
@@ -106,17 +107,7 @@ contains
       end if
       if (case%is_elastic()) call add_elastic(f%elastic)
     end associate
-    do i = 1, size(report%answers)
-      associate (it => report%answers(i))
-        if (it%unit == '') then
-          call add(trim(it%name), trim(it%text), '')
-        else if (it%name == 'cycle_revolutions') then
-          call add(trim(it%name), integer_text(nint(it%value)), '1')
-        else
-          call add(trim(it%name), peak(it%value), trim(it%unit))
-        end if
-      end associate
-    end do
+    if (allocated(report%answers)) call add_answers(report%answers)
     call add('version', program_version, '')
     call add('compiler', quoted(compiler_version(), '"'), '')
     call add('compiler_options', quoted(compiler_options(), '"'), '')
@@ -231,6 +222,23 @@ contains
       call add('crankshaft_frequency', real_text(largest%twist_frequency/two_pi), 'Hz')
       call add('max_crankshaft_twist', peak(largest%twist), 'rad')
     end subroutine add_elastic
+
+    !> Rows of the last whole cycle.
+    subroutine add_answers(answers)
+      type(answer_t), intent(in) :: answers(:)
+      integer :: i
+      do i = 1, size(answers)
+        associate (it => answers(i))
+          if (it%unit == '') then
+            call add(trim(it%name), trim(it%text), '')
+          else if (it%name == 'cycle_revolutions') then
+            call add(trim(it%name), integer_text(nint(it%value)), '1')
+          else
+            call add(trim(it%name), peak(it%value), trim(it%unit))
+          end if
+        end associate
+      end do
+    end subroutine add_answers
 
     !> A peak or a time, with as many digits as the trace.
     function peak(value) result(number)
