@@ -772,7 +772,7 @@ contains
       'crank_pin; did you mean crank_pin?')
     call refused(check, whole//'&output tolerance=1 /', 'x.nml:8: &output tolerance: unknown key (allowed: sampling, '// &
       'samples_per_revolution, angle_origin_deg, interval, start_time, columns, digits, film_times, every_step, '// &
-      'answers, answers, ideal_twin, window)')
+      'answers, ideal_twin, window)')
   end subroutine test_likely_words
 
   !> Paths that are not case files, and one that is.
