@@ -18,8 +18,8 @@ module film_balance
     real(dp) :: rate = 0                     !! reciprocal of the step in time [1/s]
     real(dp) :: speed = 0                    !! omega, of the pin relative to the bearing, x towards y [rad/s]
     real(dp) :: supply = 0, ends = 0         !! reduced pressures in the supply and at the ends of the bearing
-    real(dp) :: load(2) = 0                  !! on the pin over pi R L, in the unit of pressures
-    logical :: is_free = .false.             !! the load is given, not the eccentricity
+    real(dp) :: load(2) = 0                  !! on a free pin, over pi R L (L: length of the cells and their images), a pressure
+    real(dp) :: eccentricity(2) = 0          !! of a guided pin, over c
     real(dp), allocatable :: content(:, :)   !! f h before the step (along, around)
   end type film_conditions_t
 

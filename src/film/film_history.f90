@@ -1,7 +1,7 @@
 !> A film with memory over a cycle: marched with implicit Euler steps from row to row of a duty, until the oil in it repeats.
 !>
-!> The film begins full at the eccentricity of the first row. A duty of one row is a steady state: one step, so long that the
-!> content of the cells does not act any more.
+!> The film begins full at the eccentricity of the first row. A duty of one row is a steady state: it is marched with steps that
+!> become longer until the content of the cells does not act any more.
 module film_history
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -9,15 +9,16 @@ module film_history
   use gudgeon_bearing, only: bearing_t
   use film_cells, only: film_cells_t, supply_t, new_film_cells, supply_none, filled, supplied
   use film_balance, only: film_conditions_t, film_state_t, new_state, find_gap
-  use film_step, only: film_solver_t, new_film_solver
+  use film_step, only: film_solver_t, new_film_solver, step_solved, step_unfinished, step_closed, step_unbounded
   use film_results, only: film_row_t, film_field_t, film_summary_t, find_row, find_field
   use ring_compliance, only: elastic_bore_t
   implicit none
   private
   public :: film_history_t, film_duty_t
 
-  real(dp), parameter :: steady_rate = 1e-10_dp      !! reciprocal of the time of a steady step, over the rates of the film
-  real(dp), parameter :: most_predicted = 0.3_dp     !! largest part of a gap that a prediction may close
+  integer, parameter :: steady_steps = 23             !! towards a steady state, each longer than the last one by the root of ten
+  real(dp), parameter :: steady_rate = 1e-10_dp       !! reciprocal of the last of them, over the rates of the film
+  real(dp), parameter :: most_unsteady = 1e-3_dp      !! relative change of the smallest thickness in that step
 
   !> What the bearing is given over a cycle, in rows; the last of several rows is the first one of the next cycle.
   type :: film_duty_t
@@ -47,8 +48,9 @@ module film_history
     type(film_solver_t), private :: solver
     type(film_conditions_t), private :: conditions
     type(film_state_t), private :: state
-    real(dp), allocatable, private :: shape_rate(:)      !! mean rate of the amplitudes in the last step [1/s]
-    real(dp), private :: load_before(2) = 0 !! of the last step, as in `conditions`
+    type(film_state_t), private :: earlier  !! before the last step
+    real(dp), private :: last_rate = 0      !! reciprocal of the last step in time; 0 before the first step [1/s]
+    real(dp), private :: load_before(2) = 0 !! of the last step, as in `conditions`; 0 for a steady state
     real(dp), private :: turned = 0         !! angle of the pin since the first row [rad]
     real(dp), private :: time = 0           !! end of the present step [s]
     logical, private :: is_steady = .false. !! the duty has one row
@@ -57,6 +59,8 @@ module film_history
     procedure, private :: begin
     procedure, private :: begin_cycle
     procedure, private :: march_cycle
+    procedure, private :: march_to
+    procedure, private :: find_steady
     procedure, private :: set_conditions
     procedure, private :: set_supply
     procedure, private :: make_step
@@ -103,16 +107,15 @@ contains
     self%summary = film_summary_t()
     call new_film_cells(self%bearing, self%supply, self%around, self%along, cells, error)
     if (allocated(error)) return
-    call new_film_solver(cells, self%bore, self%viscosity, self%pressure_viscosity, self%solver)
+    call new_film_solver(cells, self%bore, self%viscosity, self%pressure_viscosity, allocated(duty%load), self%solver)
     self%state = new_state(cells, self%bore%shapes() + 2)
     self%state%amplitude(self%bore%shapes() + 1:) = -duty%eccentricity(:, 1)/cells%clearance
-    self%shape_rate = 0*self%state%amplitude
     call find_gap(cells, self%solver%shapes, self%state%amplitude, self%solver%gap)
     self%conditions%content = spread(self%solver%gap%at_cells, 1, cells%along)
-    self%conditions%is_free = allocated(duty%load)
     self%load_before = 0
+    self%last_rate = 0
     self%is_steady = size(duty%time) == 1
-    if (self%is_steady .and. self%conditions%is_free .and. self%supply%kind == supply_none .and. &
+    if (self%is_steady .and. self%solver%is_free .and. self%supply%kind == supply_none .and. &
       .not. self%ambient_over_cavitation > 0) call fail(error, &
       'a film without supply, with ends in air, has no steady state under load', status_integration)
   end subroutine begin
@@ -124,8 +127,9 @@ contains
     type(film_duty_t), intent(in) :: duty
     integer :: i
     self%turned = 0
+    self%time = duty%time(1)
     self%conditions%speed = duty%pin_speed(1)
-    if (self%conditions%is_free) return
+    if (self%solver%is_free) return
     self%state%amplitude(self%solver%bore_shapes + 1:) = -duty%eccentricity(:, 1)/self%solver%cells%clearance
     call find_gap(self%solver%cells, self%solver%shapes, self%state%amplitude, self%solver%gap)
     do i = 1, self%around
@@ -138,9 +142,9 @@ contains
     class(film_history_t), intent(inout) :: self
     type(film_duty_t), intent(in) :: duty
     type(error_t), allocatable, intent(out) :: error
-    type(film_row_t) :: rows(size(duty%time)), row
+    type(film_row_t) :: rows(size(duty%time))
     integer, allocatable :: field_rows(:)
-    integer :: i, k, s, steps, first
+    integer :: i, k, first
 
     allocate (field_rows(0))
     first = merge(1, 2, self%is_steady)
@@ -149,27 +153,61 @@ contains
     if (allocated(self%fields)) deallocate (self%fields)
     allocate (self%fields(size(field_rows)))
     call self%summary%begin()
-    steps = merge(1, self%substeps, self%is_steady)
     do i = first, size(duty%time)
-      do s = 1, steps
-        call self%set_conditions(duty, i, real(s, dp)/steps)
-        call self%make_step(error)
-        if (allocated(error)) exit
-        call find_row(self%solver, self%conditions, self%state, self%time, row)
-        call self%summary%add(row, 1/self%conditions%rate)
-        do k = 1, self%around
-          self%conditions%content(:, k) = self%state%fraction(:, k)*self%solver%gap%at_cells(k)
-        end do
-      end do
+      if (self%is_steady) then
+        call self%find_steady(duty, rows(i), error)
+      else
+        call self%march_to(duty, i, rows(i), error)
+      end if
       if (allocated(error)) exit
-      rows(i) = row
       do k = 1, size(field_rows)
-        if (field_rows(k) == i) call find_field(self%solver, self%state, row%time, self%fields(k))
+        if (field_rows(k) == i) call find_field(self%solver, self%state, duty%time(i), self%fields(k))
       end do
     end do
     call self%summary%finish()
     self%rows = rows(first:i - 1)
   end subroutine march_cycle
+
+  !> March from row i - 1 to row i.
+  pure subroutine march_to(self, duty, i, row, error)
+    class(film_history_t), intent(inout) :: self
+    type(film_duty_t), intent(in) :: duty
+    integer, intent(in) :: i
+    type(film_row_t), intent(out) :: row
+    type(error_t), allocatable, intent(out) :: error
+    integer :: s
+    do s = 1, self%substeps
+      call self%set_conditions(duty, i, real(s, dp)/self%substeps)
+      self%conditions%rate = self%substeps/(duty%time(i) - duty%time(i - 1))
+      call self%make_step(row, error)
+      if (allocated(error)) return
+      call self%summary%add(row, 1/self%conditions%rate)
+      self%load_before = self%conditions%load
+    end do
+  end subroutine march_to
+
+  !> Find the steady state of the only row, by steps that become longer; in one step if the gap is given.
+  pure subroutine find_steady(self, duty, row, error)
+    class(film_history_t), intent(inout) :: self
+    type(film_duty_t), intent(in) :: duty
+    type(film_row_t), intent(out) :: row
+    type(error_t), allocatable, intent(out) :: error
+    real(dp) :: rate, thinnest
+    integer :: s, first
+    call self%set_conditions(duty, 1, 1.0_dp)
+    rate = abs(self%conditions%speed) + self%conditions%supply + self%conditions%ends + norm2(self%conditions%load)
+    if (.not. rate > 0) rate = 1
+    first = merge(1, steady_steps, self%solver%is_free .or. self%solver%bore_shapes > 0)
+    do s = first, steady_steps
+      thinnest = row%min_thickness
+      self%conditions%rate = steady_rate*rate*10**(0.5_dp*(steady_steps - s))
+      call self%make_step(row, error)
+      if (allocated(error)) return
+    end do
+    call self%summary%add(row, 1/self%conditions%rate)
+    if (first < steady_steps .and. abs(thinnest - row%min_thickness) > most_unsteady*row%min_thickness) &
+      call fail(error, 'the film has no steady state: its oil is squeezed out', status_integration)
+  end subroutine find_steady
 
   !> A value between those of row i - 1 (part 0) and row i (part 1), linear; in a steady state that of the first row.
   pure real(dp) function at_row(values, i, part)
@@ -186,11 +224,12 @@ contains
     type(film_duty_t), intent(in) :: duty
     integer, intent(in) :: i
     real(dp), intent(in) :: part   !! of the interval from row i - 1 to row i
-    real(dp) :: feed, speed_before, rate, load_unit
+    real(dp) :: feed, speed_before, time_before, load_unit
     integer :: k
 
     associate (conditions => self%conditions, solver => self%solver, unit => self%solver%pressure_unit)
       speed_before = conditions%speed
+      time_before = self%time
       self%time = at_row(duty%time, i, part)
       conditions%speed = at_row(duty%pin_speed, i, part)
       feed = self%supply_pressure
@@ -199,19 +238,13 @@ contains
       conditions%ends = solver%oil%reduced(self%ambient_over_cavitation/unit)
       load_unit = pi*solver%cells%pin_radius*solver%cells%share*self%bearing%length*unit
       do k = 1, 2
-        if (conditions%is_free) then
+        if (solver%is_free) then
           conditions%load(k) = at_row(duty%load(k, :), i, part)/load_unit
         else
-          self%state%amplitude(solver%bore_shapes + k) = -at_row(duty%eccentricity(k, :), i, part)/solver%cells%clearance
+          conditions%eccentricity(k) = at_row(duty%eccentricity(k, :), i, part)/solver%cells%clearance
         end if
       end do
-      if (i > 1) then
-        conditions%rate = self%substeps/(duty%time(i) - duty%time(i - 1))
-        self%turned = self%turned + 0.5_dp*(speed_before + conditions%speed)/conditions%rate
-      else
-        rate = abs(conditions%speed) + conditions%supply + conditions%ends + norm2(conditions%load)
-        conditions%rate = steady_rate*merge(rate, 1.0_dp, rate > 0)
-      end if
+      if (i > 1) self%turned = self%turned + 0.5_dp*(speed_before + conditions%speed)*(self%time - time_before)
     end associate
     call self%set_supply()
   end subroutine set_conditions
@@ -231,50 +264,84 @@ contains
     end associate
   end subroutine set_supply
 
-  !> Solve a step, from amplitudes that change as in the last step. If this fails, and for a steady state at once, the load is raised
-  !> in parts from the last one.
-  pure subroutine make_step(self, error)
+  !> Solve a step, from a film that changes as in the last step; if this fails, from the present film under a load that is raised.
+  pure subroutine make_step(self, row, error)
     class(film_history_t), intent(inout) :: self
+    type(film_row_t), intent(out) :: row
     type(error_t), allocatable, intent(out) :: error
     type(film_state_t) :: before
-    real(dp) :: change(size(self%shape_rate))
-    character(len=20) :: time
-    logical :: has_converged
+    integer :: outcome, i
 
     before = self%state
-    has_converged = .false.
-    if (.not. (self%is_steady .and. self%conditions%is_free)) then
-      change = self%shape_rate/self%conditions%rate
-      if (all(matmul(self%solver%shapes%at_cells, change) > -most_predicted*self%solver%gap%at_cells)) &
-        self%state%amplitude = before%amplitude + change
-      call self%solver%solve_step(self%conditions, self%state, has_converged)
-    end if
-    if (.not. has_converged) then
+    if (self%last_rate > 0 .and. .not. self%is_steady) &
+      call self%solver%predict(self%earlier, self%last_rate/self%conditions%rate, self%state)
+    call self%solver%solve_step(self%conditions, self%state, outcome)
+    if (outcome /= step_solved) then
       self%state = before
-      call self%raise_load(has_converged)
+      call self%raise_load(outcome)
     end if
-    self%shape_rate = (self%state%amplitude - before%amplitude)*self%conditions%rate
-    self%load_before = self%conditions%load
-    if (has_converged) return
-    write (time, '(es12.5)') self%time
-    call fail(error, 'the film does not converge at '//trim(adjustl(time))//' s', status_integration)
+    self%earlier = before
+    self%last_rate = self%conditions%rate
+    if (outcome /= step_solved) then
+      call fail(error, 'the film has no solution at '//text_of(self%time)//' s: '//reason_of(outcome), status_integration)
+      return
+    end if
+    call find_row(self%solver, self%conditions, self%state, self%time, row)
+    do i = 1, self%around
+      self%conditions%content(:, i) = self%state%fraction(:, i)*self%solver%gap%at_cells(i)
+    end do
   end subroutine make_step
 
-  !> Solve a step with 5 to 100 % of the change of the load.
-  pure subroutine raise_load(self, has_converged)
+  !> Solve a step while the load is raised from the last one, in parts that become larger after a solution and smaller without.
+  !> Without a load the step is solved at once.
+  pure subroutine raise_load(self, outcome)
     class(film_history_t), intent(inout) :: self
-    logical, intent(out) :: has_converged
-    real(dp), parameter :: parts(8) = [0.05_dp, 0.1_dp, 0.2_dp, 0.35_dp, 0.5_dp, 0.7_dp, 0.85_dp, 1.0_dp]
-    real(dp) :: load(2)
-    integer :: k
+    integer, intent(out) :: outcome
+    real(dp), parameter :: first_part = 0.05_dp, least_part = 1e-3_dp, growth = 2.0_dp, shrinking = 0.25_dp
+    type(film_state_t) :: solved
+    real(dp) :: load(2), done, part
     load = self%conditions%load
-    do k = 1, size(parts)
-      self%conditions%load = self%load_before + parts(k)*(load - self%load_before)
-      call self%solver%solve_step(self%conditions, self%state, has_converged)
-      if (.not. has_converged) exit
+    solved = self%state
+    done = 0
+    part = merge(first_part, 1.0_dp, self%solver%is_free)
+    do
+      self%conditions%load = self%load_before + min(1.0_dp, done + part)*(load - self%load_before)
+      call self%solver%solve_step(self%conditions, self%state, outcome)
+      if (outcome == step_solved) then
+        done = done + part
+        if (done >= 1) exit
+        solved = self%state
+        part = growth*part
+      else
+        self%state = solved
+        part = shrinking*part
+        if (part < least_part .or. .not. self%solver%is_free) exit
+      end if
     end do
     self%conditions%load = load
   end subroutine raise_load
+
+  !> What an outcome means.
+  pure function reason_of(outcome) result(reason)
+    integer, intent(in) :: outcome
+    character(len=:), allocatable :: reason
+    select case (outcome)
+    case (step_closed)
+      reason = 'the gap closes (a heavy load needs more cells or more oil)'
+    case (step_unbounded)
+      reason = 'its pressure exceeds what pressure_viscosity allows'
+    case default
+      reason = 'the iteration does not end'
+    end select
+  end function reason_of
+
+  pure function text_of(time) result(text)
+    real(dp), intent(in) :: time
+    character(len=:), allocatable :: text
+    character(len=20) :: digits
+    write (digits, '(es12.5)') time
+    text = trim(adjustl(digits))
+  end function text_of
 
   !> Sum of the content f h of the cells.
   pure real(dp) function oil_content(self)

@@ -8,6 +8,8 @@ module film_results
   private
   public :: film_row_t, film_field_t, film_summary_t, find_row, find_field
 
+  real(dp), parameter :: least_flow = 1e-6_dp   !! over the turnover: a flow that is small beside those inside the film
+
   !> The film at the end of a step.
   type :: film_row_t
     real(dp) :: time = 0                  !! [s]
@@ -21,6 +23,7 @@ module film_results
     real(dp) :: side_flow = 0             !! out of both ends of the bearing [m^3/s]
     real(dp) :: bore_deflection = 0       !! largest change of the bore's radius, without a shift [m]
     real(dp) :: content_rate = 0          !! growth of the oil outside the supply [m^3/s]
+    real(dp) :: turnover = 0              !! volume of the gap times the rates of the step and of the pin [m^3/s]
     real(dp) :: cells_per_gap = 0         !! number of cells in the length sqrt(h_min/h_max) R over which a thin film changes
   end type film_row_t
 
@@ -80,6 +83,7 @@ contains
       row%fill = dot_product(sum(state%fraction, 1), h)/(sum(h)*cells%along)
       row%side_flow = solver%balance%side*volume
       row%supply_flow = (solver%balance%inlet + sum(solver%balance%outflow, state%kind == supplied))*volume
+      row%turnover = sum(h)*cells%along*volume*(conditions%rate + abs(conditions%speed))
       row%content_rate = content_change(solver, conditions, state)*volume
       row%moment = -solver%viscosity*conditions%speed*cells%pin_radius**2*volume/c**2*shear_of(solver, state) &
         - 0.5_dp*(row%eccentricity(1)*row%force(2) - row%eccentricity(2)*row%force(1))
@@ -155,7 +159,8 @@ contains
     type(film_row_t), intent(in) :: row
     real(dp), intent(in) :: time
     self%time = self%time + time
-    self%largest_flow = max(self%largest_flow, abs(row%supply_flow), abs(row%side_flow), abs(row%content_rate))
+    self%largest_flow = max(self%largest_flow, abs(row%supply_flow), abs(row%side_flow), abs(row%content_rate), &
+      least_flow*row%turnover)
     self%mean_supply_flow = self%mean_supply_flow + row%supply_flow*time
     self%mean_side_flow = self%mean_side_flow + row%side_flow*time
     self%mass_residual = max(self%mass_residual, abs(row%content_rate - row%supply_flow + row%side_flow))
