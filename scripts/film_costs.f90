@@ -11,6 +11,7 @@ program film_costs
   use film_law, only: film_motion_t
   use film_files, only: provide_tables
   use measured_times, only: time_of_pairs, time_of_integration, no_difference
+  use joint_places, only: piston_pin
   implicit none
 
   integer, parameter :: n_motions = 64, calls = 6400, blocks = 101, runs = 25, loads = 9
@@ -56,7 +57,8 @@ contains
     type(error_t), allocatable :: error
     call provide_tables(case, .false., .false., error)
     if (allocated(error)) error stop 'film_costs: no table'
-    call case%joint%film%prepare(case%joint%bearing(case%mechanism%rod_length), case%integrator%relative_tolerance)
+    call case%joints(piston_pin)%film%prepare(case%joints(piston_pin)%bearing(case%mechanism%rod_length), &
+      case%integrator%relative_tolerance)
   end subroutine prepare
 
   !> Print the times in which the table is computed and then read.
@@ -100,7 +102,7 @@ contains
     integer :: i, j
     do j = 1, n_motions
       turn = 40*real(j, dp)/n_motions
-      motions(j)%eccentricity = case%joint%clearance*(0.1_dp + 0.8_dp*j/n_motions)*[cos(turn), sin(turn)]
+      motions(j)%eccentricity = case%joints(piston_pin)%clearance*(0.1_dp + 0.8_dp*j/n_motions)*[cos(turn), sin(turn)]
       motions(j)%eccentricity_rate = 2e-3_dp*[cos(3*turn), sin(5*turn)]
       motions(j)%pin_speed = 60*cos(2*turn)
       motions(j)%turning_speed = motions(j)%pin_speed
@@ -112,7 +114,7 @@ contains
       do j = 1, calls
         motion = motions(modulo(j, n_motions) + 1)
         if (in_turn) motion%eccentricity(1) = motion%eccentricity(1) + no_difference*total
-        call case%joint%film%film_force(motion, force, moment)
+        call case%joints(piston_pin)%film%film_force(motion, force, moment)
         total = force(1) + force(2) + moment
       end do
       call system_clock(after)

@@ -22,6 +22,7 @@ program measure_costs
   use gudgeon_recorder, only: recorder_t
   use trace_sink, only: trace_sink_t
   use measured_times, only: time_of_pairs, time_of_integration, no_difference
+  use joint_places, only: piston_pin
   implicit none
 
   integer, parameter :: n_states = 64, blocks = 31, calls = 6400, steps_in_block = 2000
@@ -106,13 +107,13 @@ contains
     if (allocated(error)) error stop 'measure_costs: run it from the top of the checkout'
     if (index(name, '+gas') == 0 .and. allocated(case%combustion)) deallocate (case%combustion)
     if (index(name, 'contact+') /= 1 .or. index(name, 'quadrature') > 0) then
-      if (allocated(case%joint%friction)) deallocate (case%joint%friction)
+      if (allocated(case%joints(piston_pin)%friction)) deallocate (case%joints(piston_pin)%friction)
     end if
     if (dry .or. index(name, 'free') == 1 .or. index(name, 'ideal') == 1) then
-      if (allocated(case%joint%film)) deallocate (case%joint%film)
+      if (allocated(case%joints(piston_pin)%film)) deallocate (case%joints(piston_pin)%film)
     end if
-    if (index(name, 'ideal') == 1 .or. index(name, 'free') == 1) deallocate (case%joint%contact)
-    if (index(name, 'ideal') == 1) case%joint%kind = 'ideal'
+    if (index(name, 'ideal') == 1 .or. index(name, 'free') == 1) deallocate (case%joints(piston_pin)%contact)
+    if (index(name, 'ideal') == 1) case%joints(piston_pin)%kind = 'ideal'
     call build_scene(case, .false., scene, error)
     if (allocated(error)) error stop 'measure_costs: no such scene'
     if (index(name, '+quadrature') > 0) call scene%measure_joint()
@@ -146,9 +147,8 @@ contains
 
     if (allocated(scene%gas)) call scene%gas%start(1.5_dp*pi, 250.0_dp)
     if (index(name, 'contact') == 1) then
-      scene%joints(1)%phase = phase_contact
-      scene%joints(1)%impact_speed = 0.1_dp
-      scene%joints(1)%sliding = 1
+      call scene%joints(1)%begin_contact(0.1_dp)
+      scene%joints(1)%slots(scene%joints(1)%acting(phase_contact))%element%sliding = 1
     end if
     allocate (y(scene%n, n_states), source=0.0_dp)
     do i = 1, n_states
@@ -162,7 +162,7 @@ contains
       associate (at => scene%joints(1)%at)
         y(at%position:at%position + 1, i) = reach*[cos(turn), sin(turn)]
         y(at%rate:at%rate + 1, i) = 2e-3_dp*[cos(3*turn), sin(5*turn)]
-        if (scene%n_states() > 0) y(scene%joints(1)%friction_states%first, i) = 1e-6_dp*cos(7*turn)
+        if (scene%n_states() > 0) y(2*scene%n_positions + 1, i) = 1e-6_dp*cos(7*turn)
       end associate
     end do
   end subroutine make_states

@@ -3,7 +3,7 @@
 # film carries the pin without contact, which motion the mechanism settles to, what restitution and contact laws change, and which
 # parameters determine film thickness and contact.
 #
-#   scripts/run_studies.sh [-o DIR] [-j N] [--fresh]     -j: number of threads; --fresh: discard the runs of an earlier call
+#   scripts/run_studies.sh [-o DIR] [-j N] [--fresh]     -j: number of processes; --fresh: discard the runs of an earlier call
 #
 # Results, tables and pictures are in DIR (default: results/studies); the numbers are written to data/measured/studies.md and
 # data/measured/sensitivity.md. If the script is interrupted, the same command continues it.

@@ -5,7 +5,7 @@
     scripts/sensitivity.py STUDY.nml --method morris --morris 20 --outputs log:min_film_thickness impacts
     scripts/sensitivity.py --table cases/studies/sensitivity_*.nml  only print a table of the Sobol indices of earlier calls
 
-The study's &parameter groups give the ranges (from, to, scale); its design is replaced by those of Morris (elementary
+The study's &parameter groups give the ranges (from, to, scale), which are sampled by the methods of Morris (elementary
 effects along trajectories) and Sobol (shares of the variance, by Saltelli's scheme). Samples are reproducible (--seed).
 Failed runs are counted and listed; the trajectory or base point that contains a failed run is left out. If an analysis is
 interrupted, the same command continues it. Confidence intervals are 95 % intervals; --convergence also prints the indices from a
@@ -55,7 +55,7 @@ def arguments() -> argparse.Namespace:
         metavar="DIR",
         help="(default: results/sensitivity)",
     )
-    parser.add_argument("-j", "--jobs", type=int, metavar="N", help="threads (default: number of processor cores)")
+    parser.add_argument("-j", "--jobs", type=int, metavar="N", help="number of processes (default: number of processors)")
     parser.add_argument("-s", "--set", action="append", default=[], metavar="GROUP.KEY=VALUE", help="change a key of the base case")
     parser.add_argument("--program", type=Path, help="program to run (default: the release build)")
     parser.add_argument("--fresh", action="store_true", help="discard the runs of an earlier call")

@@ -3,10 +3,9 @@
 module belt_problem
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, event_continue
-  use chain_motion, only: accelerations_t, piston_pin
   use friction_law, only: friction_law_t
-  use clearance_joint, only: clearance_joint_t, joint_loads_t
-  use joint_motion, only: joint_motion_t
+  use dry_contact, only: dry_contact_t
+  use joint_evaluation, only: joint_evaluation_t, joint_rates_t
   use joint_events, only: sliding_event, choose_sliding
   implicit none
   private
@@ -19,7 +18,7 @@ module belt_problem
 
   !> y = (x, x', deflection of the bristles of a law that has them, work of friction).
   type, extends(ode_problem_t) :: belt_t
-    type(clearance_joint_t) :: joint     !! friction law, and whether the mass sticks
+    type(dry_contact_t) :: contact       !! friction law, and whether the mass sticks
     integer :: n_changes = 0
     real(dp) :: change(100) = 0          !! times at which the mass began to slip or to stick [s]
   contains
@@ -34,7 +33,8 @@ contains
   subroutine new_belt(law, belt)
     class(friction_law_t), intent(in) :: law
     type(belt_t), intent(out) :: belt
-    allocate (belt%joint%friction, source=law)
+    allocate (belt%contact%friction, source=law)
+    belt%contact%holding_ratio = law%holding_ratio()
     belt%n = 3 + law%n_states
     belt%n_positions = 1
     belt%n_quadratures = 1
@@ -50,12 +50,12 @@ contains
     real(dp) :: friction, ratio
     inside = .true.
     friction = -pull(t, y)
-    associate (law => self%joint%friction)
+    associate (law => self%contact%friction)
       if (law%n_states > 0) then
         call law%state_friction(y(2), y(3:2 + law%n_states), ratio, dydt(3:2 + law%n_states))
         friction = load*ratio
       else if (.not. sticks(self)) then
-        friction = load*law%friction_ratio(y(2), self%joint%sliding)
+        friction = load*law%friction_ratio(y(2), self%contact%sliding)
       end if
     end associate
     dydt(1) = y(2)
@@ -71,42 +71,38 @@ contains
 
   pure logical function sticks(self)
     class(belt_t), intent(in) :: self
-    sticks = self%joint%friction%set_valued .and. self%joint%sliding == 0
+    sticks = self%contact%friction%set_valued .and. self%contact%sliding == 0
   end function sticks
 
   !> The data that the procedures of a joint need about the mass: it slides along y on a wall normal to x.
-  pure subroutine see_as_joint(self, t, y, motion, own, accelerations)
+  pure subroutine see_as_joint(self, t, y, now, rates)
     class(belt_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
-    type(joint_motion_t), intent(out) :: motion
-    type(joint_loads_t), intent(out) :: own
-    type(accelerations_t), intent(out) :: accelerations
+    type(joint_evaluation_t), intent(out) :: now
+    type(joint_rates_t), intent(out) :: rates
     real(dp) :: dydt(self%n)
     logical :: inside
     call self%derivatives(t, y, dydt, inside)
-    motion%normal = [1.0_dp, 0.0_dp]
-    motion%distance = 1
-    motion%penetration_rate = 0
-    motion%tangential_rate = y(2)
-    motion%bearing_speed = 0
-    motion%sliding_speed = y(2)
-    own%normal_force = load
-    own%friction_force = -pull(t, y)
-    accelerations%rod_end = 0
-    accelerations%pin = 0
-    accelerations%pin(2, piston_pin) = dydt(2)
+    now%normal = [1.0_dp, 0.0_dp]
+    now%distance = 1
+    now%penetration_rate = 0
+    now%tangential_rate = y(2)
+    now%bearing_speed = 0
+    now%sliding_speed = y(2)
+    now%normal_force = load
+    now%friction_force = -pull(t, y)
+    rates = joint_rates_t([0.0_dp, dydt(2)], 0.0_dp, 0.0_dp)
   end subroutine see_as_joint
 
   pure subroutine events(self, t, y, g, g_rate)
     class(belt_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
-    type(joint_motion_t) :: motion
-    type(joint_loads_t) :: own
-    type(accelerations_t) :: accelerations
+    type(joint_evaluation_t) :: now
+    type(joint_rates_t) :: rates
     if (self%n_events == 0) return
-    call see_as_joint(self, t, y, motion, own, accelerations)
-    call sliding_event(self%joint, motion, own, accelerations, g(1), g_rate(1))
+    call see_as_joint(self, t, y, now, rates)
+    call sliding_event(self%contact, now, rates, g(1), g_rate(1))
   end subroutine events
 
   subroutine handle_event(self, index, t, y, action)
@@ -115,14 +111,13 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     integer, intent(out) :: action
-    type(joint_motion_t) :: motion
-    type(joint_loads_t) :: own
-    type(accelerations_t) :: accelerations
+    type(joint_evaluation_t) :: now
+    type(joint_rates_t) :: rates
     logical :: was_sliding
-    was_sliding = self%joint%sliding /= 0
-    self%joint%sliding = 0
-    call see_as_joint(self, t, y, motion, own, accelerations)
-    call choose_sliding(self%joint, motion, own, was_sliding, .false.)
+    was_sliding = self%contact%sliding /= 0
+    self%contact%sliding = 0
+    call see_as_joint(self, t, y, now, rates)
+    call choose_sliding(self%contact, now, was_sliding, .false.)
     self%n_changes = self%n_changes + index
     self%change(self%n_changes) = t
     action = event_continue

@@ -10,6 +10,7 @@ module laws
   use film_law, only: film_law_t
   use case_checks, only: bodies
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t, key_t
+  use joint_places, only: piston_pin
   implicit none
   private
   public :: contact_law_of, friction_law_of, film_law_of, parameter_of
@@ -33,11 +34,11 @@ contains
     type(case_t) :: case
     call read_keys('&contact '//keys//' /', case, error)
     if (allocated(error)) return
-    allocate (law, source=case%joint%contact)
+    allocate (law, source=case%joints(piston_pin)%contact)
     if (present(bearing)) then
       call law%prepare(bearing)
     else
-      call law%prepare(case%joint%bearing(case%mechanism%rod_length))
+      call law%prepare(case%joints(piston_pin)%bearing(case%mechanism%rod_length))
     end if
   end subroutine contact_law_of
 
@@ -49,7 +50,7 @@ contains
     type(case_t) :: case
     call read_keys('&contact / &friction '//keys//' /', case, error)
     if (allocated(error)) return
-    allocate (law, source=case%joint%friction)
+    allocate (law, source=case%joints(piston_pin)%friction)
     call law%prepare()
   end subroutine friction_law_of
 
@@ -62,9 +63,9 @@ contains
     type(case_t) :: case
     call read_keys('&lubrication '//keys//' /', case, error)
     if (allocated(error)) return
-    allocate (law, source=case%joint%film)
-    call law%prepare(case%joint%bearing(case%mechanism%rod_length), tolerance)
-    call law%make_table(case%joint%bearing(case%mechanism%rod_length), tolerance)
+    allocate (law, source=case%joints(piston_pin)%film)
+    call law%prepare(case%joints(piston_pin)%bearing(case%mechanism%rod_length), tolerance)
+    call law%make_table(case%joints(piston_pin)%bearing(case%mechanism%rod_length), tolerance)
   end subroutine film_law_of
 
   subroutine read_keys(groups, case, error)

@@ -21,7 +21,6 @@ program gudgeon_tests
   use test_case_file, only: run_test_case_file
   use test_certificate, only: run_test_certificate
   use test_chain, only: run_test_chain
-  use test_checkpoint, only: run_test_checkpoint
   use test_combustion, only: run_test_combustion
   use test_gas_machines, only: run_test_gas_machines
   use test_measured_curves, only: run_test_measured_curves
@@ -49,11 +48,13 @@ program gudgeon_tests
   use test_friction_runs, only: run_test_friction_runs
   use test_guide, only: run_test_guide
   use test_joint, only: run_test_joint
+  use test_load_elements, only: run_test_load_elements
   use test_loose_piston, only: run_test_loose_piston
   use test_lost_force, only: run_test_lost_force
   use test_number_text, only: run_test_number_text
   use test_number_writer, only: run_test_number_writer
   use test_oscillating_film, only: run_test_oscillating_film
+  use test_pauses, only: run_test_pauses
   use test_periodic, only: run_test_periodic
   use test_pinkus_sternlicht, only: run_test_pinkus_sternlicht
   use test_published_films, only: run_test_published_films
@@ -63,7 +64,6 @@ program gudgeon_tests
   use test_restitution, only: run_test_restitution
   use test_result_file, only: run_test_result_file
   use test_run_figures, only: run_test_run_figures
-  use test_resume, only: run_test_resume
   use test_scenes, only: run_test_scenes
   use test_small_lu, only: run_test_small_lu
   use test_slow_contact, only: run_test_slow_contact
@@ -102,7 +102,6 @@ program gudgeon_tests
   call run('case_file', run_test_case_file)
   call run('certificate', run_test_certificate)
   call run('chain', run_test_chain)
-  call run('checkpoint', run_test_checkpoint)
   call run('combustion', run_test_combustion)
   call run('gas_machines', run_test_gas_machines)
   call run('measured_curves', run_test_measured_curves)
@@ -131,11 +130,13 @@ program gudgeon_tests
   call run('friction_runs', run_test_friction_runs)
   call run('guide', run_test_guide)
   call run('joint', run_test_joint)
+  call run('load_elements', run_test_load_elements)
   call run('loose_piston', run_test_loose_piston)
   call run('lost_force', run_test_lost_force)
   call run('number_text', run_test_number_text)
   call run('number_writer', run_test_number_writer)
   call run('oscillating_film', run_test_oscillating_film)
+  call run('pauses', run_test_pauses)
   call run('periodic', run_test_periodic)
   call run('published_films', run_test_published_films)
   call run('pinkus_sternlicht', run_test_pinkus_sternlicht)
@@ -144,7 +145,6 @@ program gudgeon_tests
   call run('reference', run_test_reference)
   call run('result_file', run_test_result_file)
   call run('run_figures', run_test_run_figures)
-  call run('resume', run_test_resume)
   call run('scenes', run_test_scenes)
   call run('small_lu', run_test_small_lu)
   call run('slow_contact', run_test_slow_contact)

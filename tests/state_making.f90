@@ -3,9 +3,10 @@ module state_making
   use gudgeon_kinds, only: dp
   use gudgeon_scene, only: scene_t
   use chain_motion, only: piston_pin
+  use clearance_joint, only: clearance_joint_t, phase_contact
   implicit none
   private
-  public :: put_crank, put_pin, pin_of
+  public :: put_crank, put_pin, pin_of, put_contact
 
 contains
 
@@ -24,18 +25,27 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(inout) :: y(:)
     real(dp), intent(in) :: eccentricity(2), rate(2)
-    associate (at => scene%joints(scene%joint_of_pin(piston_pin))%at)
+    associate (at => scene%joints(scene%joint_at(piston_pin))%at)
       y(at%position:at%position + 1) = eccentricity
       y(at%rate:at%rate + 1) = rate
     end associate
   end subroutine put_pin
+
+  !> Bring a joint into contact, with surfaces that slide in a direction or stick (0) if its friction is set-valued.
+  pure subroutine put_contact(joint, impact_speed, sliding)
+    type(clearance_joint_t), intent(inout) :: joint
+    real(dp), intent(in) :: impact_speed   !! [m/s]
+    integer, intent(in) :: sliding
+    call joint%begin_contact(impact_speed)
+    joint%slots(joint%acting(phase_contact))%element%sliding = sliding
+  end subroutine put_contact
 
   !> The eccentricity of the piston pin in a state [m].
   pure function pin_of(scene, y) result(eccentricity)
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:)
     real(dp) :: eccentricity(2)
-    associate (at => scene%joints(scene%joint_of_pin(piston_pin))%at)
+    associate (at => scene%joints(scene%joint_at(piston_pin))%at)
       eccentricity = y(at%position:at%position + 1)
     end associate
   end function pin_of

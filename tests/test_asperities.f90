@@ -130,7 +130,7 @@ contains
     class(film_law_t), allocatable :: film
     type(asperities_t) :: rough
     type(film_motion_t) :: motion, other
-    real(dp) :: derivatives(3, 5), above(3), below(3), step
+    real(dp) :: derivatives(3, 6), above(3), below(3), step
     integer :: i, k
     call new_film(check, film)
     rough = rough_bearing('exact', 0.4e-6_dp)
@@ -251,6 +251,7 @@ contains
     rough%coefficient = 0.1_dp
     rough%transition_speed = 0.01_dp
     call rough%prepare(bearing_t(1e-2_dp, 15e-3_dp, c, 0.2_dp))
+    call rough%make_table()
   end function rough_bearing
 
   subroutine new_film(check, film)

@@ -12,6 +12,7 @@ module test_case_file
   use result_file, only: result_file_t
   use checks, only: checks_t
   use laws, only: parameter_of
+  use joint_places, only: crank_pin, piston_pin
   implicit none
   private
   public :: run_test_case_file
@@ -73,18 +74,19 @@ contains
     call check%equal_text(c%file, 'folder/x.nml', 'file as given')
     call check%relative(c%mechanism%crank_inertia, 1e-5_dp, 0.0_dp, 'd exponent')
     call check%relative(c%mechanism%gravity, 9.80665_dp, 0.0_dp, 'gravity by default')
-    call check%that(allocated(c%joint%contact) .and. .not. allocated(c%joint%friction), 'presence of models')
-    call check%that(c%joint%contact%name == 'lankarani_nikravesh', 'law by default')
+    call check%that(allocated(c%joints(piston_pin)%contact) .and. .not. allocated(c%joints(piston_pin)%friction), &
+      'presence of models')
+    call check%that(c%joints(piston_pin)%contact%name == 'lankarani_nikravesh', 'law by default')
     call check%that(c%output%samples_per_revolution == 720 .and. c%output%columns == 'standard', 'output by default')
     call check%that(c%integrator%max_order == 12 .and. c%integrator%method == 'auto', 'integrator by default')
     call parse_case(whole, 'x.nml', [character(len=40) :: 'friction.coefficient=.1', 'friction.law=coulomb', &
                                      'contact.youngs_modulus=1e11,2e11', 'case.title=A, b ''c''', &
                                      'friction.coefficient=0.2'], c, error)
     call check%that(.not. allocated(error), 'overrides are taken')
-    call check%that(allocated(c%joint%friction), 'an override makes its group present')
-    call check%relative(element(parameter_of(c%joint%friction, 'coefficient'), 1), 0.2_dp, 0.0_dp, &
+    call check%that(allocated(c%joints(piston_pin)%friction), 'an override makes its group present')
+    call check%relative(element(parameter_of(c%joints(piston_pin)%friction, 'coefficient'), 1), 0.2_dp, 0.0_dp, &
       'the last override of a key is used')
-    call check%relative(element(parameter_of(c%joint%contact%geometry, 'youngs_modulus'), 2), 2e11_dp, 0.0_dp, &
+    call check%relative(element(parameter_of(c%joints(piston_pin)%contact%geometry, 'youngs_modulus'), 2), 2e11_dp, 0.0_dp, &
       'override of an array')
     call check%equal_text(c%title, 'A, b ''c''', 'text of an override without quotes')
   end subroutine test_values
@@ -104,13 +106,13 @@ contains
     call check%that(.not. allocated(error), 'forms of namelists')
     if (allocated(error)) call check%equal_text(error%message, '', 'forms')
     call check%equal_text(c%title, 'it''s "so" ! / &', 'quotes, and comment characters inside them')
-    call check%relative(element(parameter_of(c%joint%contact%geometry, 'poissons_ratio'), 2), 0.25_dp, 0.0_dp, &
+    call check%relative(element(parameter_of(c%joints(piston_pin)%contact%geometry, 'poissons_ratio'), 2), 0.25_dp, 0.0_dp, &
       'repeat count')
-    call check%relative(element(parameter_of(c%joint%contact%geometry, 'youngs_modulus'), 1), 207e9_dp, 0.0_dp, &
+    call check%relative(element(parameter_of(c%joints(piston_pin)%contact%geometry, 'youngs_modulus'), 1), 207e9_dp, 0.0_dp, &
       'element by default')
-    call check%relative(element(parameter_of(c%joint%contact%geometry, 'youngs_modulus'), 2), 1.5e11_dp, 0.0_dp, &
+    call check%relative(element(parameter_of(c%joints(piston_pin)%contact%geometry, 'youngs_modulus'), 2), 1.5e11_dp, 0.0_dp, &
       'element by index')
-    call check%that(c%joint%contact%name == 'hertz', 'words in upper or lower case')
+    call check%that(c%joints(piston_pin)%contact%name == 'hertz', 'words in upper or lower case')
     call check%that(c%output%every_step .and. c%output%ideal_twin, 'logicals')
     call check%equal_text(c%output%columns, 'time,rod_angle', 'list of texts')
     call parse_case(whole//'&case title='''//repeat('x', 3000)//''' /', 'x', none, c, error)
@@ -155,7 +157,8 @@ contains
     call check%that(.not. allocated(error), 'a resolved case is read')
     call check%equal_text(again, text, 'resolved again')
     call check%that(transfer(back%mechanism%crank_length, 1_8) == transfer(c%mechanism%crank_length, 1_8), 'bits of a length')
-    call check%that(transfer(back%joint%clearance, 1_8) == transfer(c%joint%clearance, 1_8), 'bits of the clearance')
+    call check%that(transfer(back%joints(piston_pin)%clearance, 1_8) == transfer(c%joints(piston_pin)%clearance, 1_8), &
+      'bits of the clearance')
     call check%that(index(text, '&lubrication') == 0 .and. index(text, '&contact') > 0, &
       'absent groups are not in the resolved case')
     call check%that(index(text, 'max_order = 12') > 0, 'defaults are in the resolved case')
@@ -163,7 +166,7 @@ contains
     call check%that(.not. allocated(error), 'the template is a case')
     call parse_case(text, 'x', none, back, error, again)
     call check%equal_text(again, text, 'the template resolved again')
-    call check%that(allocated(c%combustion) .and. allocated(c%joint%film), 'the template has all models')
+    call check%that(allocated(c%combustion) .and. allocated(c%joints(piston_pin)%film), 'the template has all models')
     call parse_case(bodies//run, 'x', none, c, error, text)
     call parse_case(text, 'x', none, back, error, again)
     call check%that(.not. allocated(error), 'a resolved case with an ideal joint is read')
@@ -396,17 +399,18 @@ contains
     call parse_case(whole//second, 'x.nml', none, c, error, text)
     call check%that(.not. allocated(error), 'a second joint')
     if (allocated(error)) return
-    call check%that(c%joint%has_clearance() .and. c%crank_pin%has_clearance(), 'both have clearance')
-    call check%relative(c%joint%clearance, 5e-4_dp, 0.0_dp, 'clearance of the piston pin')
-    call check%relative(c%crank_pin%clearance, 1e-4_dp, 0.0_dp, 'clearance of the crank pin')
-    call check%equal_text(trim(c%crank_pin%contact%name), 'lankarani_nikravesh', 'a law without a place holds for every joint')
+    call check%that(c%joints(piston_pin)%has_clearance() .and. c%joints(crank_pin)%has_clearance(), 'both have clearance')
+    call check%relative(c%joints(piston_pin)%clearance, 5e-4_dp, 0.0_dp, 'clearance of the piston pin')
+    call check%relative(c%joints(crank_pin)%clearance, 1e-4_dp, 0.0_dp, 'clearance of the crank pin')
+    call check%equal_text(trim(c%joints(crank_pin)%contact%name), 'lankarani_nikravesh', &
+      'a law without a place holds for every joint')
     call parse_case(text, 'x.nml', none, c, error, again)
     call check%equal_text(again, text, 'two joints resolved again')
     call parse_case(whole//second//'&contact place=''CRANK_PIN'' law=''hertz'' /', 'x.nml', none, c, error, text)
     call check%that(.not. allocated(error), 'a law of one joint is read')
     if (allocated(error)) return
-    call check%equal_text(trim(c%crank_pin%contact%name), 'hertz', 'a law of the crank pin holds there')
-    call check%equal_text(trim(c%joint%contact%name), 'lankarani_nikravesh', &
+    call check%equal_text(trim(c%joints(crank_pin)%contact%name), 'hertz', 'a law of the crank pin holds there')
+    call check%equal_text(trim(c%joints(piston_pin)%contact%name), 'lankarani_nikravesh', &
       'a law of the crank pin does not hold at the piston pin')
     call parse_case(text, 'x.nml', none, c, error, again)
     call check%equal_text(again, text, 'two joints and laws resolved again')
@@ -414,12 +418,13 @@ contains
                                      'crank_pin.joint.clearance=2e-5', 'crank_pin.joint.bearing_radius=0.01', &
                                      'crank_pin.contact.law=hertz'], c, error)
     call check%that(.not. allocated(error), 'a second joint by overrides')
-    call check%relative(c%crank_pin%clearance, 2e-5_dp, 0.0_dp, 'clearance by an override')
+    call check%relative(c%joints(crank_pin)%clearance, 2e-5_dp, 0.0_dp, 'clearance by an override')
     call parse_case(whole//second, 'x.nml', [character(len=40) :: 'crank_pin.joint=none'], c, error)
-    call check%that(.not. allocated(error) .and. .not. c%crank_pin%has_clearance(), 'the second joint can be removed')
-    call check%that(.not. allocated(c%crank_pin%contact), 'an ideal joint has no laws')
+    call check%that(.not. allocated(error) .and. .not. c%joints(crank_pin)%has_clearance(), 'the second joint can be removed')
+    call check%that(.not. allocated(c%joints(crank_pin)%contact), 'an ideal joint has no laws')
     call parse_case(whole//second, 'x.nml', [character(len=40) :: 'joint=none'], c, error)
-    call check%that(.not. allocated(error) .and. .not. allocated(c%joint%contact), 'a case with clearance at the crank pin only')
+    call check%that(.not. allocated(error) .and. .not. allocated(c%joints(piston_pin)%contact), &
+      'a case with clearance at the crank pin only')
     call refused(check, whole//second//second, 'x.nml:9: &joint of crank_pin: this group is given twice')
     call refused(check, whole//'&joint place=''piston_pin'' kind=''ideal'' /', 'x.nml:8: &joint: this group is given twice')
     call refused(check, '&joint place=''wrist'' /', 'x.nml:1: &joint place = wrist: must be one of piston_pin, crank_pin')
@@ -442,7 +447,7 @@ contains
     call refused_on(check, whole//second//'&lubrication viscosity=0.01 /', [character(len=40) :: 'joint.bearing_length=0.01'], &
                     'x.nml: &joint of crank_pin bearing_length: required with lubrication (m)')
     call refused_on(check, whole//second, ['crank_pin.contact=none'], 'x.nml: --set crank_pin.contact=none: no group of the '// &
-                    'crank pin alone is given: the group contact is for both pins, and --set contact=none removes it from both')
+                    'crank pin alone is given: the group contact is for all pins, and --set contact=none removes it from all')
     call accepted(check, whole//second, 'a group of the crank pin alone taken out', &
                   [character(len=40) :: 'crank_pin.contact.law=hertz', 'crank_pin.contact=none'])
     call refused_on(check, whole//second, [character(len=40) :: 'contact=none', 'crank_pin.contact.law=hertz'], &
@@ -629,20 +634,21 @@ contains
     character(len=:), allocatable :: resolved
     call parse_case(whole//film, 'x.nml', [character(len=30) :: 'Lubrication = NONE', 'drive=none'], c, error, resolved)
     call check%that(.not. allocated(error), 'groups can be removed')
-    call check%that(.not. allocated(c%joint%film), 'the film is removed')
-    call check%that(allocated(c%joint%friction) .and. allocated(c%joint%contact), 'no other group is removed')
+    call check%that(.not. allocated(c%joints(piston_pin)%film), 'the film is removed')
+    call check%that(allocated(c%joints(piston_pin)%friction) .and. allocated(c%joints(piston_pin)%contact), &
+      'no other group is removed')
     call check%equal_text(trim(c%drive%kind), 'free', 'a group that always exists gets its defaults')
     call check%that(index(resolved, 'lubrication') == 0, 'a removed group is not in the resolved case')
     call parse_case(whole//film, 'x.nml', [character(len=30) :: long, 'lubrication.variant=as_printed', 'lubrication=none', &
                                            'lubrication.viscosity=0.02'], c, error, resolved)
     call check%that(.not. allocated(error), 'a later override creates the group again')
-    call check%relative(element(parameter_of(c%joint%film, 'viscosity'), 1), 0.02_dp, 1e-15_dp, &
+    call check%relative(element(parameter_of(c%joints(piston_pin)%film, 'viscosity'), 1), 0.02_dp, 1e-15_dp, &
       'a group created again has the value of the override')
     call check%that(index(resolved, 'variant = ''closed_form''') > 0, 'a group created again has no earlier values')
     call parse_case(whole//film, 'x.nml', [character(len=30) :: 'joint=none', 'contact=none', 'friction=none', &
                                            'lubrication=none'], c, error)
     call check%that(.not. allocated(error), 'a case without a joint group is read')
-    call check%equal_text(trim(c%joint%kind), 'ideal', 'a case without a joint group has an ideal joint')
+    call check%equal_text(trim(c%joints(piston_pin)%kind), 'ideal', 'a case without a joint group has an ideal joint')
     call refused_with(check, 'joint=none', 'x.nml: &joint kind: must be clearance with contact, friction or lubrication: an '// &
                       'ideal joint has no clearance; remove these groups, for example with --set contact=none')
     call refused_with(check, 'contact=none', 'x.nml: &joint kind = clearance: needs contact or lubrication: without '// &

@@ -128,8 +128,6 @@ contains
                  'x.nml and x.ideal.nml: their results would have the same names; run them separately with --out')
     call refused(check, [character(len=12) :: 'x.wear.nml', 'x.nml'], &
                  'x.nml and x.wear.nml: their results would have the same names; run them separately with --out')
-    call refused(check, [character(len=16) :: 'sweep', '--checkpoint=1', 'x.nml'], &
-                 '--checkpoint is for cases; a sweep keeps every run that has ended'//hint)
     call refused(check, ['--'//achar(27)//achar(10)], '--\x1B\x0A: unknown option'//hint)
   end subroutine test_refusals
 

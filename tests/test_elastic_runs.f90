@@ -7,7 +7,6 @@ module test_elastic_runs
   use case_file, only: read_case
   use gudgeon_summary, only: summary_table, summary_value
   use collecting_sink, only: trace_t, run_case, column
-  use, intrinsic :: iso_fortran_env, only: int64
   implicit none
   private
   public :: run_test_elastic_runs
@@ -205,13 +204,13 @@ contains
     real(dp) :: largest
     trace = run_case(dry, span)
     call read_case(dry, span, case, error)
-    table = summary_table(case, trace%report, 0.0_dp, '0', 1_int64, 0_int64)
+    table = summary_table(case, trace%report, 0.0_dp)
     call check%equal_text(summary_value(table, 'elastic_members'), 'rod', 'elastic members in the summary')
     largest = number_of(table, 'max_rod_mid_deflection')
     call check%that(largest >= maxval(abs(trace%values(column(trace, 'rod_mid_deflection[m]'), :)))*(1 - 1e-9_dp), &
       'largest deflection in the summary')
     call check%relative(number_of(table, 'rod_bending_frequency'), 843.2_dp, 1e-2_dp, 'bending frequency [Hz]')
-    table = summary_table(case, trace%report, 0.0_dp, '0', 1_int64, 0_int64, is_twin=.true.)
+    table = summary_table(case, trace%report, 0.0_dp, is_twin=.true.)
     call check%equal_text(summary_value(table, 'elastic_members'), 'none: the ideal twin is rigid', &
       'the summary of the ideal twin says that it is rigid')
     twin = run_case(dry, span, .true.)
@@ -313,7 +312,7 @@ contains
       call check%close_to(maxval(abs(twist - want))/maxval(want), 0.0_dp, 1e-5_dp, 'twist of a crankshaft under a moment')
     end associate
     call read_case(dry, [overrides, accuracy], case, error)
-    hertz = number_of(summary_table(case, trace%report, 0.0_dp, '0', 1_int64, 0_int64), 'crankshaft_frequency')
+    hertz = number_of(summary_table(case, trace%report, 0.0_dp), 'crankshaft_frequency')
     call check%relative(hertz*8*atan(1.0_dp), omega, 1e-6_dp, 'frequency of a crankshaft')
   end subroutine crankshaft_swings
 

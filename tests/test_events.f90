@@ -8,6 +8,7 @@ module test_events
   use ode_method, only: ode_method_t
   use adams, only: adams_t
   use gudgeon_solver, only: integrate, observer_t, silent_observer_t, integration_done, chattering
+  use gudgeon_events, only: event_watch_t
   use gudgeon_roots, only: abscissa_by_rates
   use test_problems, only: hopper_t
   implicit none
@@ -60,6 +61,19 @@ module test_events
     procedure :: handle_event => notes_first
   end type triple_t
 
+  !> y = (function of an event, its rate).
+  type, extends(triple_t) :: plain_t
+  contains
+    procedure :: events => is_state
+  end type plain_t
+
+  !> A method whose first steps are shorter than the time resolves: at the beginning of a step it interpolates `y_start`.
+  type, extends(adams_t) :: short_steps_t
+    real(dp) :: y_start(2) = 0
+  contains
+    procedure :: interpolate => of_rounded_time
+  end type short_steps_t
+
   !> Checks each event root: the function is not negative there, and negative one rounding step of the time before.
   type, extends(observer_t) :: root_checker_t
     integer :: loose = 0
@@ -80,7 +94,60 @@ contains
     call grazing(check)
     call turns_before_it_is_out(check)
     call chatter(check)
+    call steps_below_resolution(check)
   end subroutine run_test_events
+
+  !> A contact has begun, and the function of its end falls through zero in steps that the time does not resolve: its sign is
+  !> rounding, so it does not end. (Numbers of a run with clearance at both pins, which ended with chatter.)
+  subroutine steps_below_resolution(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: t = 0.89515756850926809_dp, rate = -3.345e-5_dp
+    type(plain_t) :: problem
+    type(short_steps_t) :: method
+    type(event_watch_t) :: watch
+    real(dp) :: t_event
+    integer :: event
+    problem%n = 2
+    problem%n_events = 1
+    method%order = 1
+    method%y_start = [6.866e-23_dp, rate]
+    call watch%begin(problem, t, method%y_start, 1, .false.)
+    method%t_old = t
+    method%t = t
+    method%y = [-1.39e-22_dp, rate]
+    call watch%search(method, problem, 1.0_dp, event, t_event)
+    call check%that(event == 0, 'no event in a step without length')
+    method%t = nearest(t, 1.0_dp)
+    method%y = [-1.8e-21_dp, rate]
+    call watch%search(method, problem, 1.0_dp, event, t_event)
+    call check%that(event == 0, 'no event in a step as short as the time resolves')
+    method%t_old = method%t
+    method%t = t + 1e-6_dp
+    method%y_start = method%y
+    method%y = [1e-12_dp, -rate]   ! it rises through zero again
+    call watch%search(method, problem, 1.0_dp, event, t_event)
+    call check%that(event == 1, 'an event in a longer step')
+  end subroutine steps_below_resolution
+
+  pure subroutine is_state(self, t, y, g, g_rate)
+    class(plain_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
+    associate (unused_t => t)
+    end associate
+    g = y(1)
+    g_rate = y(2)
+  end subroutine is_state
+
+  pure subroutine of_rounded_time(self, t, y)
+    class(short_steps_t), intent(inout) :: self
+    real(dp), intent(in) :: t
+    real(dp), intent(out) :: y(:)
+    real(dp) :: x
+    x = 0
+    if (t > self%t_old) x = (t - self%t_old)/(self%t - self%t_old)
+    y = (1 - x)*self%y_start + x*self%y
+  end subroutine of_rounded_time
 
   subroutine prepare(method, n, tolerance, span)
     type(adams_t), intent(inout) :: method

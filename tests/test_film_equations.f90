@@ -19,8 +19,8 @@ contains
     call edges_are_free(check)
   end subroutine run_test_film_equations
 
-  !> Parts of a grid: whole, without one node, without a whole line, two arcs, one with ragged edges, islands of single nodes, and at
-  !> random with many and with few nodes.
+  !> Parts of a grid: whole, without one node, without a whole line, two arcs, one with ragged edges, islands of single nodes, and
+  !> at random with many and with few nodes.
   subroutine flows_balance_at_active_nodes(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: n = 24, m = 7

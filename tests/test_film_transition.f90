@@ -11,11 +11,10 @@ module test_film_transition
   use case_definition, only: case_t
   use case_file, only: read_case
   use chain_motion, only: piston_pin
-  use clearance_joint, only: phase_film, phase_contact
   use gudgeon_scene, only: scene_t, evaluation_t
   use scene_builder, only: build_scene
   use ode_problem, only: difference_jacobian
-  use state_making, only: put_crank, put_pin
+  use state_making, only: put_crank, put_pin, put_contact
   use case_checks, only: expect, methods_agree
   use collecting_sink, only: trace_t, run_case, column, values_of
   implicit none
@@ -50,17 +49,16 @@ contains
     type(film_transition_t) :: transition
     real(dp) :: w, slope
     transition = new_transition('linear')
-    call transition%weight(0.25_dp*depth, w, slope)
+    call transition%weight(0.25_dp*depth, .false., w, slope)
     call check%relative(w, 0.25_dp, 1e-12_dp, 'linear share')
     call check%relative(slope, 1/depth, 1e-12_dp, 'linear slope')
     transition = new_transition('smooth')
-    call transition%weight(0.25_dp*depth, w, slope)
+    call transition%weight(0.25_dp*depth, .false., w, slope)
     call check%relative(w, 0.15625_dp, 1e-12_dp, 'smooth share')
     call check%relative(slope, 1.125_dp/depth, 1e-12_dp, 'smooth slope')
-    call transition%weight(-depth, w, slope)
+    call transition%weight(-depth, .false., w, slope)
     call check%that(abs(w) + abs(slope) <= 0, 'the contact has no share without penetration')
-    transition%film_is_gone = .true.
-    call transition%weight(2*depth, w, slope)
+    call transition%weight(2*depth, .true., w, slope)
     call check%that(abs(w - 1) + abs(slope) <= 0, 'the contact has the whole share beyond the depth')
   end subroutine shares
 
@@ -84,15 +82,13 @@ contains
       motion%eccentricity = 0.97_dp*20e-6_dp*n
       call film%film_force(motion, want, want_moment)
       motion%eccentricity = (0.95_dp + 0.03_dp*i)*20e-6_dp*n
-      transition%film_is_held = .true.
-      call film%film_force(transition%held_motion(motion), force, moment)
+      call film%film_force(transition%held_motion(motion, .true.), force, moment)
       call check%close_to(norm2(force - want), 0.0_dp, 1e-11_dp*norm2(want), 'force of a limited film')
       call check%relative(moment, want_moment, 1e-11_dp, 'moment of a limited film')
     end do
-    transition%film_is_held = .false.
     motion%eccentricity = 0.5_dp*20e-6_dp*n
     call film%film_force(motion, want, want_moment)
-    call film%film_force(transition%held_motion(motion), force, moment)
+    call film%film_force(transition%held_motion(motion, .false.), force, moment)
     call check%that(all(abs(force - want) <= 0), 'a film that is not limited is that of the law')
   end subroutine film_is_held
 
@@ -168,10 +164,9 @@ contains
     call read_case(file, overrides, case, error)
     if (.not. allocated(error)) call build_scene(case, .false., scene, error)
     if (allocated(error)) error stop 'test_film_transition: the case cannot be built'
-    scene%joints(1)%phase = merge(phase_contact, phase_film, distance > c)
-    scene%joints(1)%impact_speed = 0.4_dp
-    scene%joints(1)%sliding = 1
-    call scene%joints(1)%transition%begin(distance, 0.0_dp)
+    call put_contact(scene%joints(1), 0.4_dp, 1)
+    if (distance <= c) call scene%joints(1)%end_contact()
+    call scene%joints(1)%begin_at(distance, 0.0_dp)
   end subroutine make_scene
 
   !> The closed-form Jacobian against finite differences, in each zone, for each film.

@@ -10,7 +10,7 @@ module test_friction_runs
   use chain_motion, only: piston_pin, crank_pin
   use scene_builder, only: build_scene
   use collecting_sink, only: trace_t, run_case, column
-  use state_making, only: put_crank, put_pin
+  use state_making, only: put_crank, put_pin, put_contact
   implicit none
   private
   public :: run_test_friction_runs
@@ -151,12 +151,10 @@ contains
     do i = 1, 4
       y = scene%initial_state()
       call put_crank(scene, y, 0.3_dp*i, 520.0_dp)
-      call put_pin(scene, y, 1.03_dp*case%joint%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)], &
+      call put_pin(scene, y, 1.03_dp*case%joints(piston_pin)%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)], &
         [0.4_dp*cos(2.1_dp*i), 2*sin(1.7_dp*i)])
-      scene%joints(1)%phase = phase_contact
-      scene%joints(1)%impact_speed = 1
-      scene%joints(1)%sliding = 1
-      if (scene%n_states() > 0) y(scene%joints(1)%friction_states%first) = 1.4e-6_dp*(2*i - 5)
+      call put_contact(scene%joints(1), 1.0_dp, 1)
+      if (scene%n_states() > 0) y(scene%joints(1)%slots(1)%element%states%first) = 1.4e-6_dp*(2*i - 5)
       call scene%jacobian(1e-3_dp*i, y, a_p, a_v)
       call difference_jacobian(scene, 1e-3_dp*i, y, d_p, d_v)
       call check%close_to(maxval(abs(a_p - d_p)), 0.0_dp, 1e-5_dp*maxval(abs(d_p)), &

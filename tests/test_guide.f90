@@ -7,7 +7,8 @@ module test_guide
   use case_definition, only: case_t
   use case_file, only: read_case
   use collecting_sink, only: trace_t, run_case, load_table, column, values_of
-  use chain_motion, only: n_pins, tilting_t
+  use chain_motion, only: tilting_t
+  use joint_places, only: n_places
   use chain_motion, only: motion_t, accelerations_t
   use chain_loads, only: loads_t, unloaded
   use guide_events, only: inward_acceleration
@@ -260,7 +261,7 @@ contains
         if (got%event(i)%kind /= 1) cycle
         miss(k) = abs(-got%event(i + 1)%normal_speed/got%event(i)%normal_speed - 0.4_dp)
         call check%that(got%event(i + 1)%kind == 2 .and. got%event(i + 1)%pin == got%event(i)%pin, 'one corner is in contact alone')
-        call check%that(got%event(i)%pin == n_pins + 1, 'the corner at the top, towards +y')
+        call check%that(got%event(i)%pin == n_places + 1, 'the corner at the top, towards +y')
         exit
       end do
     end do
@@ -344,16 +345,16 @@ contains
     integer :: i, pin, kind
     got = run_case('cases/joints/piston_slap.nml', [character(len=long) :: 'output.every_step=T', &
       'guide.contact_law=hertz'])
-    do pin = n_pins + 1, n_pins + n_corners
+    do pin = n_places + 1, n_places + n_corners
       kind = 2
       do i = 1, size(got%event)
         if (got%event(i)%pin /= pin) cycle
         call check%that(got%event(i)%kind /= kind, 'contacts of a corner begin and end alternately')
         kind = got%event(i)%kind
       end do
-      write (name, '(a,i0)') 'guide_', pin - n_pins
+      write (name, '(a,i0)') 'guide_', pin - n_places
       associate (gap => values_of(got, name//'_gap[m]'), force => values_of(got, name//'_force[N]'), &
-          f => got%report%figures%corner(pin - n_pins))
+          f => got%report%figures%corner(pin - n_places))
         call check%that(.not. any(gap < -1e-9_dp .and. .not. abs(force) > 0), 'a corner in the wall has a force')
         call check%that(.not. any(gap > 1e-12_dp .and. abs(force) > 0), 'a corner apart from the wall has no force')
         call check%that(count(got%event%pin == pin .and. got%event%kind == 1) == f%contacts, 'number of contacts of a corner')
@@ -365,7 +366,7 @@ contains
     end do
     got = run_case(slap, [character(len=long) :: 'initial.piston_tilt_rate=0', 'integrator.end_time=0.003', &
       'guide.coefficient=0'])
-    call check%that(got%event(1)%pin + got%event(2)%pin == 2*n_pins + 3 .and. all(got%event(:2)%kind == 1), &
+    call check%that(got%event(1)%pin + got%event(2)%pin == 2*n_places + 3 .and. all(got%event(:2)%kind == 1), &
       'both ends have a contact')
     call check%close_to(got%event(2)%time - got%event(1)%time, 0.0_dp, 1e-12_dp, 'contacts of both ends begin at the same time [s]')
     call check%relative(got%event(3)%max_normal_force, got%event(4)%max_normal_force, 1e-6_dp, &

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The folders of src are layers: a module uses only modules of its own folder and of lower layers, never of a folder beside or
-above it. Lines of Fortran, comments included, have at most 132 characters.
+above it. Above its registry no module names a law. Lines of Fortran, comments included, have at most 132 characters.
 
     tests/test_layers.py
 
@@ -26,6 +26,9 @@ LAYERS = [
 ]
 MOST = 132  # largest number of characters in a line
 
+#: The registries, whose `use` statements name all laws. Only files of the same folder may do so too.
+REGISTRIES = ["contact/contact_laws", "friction/friction_laws", "film/films", "gas/gas_laws"]
+
 RANK = {folder: rank for rank, row in enumerate(LAYERS) for folder in row}
 
 
@@ -44,18 +47,39 @@ def modules(files: list[Path]) -> dict[str, str]:
     return found
 
 
+def used_modules(text: str) -> list[str]:
+    return [name.lower() for name in re.findall(r"^\s*use\s+(?:,\s*\w+\s*::\s*)?(\w+)", text, re.M | re.I)]
+
+
 def wrong_arrows(files: list[Path]) -> list[str]:
     """`use` statements that refer to a higher layer, or to another folder of the same layer."""
     home = modules(files)
     wrong = []
     for path in files:
         folder = folder_of(path)
-        for name in re.findall(r"^\s*use\s+(?:,\s*\w+\s*::\s*)?(\w+)", path.read_text(), re.M | re.I):
-            used = home.get(name.lower())
+        for name in used_modules(path.read_text()):
+            used = home.get(name)
             if used is None or used == folder:
                 continue
             if RANK[used] >= RANK[folder]:
                 wrong.append(f"{path.relative_to(SRC.parent)}: {folder} uses {name} of {used}")
+    return wrong
+
+
+def named_laws(files: list[Path]) -> list[str]:
+    """`use` statements that refer to a law from another folder, and comparisons of the name of a law with a text."""
+    home = modules(files)
+    laws = set()
+    for registry in REGISTRIES:
+        used = used_modules((SRC / f"{registry}.f90").read_text())
+        laws |= {name for name in used if home.get(name) == registry.split("/")[0] and not name.endswith(("_law", "_geometry"))}
+    wrong = []
+    for path in files:
+        text = path.read_text()
+        folder = folder_of(path)
+        wrong += [f"{path.relative_to(SRC.parent)} names the law {name}" for name in used_modules(text) if name in laws and home[name] != folder]
+        for name in re.findall(r"(?:contact|geometry|friction|film|law|combustion)%name *(?:==|/=) *'(\w+)'", text):
+            wrong.append(f"{path.relative_to(SRC.parent)} asks whether a law is {name}")
     return wrong
 
 
@@ -74,6 +98,8 @@ def main() -> int:
     if folders <= set(RANK):
         wrong = wrong_arrows(files)
         check("no module uses a higher layer:\n  " + "\n  ".join(wrong), not wrong)
+    wrong = named_laws(files)
+    check("no module above its registry names a law:\n  " + "\n  ".join(wrong), not wrong)
     for path in files:
         name = path.stem
         check(

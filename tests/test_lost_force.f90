@@ -13,6 +13,7 @@ module test_lost_force
   use case_file, only: read_case
   use case_checks, only: methods_agree
   use collecting_sink, only: trace_t, run_case, values_of
+  use joint_places, only: piston_pin
   implicit none
   private
   public :: run_test_lost_force
@@ -106,7 +107,7 @@ contains
     if (allocated(error)) return
     set(1:2) = [character(len=long) :: 'integrator.revolutions=0.01', 'integrator.relative_tolerance=1e-10']
     do i = 1, size(depths)
-      call scene%joints(1)%contact%find_share(depths(i), -1.0_dp, 0.0_dp, share, unused)
+      call case%joints(piston_pin)%contact%find_share(depths(i), -1.0_dp, 0.0_dp, share, unused)
       rate = -1/(1 - share)
       write (set(3), '(a,es23.16,a)') 'initial.eccentricity=', c + depths(i), ',0'
       do j = -2, 2

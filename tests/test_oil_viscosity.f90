@@ -1,7 +1,6 @@
 !> Viscosity of an oil at a temperature: against values computed with 30 digits from the published equations, and a published
 !> example; in runs; and errors in cases.
 module test_oil_viscosity
-  use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t
   use checks, only: checks_t
@@ -128,10 +127,10 @@ contains
         'film thickness with an oil and with its viscosity: '//films(i))
       if (i > 1) cycle
       call read_case('cases/sim_I.nml', oil, case, error)
-      table = summary_value(summary_table(case, by_oil%report, 0.0_dp, '0', 1_int64, 1_int64), 'viscosity')
+      table = summary_value(summary_table(case, by_oil%report, 0.0_dp), 'viscosity')
       call check%equal_text(trim(table), real_text(823.67278491013_dp*8.53321469154105e-6_dp, 10), 'viscosity in the summary')
       call read_case('cases/sim_I.nml', plain, case, error)
-      table = summary_value(summary_table(case, by_hand%report, 0.0_dp, '0', 1_int64, 1_int64), 'viscosity')
+      table = summary_value(summary_table(case, by_hand%report, 0.0_dp), 'viscosity')
       call check%equal_text(trim(table), '', 'no viscosity in the summary if the case gives it')
     end do
   end subroutine every_film

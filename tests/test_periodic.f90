@@ -25,6 +25,8 @@ contains
     call gas_takes_two_revolutions(check)
     call free_crank(check)
     call exponent_is_the_decay(check)
+    call exponent_in_lasting_contact(check)
+    call no_exponent(check)
     call exponents_of_machines(check)
     call exponent_is_the_growth(check, [character(len=long) ::], 'chaos')
     call exponent_is_the_growth(check, [character(len=long) :: 'combustion.cycle=compressor', 'combustion.bore=0.05', &
@@ -196,6 +198,32 @@ contains
     call check%close_to(trace%report%exponent%mean, log(second/first)/10, 0.02_dp*abs(log(second/first)/10), &
       'damped crank: the exponent is the rate of convergence of the speed')
   end subroutine exponent_is_the_decay
+
+  !> A pin that comes to rest on its bearing keeps the impact speed of its last contact for ever. Whether this contact begins before
+  !> the measurement or in its first revolutions, neighbouring motions converge.
+  subroutine exponent_in_lasting_contact(check)
+    class(checks_t), intent(inout) :: check
+    character(len=long), parameter :: pin(2) = [character(len=long) :: exponent, 'output.samples_per_revolution=1']
+    type(trace_t) :: before, within
+    within = run_case('cases/friction/brown_mcphee.nml', [character(len=long) :: pin, 'integrator.revolutions=3'])
+    before = run_case('cases/friction/brown_mcphee.nml', [character(len=long) :: pin, 'integrator.revolutions=5'])
+    call check%that(within%report%exponent%is_known .and. before%report%exponent%is_known, 'lasting contact: exponents')
+    call check%that(before%report%exponent%mean < -1, 'lasting contact: neighbouring motions converge')
+    call check%relative(within%report%exponent%mean, before%report%exponent%mean, 1e-2_dp, &
+      'lasting contact: the impact speed of a contact that remains does not matter')
+  end subroutine exponent_in_lasting_contact
+
+  !> Where there is no exponent, the reason is stated: a crank that stops after the run.
+  subroutine no_exponent(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    trace = run_case('cases/sim_I.nml', [character(len=long) :: auto, 'drive.damping=0.1', 'integrator.revolutions=0', &
+      'integrator.crank_revolutions=1', exponent, 'output.ideal_twin=F'])
+    call check%that(trace%report%status == 'done' .and. .not. trace%report%exponent%is_known, 'a crank that stops: no exponent')
+    if (.not. allocated(trace%report%exponent%reason)) trace%report%exponent%reason = ''
+    call check%begins_with(trace%report%exponent%reason, 'the crank stops, turns back or takes too long for a quarter of a '// &
+      'revolution at t = ', 'a crank that stops: the reason')
+  end subroutine no_exponent
 
   !> Settling films: at constant speed after a ramp, in a compressor, and with a free crank under a measured pressure of two
   !> revolutions. Neighbouring motions converge at the same rate as the states one period apart. In the compressor two directions of

@@ -350,7 +350,7 @@ contains
       call read_case(trim(files(i)), [character(len=1) ::], case, error)
       call build_scene(case, .false., scene, error)
       m = scene%n_positions
-      c = case%joint%clearance
+      c = case%joints(piston_pin)%clearance
       y = scene%initial_state()
       allocate (a_p(m, m), a_v(m, m), b_p(m, m), b_v(m, m), scale(m, m))
       if (touches(i)) scene%joints(1)%phase = phase_contact

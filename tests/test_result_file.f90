@@ -4,7 +4,7 @@ module test_result_file
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, status_output
   use gudgeon_posix, only: make_directory, remove_file, open_file, to_read, to_append, read_bytes, close_file, error_text, &
-    ignore_write_signals, synchronise_folder, file_length, open_to_lock, error_no_entry, error_no_space, &
+    ignore_write_signals, synchronise_folder, file_length, error_no_entry, error_no_space, &
     error_is_directory, error_is_link, error_not_regular
   use result_file, only: result_file_t, remove_result
   use checks, only: checks_t
@@ -39,6 +39,7 @@ contains
     call make_directory(folder, status)
     call check%that(status == 0, 'a folder that exists is no error')
     call test_writing(check)
+    call test_two_writers(check)
     call test_failures(check)
     call test_planted(check)
     call execute_command_line('rmdir '//folder, exitstat=status)
@@ -82,6 +83,33 @@ contains
     call check%equal_text(text, 'new'//n, 'an abandoned file does not replace the old one')
     call remove_file(folder//'/a.csv', status)
   end subroutine test_writing
+
+  !> A file that is being written is not written by another one; what a killed program has left is no obstacle.
+  subroutine test_two_writers(check)
+    class(checks_t), intent(inout) :: check
+    type(result_file_t) :: one, other, left
+    type(error_t), allocatable :: error
+    character(len=:), allocatable :: text
+    integer :: status
+    call execute_command_line('echo old > '//folder//'/a.csv.part')
+    call one%open(folder//'/a.csv', error)
+    call check%that(.not. allocated(error), 'a file left by a killed program is replaced')
+    call one%put('one'//n)
+    call one%flush()
+    call other%open(folder//'/a.csv', error)
+    call expect(check, error, folder//'/a.csv: another run is writing it; wait for it or choose another folder with --out')
+    call other%put('other'//n)
+    call other%close(error)
+    call one%close(error)
+    call read_back(folder//'/a.csv', text, status)
+    call check%equal_text(text, 'one'//n, 'the rows of the first one')
+    call left%reopen(folder//'/a.csv', folder//'/a.csv', 2_c_long, error)
+    call left%put('more'//n)
+    call left%close(error)
+    call read_back(folder//'/a.csv', text, status)
+    call check%equal_text(text, 'onmore'//n, 'a file is continued after its first bytes')
+    call remove_file(folder//'/a.csv', status)
+  end subroutine test_two_writers
 
   subroutine test_failures(check)
     class(checks_t), intent(inout) :: check
@@ -127,8 +155,7 @@ contains
     call file%open(victim, error)
     call file%put('kept'//n)
     call file%close(error)
-    call execute_command_line('ln -s victim '//link//' && ln -s victim '//folder//'/a.csv.part && mkfifo '//pipe// &
-                              ' && ln -s nowhere '//folder//'/lost', exitstat=status)
+    call execute_command_line('ln -s victim '//link//' && ln -s victim '//folder//'/a.csv.part && mkfifo '//pipe, exitstat=status)
     call check%that(status == 0, 'links and a pipe are made')
     call file%open(folder//'/a.csv', error)
     call file%put('mine'//n)
@@ -137,17 +164,20 @@ contains
     call check%equal_text(text, 'mine'//n, 'a link under the temporary name is replaced')
     call open_file(link, to_append, descriptor, status)
     call check%that(status == error_is_link, 'a link is not opened to add rows: '//error_text(status))
-    call open_to_lock(link, descriptor, status)
-    call check%that(status == error_is_link, 'a link is not locked: '//error_text(status))
-    call open_to_lock(folder//'/lost', descriptor, status)
-    call check%that(status == error_is_link, 'a file is not made through a link: '//error_text(status))
+    call execute_command_line('ln -s nowhere '//folder//'/b.csv.part && mkfifo '//folder//'/c.csv.part')
+    call file%open(folder//'/b.csv', error)
+    call file%close(error)
+    call check%that(.not. allocated(error), 'a link without a target is replaced')
     call check%that(file_length(folder//'/nowhere') < 0, 'the target of a link was not made')
+    call file%open(folder//'/c.csv', error)
+    call file%close(error)
+    call check%that(.not. allocated(error), 'a pipe under the temporary name is replaced')
+    call remove_file(folder//'/b.csv', status)
+    call remove_file(folder//'/c.csv', status)
     call open_file(pipe, to_read, descriptor, status)
     call check%that(status == error_not_regular, 'a pipe is not read: '//error_text(status))
     call open_file(pipe, to_append, descriptor, status)
     call check%that(status /= 0, 'a pipe is not opened to add rows: '//error_text(status))
-    call open_to_lock(pipe, descriptor, status)
-    call check%that(status == error_not_regular, 'a pipe is not locked: '//error_text(status))
     call open_file(folder, to_read, descriptor, status)
     call check%that(status == error_is_directory, 'a folder is not read: '//error_text(status))
     call open_file(link, to_read, descriptor, status)
@@ -158,15 +188,14 @@ contains
     call synchronise_folder(victim, status)
     call check%that(status == 0, 'a folder is flushed to the disk: '//error_text(status))
     was_there = .false.
-    call remove_result(folder//'/none', was_there, status)
+    call remove_result(folder//'/none', was_there, status, .false.)
     call check%that(status == 0 .and. .not. was_there, 'a file that does not exist need not be removed')
-    call remove_result(folder//'/a.csv', was_there, status)
+    call remove_result(folder//'/a.csv', was_there, status, .false.)
     call check%that(file_length(folder//'/a.csv') < 0, 'a result is removed')
     call check%that(status == 0 .and. was_there, 'the removal of a result is reported')
     call remove_file(victim, status)
     call remove_file(link, status)
     call remove_file(pipe, status)
-    call remove_file(folder//'/lost', status)
   end subroutine test_planted
 
   !> From here on no file may be longer than the given number of bytes; below 0: than was allowed at first.

@@ -1,7 +1,7 @@
 !> Results of a run: the time spent with each method, and peaks between steps.
 module test_run_figures
   use gudgeon_kinds, only: dp
-  use chain_motion, only: crank_pin, piston_pin, n_pins, name_prefix
+  use joint_places, only: crank_pin, piston_pin, n_places, name_prefix
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: read_case
@@ -197,7 +197,7 @@ contains
         rows = run_case('cases/'//trim(files(i))//'.nml', common)
         call check%that(plain%report%statistics%evaluations == rows%report%statistics%evaluations, name//': the same steps')
         associate (figures => plain%report%figures)
-          do pin = 1, n_pins
+          do pin = 1, n_places
             if (pin == crank_pin .and. column(rows, 'crank_pin_phase[-]') == 0) cycle
             prefix = name_prefix(pin)
             call is_peak_of(check, figures%pin(pin)%max_force, force_in_rows(rows, pin), rounding, &
@@ -280,9 +280,9 @@ contains
       allocate (turned(size(rows%values, 2)))
       turned(:) = (rows%values(2, :) - rows%values(2, 1))/two_pi
       rounding = 1e-12_dp
-      if (case%joint%kind == 'ideal') rounding = 1e-6_dp   ! the statistics of an ideal joint change its steps
+      if (case%joints(piston_pin)%kind == 'ideal') rounding = 1e-6_dp   ! the statistics of an ideal joint change its steps
       do k = 1, watch%statistics%cycles
-        do pin = 1, n_pins
+        do pin = 1, n_places
           if (pin == crank_pin .and. column(rows, 'crank_pin_phase[-]') == 0) cycle
           prefix = name_prefix(pin)
           associate (c => watch%cycles(k)%pin(pin))

@@ -7,7 +7,7 @@ module test_scenes
   use case_definition, only: case_t
   use case_file, only: read_case
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins, event_contact_ends
-  use state_making, only: put_crank, put_pin
+  use state_making, only: put_crank, put_pin, put_contact
   use ode_method, only: ode_settings_t, step_too_small
   use scene_builder, only: build_scene, settings_for
   use stop_reason, only: reason
@@ -145,18 +145,16 @@ contains
       call build_scene(case, .false., scene, error)
       allocate (y(scene%n), f(scene%n))
       y = scene%initial_state()
-      call put_pin(scene, y, 1.02_dp*case%joint%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)], &
+      call put_pin(scene, y, 1.02_dp*case%joints(piston_pin)%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)], &
         [0.4_dp*cos(2.1_dp*i), 0.3_dp*sin(1.7_dp*i)])
-      scene%joints(1)%phase = phase_contact
-      scene%joints(1)%impact_speed = 1
-      scene%joints(1)%sliding = 0
+      call put_contact(scene%joints(1), 1.0_dp, 0)
       t = 1e-3_dp*i
       call scene%derivatives(t, y, f, inside)
       call scene%evaluate(t, y, now, inside)
       call scene%evaluate(t + dt, y + dt*f(:scene%n), ahead, inside)
       call scene%evaluate(t - dt, y - dt*f(:scene%n), behind, inside)
       call check%that(abs(now%joint(1)%friction_force) > 1, 'a sticking pin has a friction force')
-      call check%close_to((ahead%relative(1)%sliding_speed - behind%relative(1)%sliding_speed)/(2*dt), 0.0_dp, 1e-2_dp, &
+      call check%close_to((ahead%joint(1)%sliding_speed - behind%joint(1)%sliding_speed)/(2*dt), 0.0_dp, 1e-2_dp, &
         'rate of the sliding speed of a sticking pin [m/s2]')
       deallocate (y, f)
     end do
@@ -181,9 +179,9 @@ contains
     call scene%evaluate(0.0_dp, y, now, inside)
     call check%that(.not. inside, 'the film is not defined beyond the wall')
     call check%relative(now%motion%crank_angle, 0.4_dp, 1e-15_dp, 'the crank angle is known beyond the wall')
-    call check%relative(now%relative(1)%penetration, 5e-5_dp - case%joint%clearance, 1e-12_dp, &
+    call check%relative(now%joint(1)%penetration, 5e-5_dp - case%joints(piston_pin)%clearance, 1e-12_dp, &
       'the penetration is known beyond the wall')
-    call check%relative(now%relative(1)%penetration_rate, 0.5_dp, 1e-12_dp, 'the penetration rate is known beyond the wall')
+    call check%relative(now%joint(1)%penetration_rate, 0.5_dp, 1e-12_dp, 'the penetration rate is known beyond the wall')
     call put_pin(scene, y, [0.0_dp, -1.0_dp], [0.0_dp, 0.0_dp])
     call scene%evaluate(0.0_dp, y, now, inside)
     call check%that(.not. inside, 'the state is not defined if the rod is too short')

@@ -3,12 +3,11 @@ module test_states
   use gudgeon_kinds, only: dp
   use checks, only: checks_t
   use gudgeon_errors, only: error_t
-  use gudgeon_archive, only: archive_t
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use adams, only: adams_t
   use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_done, integration_interrupted
+  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
   implicit none
   private
   public :: run_test_states
@@ -21,14 +20,6 @@ module test_states
     procedure :: derivatives
   end type maxwell_t
 
-  !> Stops after every step and stores the state.
-  type, extends(silent_observer_t) :: stopper_t
-    character(len=:), allocatable :: state
-  contains
-    procedure :: step_taken
-    procedure :: take_archive
-  end type stopper_t
-
   real(dp), parameter :: t_end = 8
   character(len=5), parameter :: names(3) = ['adams', 'radau', 'auto ']
 
@@ -40,7 +31,6 @@ contains
     call closed_form(check)
     call order_of_adams(check)
     call order_of_radau(check)
-    call resumed(check)
   end subroutine run_test_states
 
   pure subroutine derivatives(self, t, y, dydt, inside)
@@ -173,66 +163,4 @@ contains
     power = log10(real(steps(2), dp)/steps(1))/3
     call check%that(power < 0.2_dp, 'the steps of Radau with states grow with a tenth to a fifth power of the accuracy')
   end subroutine order_of_radau
-
-  !> Stopped after every step and continued with new objects: the results are the same bit for bit.
-  subroutine resumed(check)
-    class(checks_t), intent(inout) :: check
-    class(ode_method_t), allocatable :: method
-    type(error_t), allocatable :: error
-    type(silent_observer_t) :: silent
-    type(stopper_t) :: stopper
-    type(archive_t) :: archive
-    type(maxwell_t) :: problem
-    real(dp) :: t, y(4), whole(4)
-    real(dp), parameter :: tau(2) = [1.0_dp, 1e-3_dp]
-    integer :: status, i, j, pieces
-    do i = 1, size(names)
-      do j = 1, size(tau)
-        problem = maxwell(tau(j))
-        call begin(whole)
-        call integrate(problem, method, t, whole, t_end, 0, silent, status)
-        call begin(y)
-        call integrate(problem, method, t, y, t_end, 0, stopper, status)
-        pieces = 1
-        do while (status == integration_interrupted .and. pieces < 20000)
-          problem = maxwell(tau(j))
-          stopper%wants_to_stop = .false.
-          call archive%begin_reading(stopper%state)
-          call begin(y)
-          call integrate(problem, method, t, y, t_end, 0, stopper, status, archive)
-          pieces = pieces + 1
-        end do
-        call check%that(status == integration_done .and. pieces > 5, 'a Maxwell element in pieces: '//names(i))
-        call check%that(all(transfer(y, [0]) == transfer(whole, [0])), &
-          'a Maxwell element in pieces is bit for bit that in one piece: '//names(i))
-      end do
-    end do
-
-  contains
-
-    subroutine begin(y)
-      real(dp), intent(out) :: y(4)
-      call new_method(trim(names(i)), method, error)
-      call prepare(method, 1e-7_dp)
-      t = 0
-      y = [0.0_dp, 1.0_dp, 0.0_dp, 0.0_dp]
-    end subroutine begin
-  end subroutine resumed
-
-  subroutine step_taken(self, method, problem, t_to)
-    class(stopper_t), intent(inout) :: self
-    class(ode_method_t), intent(inout) :: method
-    class(ode_problem_t), intent(in) :: problem
-    real(dp), intent(in) :: t_to
-    associate (unused_method => method, unused_problem => problem, unused_t => t_to)
-    end associate
-    self%keeps_archives = .true.
-    self%wants_to_stop = .true.
-  end subroutine step_taken
-
-  subroutine take_archive(self, archive)
-    class(stopper_t), intent(inout) :: self
-    type(archive_t), intent(in) :: archive
-    call archive%contents(self%state)
-  end subroutine take_archive
 end module test_states

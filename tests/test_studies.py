@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of parameter studies outside the program: merged chunks, sensitivity indices, numbers of the pictures, shipped studies.
+"""Tests of parameter studies outside the program: samples, sensitivity indices, numbers of the pictures, shipped studies.
 
     .venv/bin/python tests/test_studies.py      (after scripts/setup.sh --studies; brings the release build up to date)
 
@@ -16,7 +16,7 @@ from contextlib import redirect_stderr
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(TOP / "scripts"), str(TOP / "scripts" / "cluster")]
+sys.path.insert(0, str(TOP / "scripts"))
 
 from gudgeon_plots.environment import use_virtual_environment  # noqa: E402
 
@@ -24,7 +24,6 @@ use_virtual_environment(studies=True)
 
 import matplotlib.colors  # noqa: E402
 import matplotlib.pyplot as plt  # noqa: E402
-import merge_runs  # noqa: E402
 import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 from scipy.integrate import solve_ivp  # noqa: E402
@@ -52,93 +51,6 @@ class InDirectory(unittest.TestCase):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
         return path
-
-
-class Merge(InDirectory):
-    """scripts/cluster/merge_runs.py."""
-
-    HEAD = "run,joint.clearance,status,impacts[-]\n"
-
-    def chunk(self, first: int, last: int, rows: str | None = None, head: str = HEAD, kind: str = "runs") -> None:
-        if rows is None:
-            rows = "".join(f'{run},{run}E-05,"done, well",1\n' for run in range(first, last + 1))
-        self.write(f"chunks/x.{first}-{last}.{kind}.csv", head + rows)
-
-    def merge(self, *ranges: str) -> str:
-        merge_runs.merge_all(self.work / "chunks" / "x", self.work / "out", ranges)
-        return (self.work / "out" / "x.runs.csv").read_text(encoding="utf-8")
-
-    def refused(self, message: str, *ranges: str) -> None:
-        with self.assertRaisesRegex((merge_runs.BadChunks, OSError), message):
-            self.merge(*ranges)
-        self.assertFalse((self.work / "out" / "x.runs.csv").exists())
-
-    def test_order_is_that_of_the_runs(self) -> None:
-        for first, last in ((1, 9), (10, 99), (100, 101)):  # 10 and 100 come before 2 in the order of letters
-            self.chunk(first, last)
-        merged = self.merge()
-        self.assertEqual(merged, self.HEAD + "".join(f'{n},{n}E-05,"done, well",1\n' for n in range(1, 102)))
-        self.assertEqual(merged, self.merge("1-9", "100-101", "10-99"))
-
-    def test_other_chunks_may_lie_beside(self) -> None:
-        self.chunk(1, 2)
-        self.chunk(1, 4)
-        self.chunk(3, 4)
-        self.refused("overlaps")
-        self.assertEqual(self.merge("1-4").count("\n"), 5)
-
-    def test_a_link_under_the_temporary_name_is_not_followed(self) -> None:
-        self.chunk(1, 2)
-        precious = self.write("precious", "precious")
-        (self.work / "out").mkdir()
-        (self.work / "out" / "x.runs.csv.partial").symlink_to(precious)
-        self.assertEqual(self.merge().count("\n"), 3)
-        self.assertEqual(precious.read_text(encoding="utf-8"), "precious")
-        self.assertFalse((self.work / "out" / "x.runs.csv").is_symlink())
-
-    def test_gaps_are_refused(self) -> None:
-        self.refused("No such file")
-        (self.work / "chunks").mkdir()
-        self.refused("no such chunk")
-        self.chunk(3, 4)
-        self.refused("runs 1 to 2 are missing")
-        self.chunk(1, 1)
-        self.refused("runs 2 to 2 are missing")
-        self.refused("No such file", "1-1", "2-2", "3-4")
-
-    def test_broken_chunks_are_refused(self) -> None:
-        self.chunk(1, 2)
-        for rows, message in (
-            ("3,a,done,1\n", "runs 4 to 4 are missing"),
-            ("3,a,done,1\n4,a,do", "ends within a row"),
-            ("4,a,done,1\n3,a,done,1\n", "run 3 expected, found '4'"),
-            ("3,a,done,1\n3,a,done,1\n", "run 4 expected, found '3'"),
-            ("3,a,done,1\n4,a,done,1\n5,a,done,1\n", "run 5 expected"),
-            ("3,a,done,1\n\n", "run 4 expected"),
-        ):
-            self.chunk(3, 4, rows)
-            self.refused(message)
-        self.chunk(3, 4, head=self.HEAD.replace("impacts", "cycles"))
-        self.refused("first line")
-
-    def test_files_of_many_rows_a_run(self) -> None:
-        for first, last in ((1, 2), (3, 4)):
-            self.chunk(first, last)
-        self.chunk(1, 2, "1,5,0.1\n1,6,0.2\n2,5,0.3\n", "run,cycle,eccentricity_x[m]\n", "strobe")
-        self.chunk(3, 4, "4,5,0.1\n4,6,0.2\n", "run,cycle,eccentricity_x[m]\n", "strobe")  # run 3 failed
-        self.merge()
-        text = (self.work / "out" / "x.strobe.csv").read_text(encoding="utf-8")
-        self.assertEqual(text, "run,cycle,eccentricity_x[m]\n1,5,0.1\n1,6,0.2\n2,5,0.3\n4,5,0.1\n4,6,0.2\n")
-        self.chunk(3, 4, "4,5,0.1\n3,6,0.2\n", "run,cycle,eccentricity_x[m]\n", "strobe")
-        with self.assertRaisesRegex(merge_runs.BadChunks, "found '3'"):
-            self.merge()
-
-    def test_count(self) -> None:
-        self.assertEqual(merge_runs.count_of("a 12.nml: correct, 1200 runs\n"), 1200)
-        self.assertEqual(merge_runs.count_of("a.nml: correct, 300000 runs (100000 of them checked)\n"), 300000)
-        self.assertEqual(merge_runs.count_of("a.nml: 5 runs, 2 would fail\n"), 5)
-        with self.assertRaises(merge_runs.BadChunks):
-            merge_runs.count_of("nothing")
 
 
 PI = [Parameter(f"x.{n}", -np.pi, np.pi) for n in range(1, 4)]
@@ -496,6 +408,25 @@ class Sweeps(InDirectory):
         one, other = ((self.work / f"{name}.runs.csv").read_bytes() for name in ("titles", "again"))
         self.assertEqual(one, other)
 
+    def test_samples(self) -> None:
+        ranges = TOP / "cases" / "studies" / "sensitivity_I.nml"
+        for design in ("sobol", "latin_hypercube"):
+            command = (sys.executable, TOP / "scripts" / "sample_study.py", ranges, "--runs", 64, "--design", design, "-o", self.work)
+            outcome = self.run_program(*command)
+            self.assertEqual(outcome.returncode, 0, outcome.stderr)
+            table = (self.work / f"sensitivity_I.{design}.csv").read_bytes()
+            values = pd.read_csv(io.BytesIO(table))
+            for parameter in study.read_study(ranges).parameters:  # one point in each of the equal parts of each range
+                low, high = parameter.bounds
+                sampled = np.log(values[parameter.key]) if parameter.log else values[parameter.key]
+                self.assertEqual(sorted((64 * (sampled - low) / (high - low)).astype(int)), list(range(64)), (design, parameter.key))
+            self.run_program(*command)
+            self.assertEqual(table, (self.work / f"sensitivity_I.{design}.csv").read_bytes(), "the same seed, the same points")
+            self.run_program(*command, "--seed", 2)
+            self.assertNotEqual(table, (self.work / f"sensitivity_I.{design}.csv").read_bytes(), "another seed, other points")
+            outcome = self.run_program(self.program, "sweep", "--check", self.work / f"sensitivity_I.{design}.nml")
+            self.assertIn("correct, 64 runs", outcome.stdout)
+
     @unittest.skipIf(sys.version_info < (3, 11), "Snakemake needs Python 3.11")
     def test_snakemake_writes_what_one_process_writes(self) -> None:
         options = "--set integrator.revolutions=2"
@@ -508,7 +439,7 @@ class Sweeps(InDirectory):
         self.assertEqual(outcome.returncode, 0, outcome.stderr)
         outcome = self.run_program(self.program, "sweep", "-q", "-o", self.work, *options.split(), self.study)
         self.assertEqual(outcome.returncode, 0, outcome.stderr)
-        for kind in merge_runs.KINDS:
+        for kind in ("runs", "cycles", "strobe"):
             one, merged = ((where / f"small.{kind}.csv").read_bytes() for where in (self.work, out))
             self.assertEqual(one, merged, kind)
             self.assertGreater(one.count(b"\n"), 9)

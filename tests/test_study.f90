@@ -1,4 +1,4 @@
-!> The parts of parameter studies: random numbers, Sobol's points, designs, tables, rows, files of rows, checksums.
+!> The parts of parameter studies: grids, tables, rows, checksums.
 module test_study
   use gudgeon_kinds, only: dp
   use checks, only: checks_t
@@ -6,14 +6,11 @@ module test_study
   use gudgeon_checksum, only: checksum_t
   use number_text, only: number_writer_t
   use gudgeon_posix, only: remove_file
-  use random_numbers, only: random_numbers_t
-  use sobol_points, only: sobol_points_t, most_dimensions
   use study_definition, only: study_t
   use study_file, only: read_study
   use study_design, only: study_design_t, new_design
   use study_table, only: study_table_t, parse_table
   use row_text, only: row_text_t
-  use row_file, only: row_file_t
   implicit none
   private
   public :: run_test_study
@@ -29,65 +26,11 @@ contains
     call checksum%add('1234')
     call checksum%add('56789')
     call check%equal_text(checksum%hexadecimal(), '995DC9BBDF1939FA', 'check value of CRC-64/XZ, in two pieces')
-    call test_random_numbers(check)
-    call test_sobol(check)
     call test_grid(check)
-    call test_hypercube(check)
-    call test_sobol_design(check)
     call test_tables(check)
     call a_long_table_takes_time_as_its_length(check)
     call test_row_text(check)
-    call test_row_file(check)
   end subroutine run_test_study
-
-  !> The first numbers of all six components from the state 12345, and the sum of 10,000, from integer arithmetic of any length.
-  subroutine test_random_numbers(check)
-    class(checks_t), intent(inout) :: check
-    type(random_numbers_t) :: random, other
-    real(dp), parameter :: first(4) = [0.12701112204657714_dp, 0.3185275653967945_dp, 0.3091860155832701_dp, &
-      0.8258468629271135_dp]
-    real(dp) :: u, v, sum
-    integer :: i, number
-    logical :: differs, covers(0:2)
-    sum = 0
-    do i = 1, 10000
-      call random%uniform(u)
-      if (i <= size(first)) call check%relative(u, first(min(i, size(first))), 1e-15_dp, 'MRG32k3a')
-      sum = sum + u
-    end do
-    call check%relative(sum, 5001.493769254248_dp, 1e-13_dp, 'MRG32k3a, sum of 10,000')
-    differs = .true.
-    covers = .false.
-    call random%begin(0)
-    call other%begin(1)
-    do i = 1, 100
-      call random%uniform(u)
-      call other%uniform(v)
-      differs = differs .and. abs(u - v) > 1e-9_dp
-      call random%below(3, number)
-      covers(number) = .true.
-    end do
-    call check%that(differs, 'seeds give different numbers')
-    call check%that(all(covers), 'whole numbers below 3')
-  end subroutine test_random_numbers
-
-  !> Points 12345 and 54321 in all dimensions, times 2^16, from scipy.stats.qmc.Sobol.
-  subroutine test_sobol(check)
-    class(checks_t), intent(inout) :: check
-    integer, parameter :: late(most_dimensions) = [38013, 38699, 48017, 12657, 26599, 37447, 44907, 29445, 62121, 32337, 5347, &
-      16099, 40331, 58301, 43107, 55413, 8375, 52471, 53837, 56631, 33183]
-    integer, parameter :: early(most_dimensions) = [42004, 53308, 10508, 34524, 58228, 3860, 8340, 7428, 52548, 28156, 4868, &
-      39244, 61012, 61724, 2260, 41996, 4100, 3340, 20932, 22508, 13060]
-    type(sobol_points_t) :: points
-    integer :: d
-    call points%prepare(most_dimensions)
-    do d = 1, most_dimensions
-      call check%close_to(points%coordinate(0, d), 0.0_dp, 0.0_dp, 'point 0')
-      call check%close_to(points%coordinate(1, d), 0.5_dp, 0.0_dp, 'point 1')
-      call check%that(int(65536*points%coordinate(12345, d)) == early(d), 'point 12345')
-      call check%that(int(65536*points%coordinate(54321, d)) == late(d), 'point 54321')
-    end do
-  end subroutine test_sobol
 
   !> The design of a study with this text; the study must be correct.
   subroutine design_of(text, design)
@@ -103,15 +46,6 @@ contains
     if (.not. allocated(error)) call new_design(study, 10, design, error)
     if (allocated(error)) error stop 'test_study: a study is refused'
   end subroutine design_of
-
-  !> A number of a run's values.
-  real(dp) function value_of(design, run, parameter)
-    type(study_design_t), intent(in) :: design
-    integer, intent(in) :: run, parameter
-    character(len=design%text_length) :: values(size(design%keys))
-    call design%get_values(run, values)
-    read (values(parameter), *) value_of
-  end function value_of
 
   subroutine test_grid(check)
     class(checks_t), intent(inout) :: check
@@ -130,59 +64,6 @@ contains
     call check%equal_text(trim(values(1))//' '//trim(values(2))//' '//trim(values(3)), '1.000000000E+02 as_printed 1', 'run 30')
     call remove_study()
   end subroutine test_grid
-
-  !> In every dimension each of the equal parts has one point; another seed gives other points, the same seed the same.
-  subroutine test_hypercube(check)
-    class(checks_t), intent(inout) :: check
-    type(study_design_t) :: design, other, same
-    character(len=*), parameter :: axes = "&parameter key = 'a.b', from = 0, to = 1 / "// &
-      "&parameter key = 'c.d', from = 1, to = 1000, scale = 'log' / &parameter key = 'e.f', values = 1, 2, 3, 4 /"
-    integer :: part(64, 2), run, k, listed(4)
-    real(dp) :: apart, product
-    call design_of("&study case = 'x.nml', design = 'latin_hypercube', runs = 64, seed = 7 / "//axes, design)
-    call design_of("&study case = 'x.nml', design = 'latin_hypercube', runs = 64, seed = 8 / "//axes, other)
-    call design_of("&study case = 'x.nml', design = 'latin_hypercube', runs = 64, seed = 7 / "//axes, same)
-    part = 0
-    listed = 0
-    apart = 0
-    product = 0
-    do run = 1, 64
-      k = 1 + int(64*value_of(design, run, 1))
-      part(k, 1) = part(k, 1) + 1
-      k = 1 + int(64*log10(value_of(design, run, 2))/3)
-      part(k, 2) = part(k, 2) + 1
-      k = nint(value_of(design, run, 3))
-      listed(k) = listed(k) + 1
-      apart = max(apart, abs(value_of(design, run, 1) - value_of(same, run, 1)))
-      product = product + abs(value_of(design, run, 1) - value_of(other, run, 1))/64
-    end do
-    call check%that(all(part == 1), 'one run in each part of each range')
-    call check%that(all(listed == 16), 'each value of a list is used equally often')
-    call check%that(.not. apart > 0, 'the same seed gives the same runs')
-    call check%that(product > 0.2_dp, 'another seed gives other runs')
-    call remove_study()
-  end subroutine test_hypercube
-
-  !> Without a seed the points of the sequence; with a seed they are shifted, and each part still has one point.
-  subroutine test_sobol_design(check)
-    class(checks_t), intent(inout) :: check
-    type(study_design_t) :: design, shifted
-    integer :: part(32), run, k
-    character(len=*), parameter :: axes = "&parameter key = 'a.b', from = 2, to = 4 / &parameter key = 'c.d', from = 0, to = 1 /"
-    call design_of("&study case = 'x.nml', design = 'sobol', runs = 32 / "//axes, design)
-    call check%close_to(value_of(design, 1, 1), 2.0_dp, 0.0_dp, 'point 0')
-    call check%close_to(value_of(design, 3, 1), 3.5_dp, 0.0_dp, 'point 2')
-    call check%close_to(value_of(design, 3, 2), 0.25_dp, 0.0_dp, 'point 2, second dimension')
-    call design_of("&study case = 'x.nml', design = 'sobol', runs = 32, seed = 5 / "//axes, shifted)
-    part = 0
-    do run = 1, 32
-      k = 1 + int(32*value_of(shifted, run, 2))
-      part(k) = part(k) + 1
-    end do
-    call check%that(all(part == 1), 'a shifted sequence has one point in each part')
-    call check%that(abs(value_of(shifted, 1, 2) - value_of(design, 1, 2)) > 1e-6_dp, 'a seed shifts the sequence')
-    call remove_study()
-  end subroutine test_sobol_design
 
   subroutine remove_study()
     integer :: ignored
@@ -293,67 +174,4 @@ contains
     call check%equal_text(row%text(:row%used), "'=1+1,'+a,"//q//"'-2,x"//q//",'@a,'"//achar(9)//"a,'''-a,-1.5e-5,'a=b','", &
       'texts that begin like formulas')
   end subroutine test_row_text
-
-  !> Rows in any order are sorted by run, incomplete rows and those of excluded runs are removed, and the counts agree.
-  subroutine test_row_file(check)
-    class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: path = 'build/test_rows.csv', header = 'run,x,y'//n
-    character(len=1), parameter :: none(0) = [character(len=1) ::]
-    type(row_file_t) :: first, again, renamed, shorter
-    type(error_t), allocatable :: error
-    integer :: unit, ignored
-    call remove_file(path, ignored)
-    call first%prepare(path, header, 3, 6, none)
-    call first%take_up(error)
-    call check%that(.not. allocated(error), 'a missing file has no rows to continue')
-    call first%begin(error)
-    call check%that(.not. allocated(error), 'a file of rows is begun')
-    call check%equal_text(content(path), header, 'a new file has its header')
-    call first%append(6, '6,a,1'//n//'6,b,2'//n)
-    call first%append(4, '4,"c,,""",7'//n)
-    call check%equal_text(content(path), header, 'rows are kept in memory at first')
-    call check%that(first%waiting%used == 24, 'number of bytes in memory')
-    call first%write(error)
-    call check%that(.not. allocated(error), 'rows are written')
-    call check%equal_text(content(path), header//'6,a,1'//n//'6,b,2'//n//'4,"c,,""",7'//n, &
-      'rows are in the order in which they came')
-    call check%that(first%waiting%used == 0, 'no bytes are left in memory')
-    call first%finish(.false., error)
-    call again%prepare(path, header, 3, 6, ['y', 'x'])
-    open (newunit=unit, file=path, position='append', access='stream', form='unformatted')
-    write (unit) '5,d,5'//n//'3,e'//n//'3,'//achar(0)//',1'//n//achar(0)//achar(0)//n//'3,torn'
-    close (unit)
-    call again%take_up(error)
-    call check%that(all(again%length(4:6) > 0) .and. again%length(3) == 0, 'runs found in an earlier file')
-    call check%that(again%rows(6) == 2 .and. again%rows(5) == 1 .and. again%rows(3) == 0, 'number of rows of a run')
-    call check%that(again%numbers(1, 4) == 7 .and. again%numbers(2, 4) == 0 .and. again%numbers(1, 6) == 2, 'numbers in the rows')
-    call again%drop(4)
-    call again%begin(error)
-    call check%equal_text(content(path), header//'5,d,5'//n//'6,a,1'//n//'6,b,2'//n, 'incomplete rows are removed')
-    call again%append(4, '4,f,'//n)
-    call again%append(3, '3,g,'//n)
-    call again%write(error)
-    call again%finish(.true., error)
-    call check%that(.not. allocated(error), 'rows are finished')
-    call check%equal_text(content(path), header//'3,g,'//n//'4,f,'//n//'5,d,5'//n//'6,a,1'//n//'6,b,2'//n, 'rows are sorted by run')
-    call renamed%prepare(path, 'run,x,z'//n, 3, 6, none)
-    call renamed%take_up(error)
-    call check%that(allocated(error), 'another header is refused')
-    call shorter%prepare(path, header, 3, 5, none)
-    call shorter%take_up(error)
-    call check%that(allocated(error), 'a row of a run that does not exist is refused')
-    call remove_file(path, ignored)
-  end subroutine test_row_file
-
-  !> The content of a file.
-  function content(path) result(text)
-    character(len=*), intent(in) :: path
-    character(len=:), allocatable :: text
-    integer :: unit, length
-    open (newunit=unit, file=path, access='stream', form='unformatted', status='old', action='read')
-    inquire (unit=unit, size=length)
-    allocate (character(len=length) :: text)
-    read (unit) text
-    close (unit)
-  end function content
 end module test_study

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Tests of parameter studies as a user runs them: equal results for any number of threads, in chunks, and after a kill; failed runs;
+# Tests of parameter studies as a user runs them: equal results for any number of processes, in parts, and after a kill; failed runs;
 # messages. Run from the top of the checkout; ends with the line "N passed, N failed".
 . tests/program_checks.sh
 subcommand=sweep
@@ -31,22 +31,25 @@ check "a row has the results of the case: largest residual" [ "$(field "$work/si
 check "a row has the results of the case: evaluations" [ "$(field "$work/single/base.summary.csv" rhs_evaluations)" = \
   "$(awk -F, '$1 == 2 { print $17 }' "$work/one/grid.runs.csv")" ]
 
-same() {   # same NAME FOLDER: all files of the grid are those of one thread
+same() {   # same NAME FOLDER: all files of the grid are those of one process
   for kind in runs cycles strobe; do
     check "$1: $kind" cmp -s "$work/one/grid.$kind.csv" "$2/grid.$kind.csv"
   done
 }
 
 run sweep -j 4 -o "$work/four" "$work/grid.nml"
-same "four threads" "$work/four"
+same "four processes" "$work/four"
 
-# chunks
-run sweep -o "$work/chunks" --rows 1:5 "$work/grid.nml"
-run sweep -o "$work/chunks" --rows 6:12 "$work/grid.nml"
-for kind in runs cycles strobe; do
-  { cat "$work/chunks/grid.1-5.$kind.csv"; tail -n +2 "$work/chunks/grid.6-12.$kind.csv"; } >"$work/chunks/grid.$kind.csv"
-done
-same "chunks" "$work/chunks"
+# parts
+run sweep -o "$work/parts" --rows 1:5 "$work/grid.nml"
+check "a part of the rows, got $(cat "$work/out")" grep -q '5 runs; .*; .*grid.chunks$' "$work/out"
+check "a part alone gives no table" [ ! -e "$work/parts/grid.runs.csv" ]
+run sweep -o "$work/parts" --rows 4:9 "$work/grid.nml"
+check "rows that are done are not run again, got $(cat "$work/out")" grep -q '6 runs, 2 of them already done;' "$work/out"
+run sweep -o "$work/parts" "$work/grid.nml"
+check "the last sweep runs the remaining rows, got $(cat "$work/out")" grep -q '12 runs, 9 of them already done;.*grid.runs.csv$' "$work/out"
+same "parts" "$work/parts"
+check "no parts are left" [ ! -e "$work/parts/grid.chunks" ]
 
 # a start of the rows that only the slow run reaches: without traces the other does not fail
 sed 's/ideal_twin = .true./start_time = 0.05/' "$work/base.nml" >"$work/late_rows.nml"
@@ -228,16 +231,17 @@ for row in 1 2; do
 done
 check "the revolution of the statistics has its number" [ "$(awk -F, 'NR > 1 && $2 < 5' "$work/periods/periods.cycles.csv" | wc -l)" = 0 ]
 
-# files left by a program that was killed: complete rows in any order, an incomplete row, revolutions of a run that has no row
-mkdir "$work/torn"
+# files left by a program that was killed: whole chunks, and one that was being written
+mkdir -p "$work/torn/grid.chunks"
 cp "$work/one/grid.study.nml" "$work/torn"
-{ head -n 1 "$work/one/grid.runs.csv"; grep -e '^9,' -e '^4,' "$work/one/grid.runs.csv"; printf '5,1.58740'; } \
-  >"$work/torn/grid.runs.csv"
-{ head -n 1 "$work/one/grid.cycles.csv"; grep '^9,' "$work/one/grid.cycles.csv"; grep '^5,' "$work/one/grid.cycles.csv"
-  grep '^4,' "$work/one/grid.cycles.csv"; printf '5,1'; } >"$work/torn/grid.cycles.csv"
-{ head -n 1 "$work/one/grid.strobe.csv"; grep -e '^4,' -e '^9,' "$work/one/grid.strobe.csv"; } >"$work/torn/grid.strobe.csv"
+for run in 4 9; do
+  for kind in runs cycles strobe; do
+    { head -n 1 "$work/one/grid.$kind.csv"; grep "^$run," "$work/one/grid.$kind.csv"; } >"$work/torn/grid.chunks/$run-$run.$kind.csv"
+  done
+done
+printf 'run,joint.clea' >"$work/torn/grid.chunks/5-5.runs.csv.part"
 run sweep -o "$work/torn" "$work/grid.nml"
-check "a killed sweep is continued" grep -q '12 runs, 2 of them already done' "$work/out"
+check "a killed sweep is continued, got $(cat "$work/out")" grep -q '12 runs, 2 of them already done' "$work/out"
 same "continued" "$work/torn"
 run sweep -o "$work/torn" "$work/grid.nml"
 check "nothing is run twice" grep -q '12 runs, 12 of them already done; [^;]*csv$' "$work/out"
@@ -267,55 +271,57 @@ run sweep -o "$work/folder" "$work/grid.nml"
 check "a folder with a temporary name: status 5, got $status" [ "$status" = 5 ]
 check "the message names a folder with a temporary name" grep -q 'grid.runs.csv: Is a directory' "$work/err"
 
-# files that do not fit together: runs with missing results are run again
-fits() {   # fits NAME RUNS: the sweep in $work/broken repeats so many runs, and then has the files of an uninterrupted sweep
+# results that were cut, as by a power failure, are noticed and run again
+cut() {   # cut NAME FILE: one of the files of a chunk of two runs, cut
+  rm -rf "$work/broken"
+  run sweep -o "$work/broken" --rows 1:12 "$work/grid.nml"
+  mkdir -p "$work/broken/grid.chunks"
+  for kind in runs cycles strobe; do
+    { head -n 1 "$work/one/grid.$kind.csv"; grep -e '^3,' -e '^4,' "$work/one/grid.$kind.csv"; } >"$work/broken/grid.chunks/3-4.$kind.csv"
+    for run in 1 2 5 6 7 8 9 10 11 12; do
+      { head -n 1 "$work/one/grid.$kind.csv"; grep "^$run," "$work/one/grid.$kind.csv"; } >"$work/broken/grid.chunks/$run-$run.$kind.csv"
+    done
+  done
+  rm -f "$work/broken/grid.runs.csv"
+  truncate -s "$3" "$work/broken/grid.chunks/3-4.$2.csv"
   run sweep -o "$work/broken" "$work/grid.nml"
-  check "$1: $2 run again, got $(cat "$work/out")" grep -q " $2 incomplete and run again;" "$work/out"
+  check "$1: status 5, got $status" [ "$status" = 5 ]
+  check "$1: the file is named: $(cat "$work/err")" grep -q "3-4.$2.csv: damaged; the same command runs its rows again" "$work/err"
+  run sweep -o "$work/broken" "$work/grid.nml"
+  check "$1: 2 runs again, got $(cat "$work/out")" grep -q '12 runs, 10 of them already done;' "$work/out"
   same "$1" "$work/broken"
 }
-cp -R "$work/one" "$work/broken"
-head -c 700 "$work/one/grid.cycles.csv" >"$work/broken/grid.cycles.csv"
-fits "incomplete revolutions" 11
-tail -n 1 "$work/one/grid.strobe.csv" | cmp -s - "$work/one/grid.strobe.csv" && check "the last strobe is one of several" false
-head -n -1 "$work/one/grid.strobe.csv" >"$work/broken/grid.strobe.csv"
-fits "incomplete strobes" 1
-rm "$work/broken/grid.strobe.csv"
-fits "no strobes" 12
-sed '/^3,/{s/,done,.*//;q}' "$work/one/grid.runs.csv" >"$work/broken/grid.runs.csv"
-tail -n +5 "$work/one/grid.runs.csv" >>"$work/broken/grid.runs.csv"
-run sweep -o "$work/broken" "$work/grid.nml"
-check "the run of an incomplete row is repeated, got $(cat "$work/out")" grep -q '12 runs, 11 of them already done;' "$work/out"
-same "an incomplete row" "$work/broken"
-printf '4,\0\0\0\0\n' >>"$work/broken/grid.runs.csv"
-run sweep -o "$work/broken" "$work/grid.nml"
-same "zeros after the rows" "$work/broken"
+cut "a cut row" runs -20
+cut "no rows" runs 0
+cut "no revolutions" cycles 0
+cut "a cut strobe" strobe -3
 sed "s/cycles = T/traces = 'all'/" "$work/grid.nml" >"$work/traced.nml"
 run sweep -o "$work/broken" "$work/traced.nml"
-rm "$work/broken/traced/5.csv"
-run sweep -o "$work/broken" "$work/traced.nml"
-check "a missing trace is written again" [ -s "$work/broken/traced/5.csv" ]
-check "only the run of a missing trace is repeated" grep -q '11 of them already done, 1 incomplete' "$work/out"
+check "every run has a trace" [ "$(ls "$work/broken/traced" | grep -c '[0-9].csv')" = 12 ]
 
 # a real kill, and a termination signal
 study long <<'END'
-&study case = 'base.nml', design = 'latin_hypercube', runs = 3000, seed = 3, cycles = T, strobe_columns = 'pin_force_x' /
-&parameter key = 'joint.clearance', from = 1e-5, to = 4e-5 /
-&parameter key = 'lubrication.viscosity', from = 0.005, to = 0.02 /
+&study case = 'base.nml', cycles = T, strobe_columns = 'pin_force_x' /
+&parameter key = 'joint.clearance', from = 1e-5, to = 4e-5, count = 60 /
+&parameter key = 'lubrication.viscosity', from = 0.005, to = 0.02, count = 50 /
 END
 run sweep -o "$work/whole" "$work/long.nml"
 for signal in KILL TERM; do
   "$gudgeon" sweep -o "$work/$signal" "$work/long.nml" >"$work/out" 2>"$work/err" &
   pid=$!
   tries=0
-  while [ "$(cat "$work/$signal/long.runs.csv" 2>/dev/null | wc -l)" -lt 20 ] && [ $tries -lt 1000 ]; do
+  while [ "$(ls "$work/$signal/long.chunks" 2>/dev/null | grep -c 'runs.csv$')" -lt 5 ] && [ $tries -lt 1000 ]; do
     tries=$((tries + 1))
     sleep 0.02
   done
   kill -$signal $pid
   wait $pid 2>/dev/null
   status=$?
-  rows=$(wc -l <"$work/$signal/long.runs.csv")
-  check "$signal: stopped before the end, $rows rows" [ "$rows" -ge 20 -a "$rows" -lt 3000 ]
+  chunks=$(ls "$work/$signal/long.chunks" | grep -c 'runs.csv$')
+  check "$signal: stopped before the end, $chunks chunks" [ "$chunks" -ge 5 -a "$chunks" -lt 200 -a ! -e "$work/$signal/long.runs.csv" ]
+  tries=0   # the processes of a killed sweep end with it
+  while pgrep -f "sweep -o $work/$signal" >/dev/null && [ $tries -lt 50 ]; do tries=$((tries + 1)); sleep 0.02; done
+  check "$signal: no process is left" [ $tries -lt 50 ]
   [ "$signal" = TERM ] && check "interrupted: exit status 4, got $status" [ "$status" = 4 ]
   [ "$signal" = TERM ] && check "interrupted: the message names the command that continues" grep -q 'interrupted after .* of 3000 runs; the same command' "$work/err"
   run sweep -o "$work/$signal" "$work/long.nml"
@@ -324,77 +330,40 @@ for signal in KILL TERM; do
   check "$signal: the same revolutions" cmp -s "$work/whole/long.cycles.csv" "$work/$signal/long.cycles.csv"
 done
 
-# power cuts: the program ends at call number POWER_CUT of fsync, before that call. Of every file only the part that was flushed to
-# the disk is kept, by its inode and length in POWER_CUT_LOG; of the rows of runs everything that was written is kept.
-cat >"$work/power_cut.c" <<'END'
-#define _GNU_SOURCE
-#include <fcntl.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <sys/stat.h>
-#include <sys/syscall.h>
-#include <unistd.h>
+# a process of the sweep is killed: its rows are named, the others are kept
+"$gudgeon" sweep -j 2 -o "$work/lost" "$work/long.nml" >"$work/out" 2>"$work/err" &
+pid=$!
+tries=0
+while [ "$(ls "$work/lost/long.chunks" 2>/dev/null | grep -c 'runs.csv$')" -lt 5 ] && [ $tries -lt 1000 ]; do
+  tries=$((tries + 1))
+  sleep 0.02
+done
+kill -KILL "$(pgrep -P $pid | head -n 1)"
+wait $pid
+status=$?
+check "a process of the sweep is killed: status 4, got $status" [ "$status" = 4 ]
+check "the message names its runs: $(cat "$work/err")" \
+  grep -q 'long.nml: the process of the runs [0-9]* to [0-9]* was killed by signal 9; the results of other runs are kept' "$work/err"
+check "the other process has done the other chunks" [ "$(ls "$work/lost/long.chunks" | grep -c 'runs.csv$')" = 199 ]
+run sweep -o "$work/lost" "$work/long.nml"
+check "the same command runs its rows, got $(cat "$work/out")" grep -q '3000 runs, 2985 of them already done' "$work/out"
+check "a killed process: the same runs" cmp -s "$work/whole/long.runs.csv" "$work/lost/long.runs.csv"
 
-static int calls;
-
-int fsync(int descriptor)
-{
-    struct stat file;
-    int log, status;
-    if (__sync_add_and_fetch(&calls, 1) == atoi(getenv("POWER_CUT")))
-        _exit(137);
-    status = (int)syscall(SYS_fsync, descriptor);
-    if (status == 0 && fstat(descriptor, &file) == 0 && S_ISREG(file.st_mode)) {
-        log = open(getenv("POWER_CUT_LOG"), O_WRONLY | O_CREAT | O_APPEND, 0666);
-        dprintf(log, "%lu %lld\n", (unsigned long)file.st_ino, (long long)file.st_size);
-        close(log);
-    }
-    return status;
-}
-END
-if gcc -shared -fPIC -O1 -o "$work/power_cut.so" "$work/power_cut.c"; then
-  cut=1
-  status=137
-  while [ "$status" = 137 ]; do
-    rm -rf "$work/power"
-    : >"$work/power.log"
-    POWER_CUT=$cut POWER_CUT_LOG=$work/power.log LD_PRELOAD=$work/power_cut.so "$gudgeon" sweep -q -o "$work/power" "$work/long.nml"
-    status=$?
-    find "$work/power" -type f ! -name '*.runs.csv' | while read -r file; do
-      length=$(awk -v number="$(stat -c %i "$file")" '$1 == number { length_ = $2 } END { print length_ + 0 }' "$work/power.log")
-      truncate -s "$length" "$file"
-    done
-    rows=$(cat "$work/power/long.runs.csv" 2>/dev/null | wc -l)
-    run sweep -o "$work/power" "$work/long.nml"
-    check "cut at call $cut, $rows rows: continued, status $status" [ "$status" = 0 ]
-    check "cut at call $cut: every row has its revolutions and strobes, $(cat "$work/out")" \
-      [ "$(grep -c 'incomplete and run again' "$work/out")" = 0 ]
-    for kind in runs cycles strobe; do
-      check "cut at call $cut: $kind" cmp -s "$work/whole/long.$kind.csv" "$work/power/long.$kind.csv"
-    done
-    status=137
-    [ "$rows" = 3001 ] && break
-    cut=$((cut + 3))
-  done
-  check "power cuts during the sweep, $cut calls" [ "$cut" -gt 12 ]
-else
-  check "power_cut.c is compiled" false
-fi
+# a full disk
+( ulimit -f 4; "$gudgeon" sweep -j 2 -o "$work/full" "$work/long.nml" >"$work/out" 2>"$work/err" )
+check "a full disk: status 5, got $?" [ $? = 0 -o -s "$work/err" ]
+check "a full disk is named: $(cat "$work/err")" grep -q 'long.*csv: File too large' "$work/err"
 
 # a large study is checked quickly, and a signal ends the program at once
 study large <<'END'
-&study case = 'base.nml', design = 'latin_hypercube', runs = 10000000 /
-&parameter key = 'joint.clearance', from = 1e-5, to = 4e-5 /
-&parameter key = 'lubrication.viscosity', from = 0.005, to = 0.02 /
-&parameter key = 'initial.crank_speed', from = 100, to = 200 /
-&parameter key = 'mechanism.piston_mass', from = 0.5, to = 1 /
+&study case = 'base.nml' /
+&parameter key = 'joint.clearance', from = 1e-5, to = 4e-5, count = 200 /
+&parameter key = 'lubrication.viscosity', from = 0.005, to = 0.02, count = 200 /
+&parameter key = 'initial.crank_speed', from = 100, to = 200, count = 10 /
+&parameter key = 'mechanism.piston_mass', from = 0.5, to = 1, count = 25 /
 END
-for design in latin_hypercube sobol; do
-  sed "s/latin_hypercube/$design/" "$work/large.nml" >"$work/large_$design.nml"
-  timeout -s KILL 100 "$gudgeon" sweep --check "$work/large_$design.nml" >"$work/out"
-  check "a large $design is checked, status $?" [ "$(cat "$work/out")" = \
-    "$work/large_$design.nml: correct, 10000000 runs (100000 of them checked)" ]
-done
+timeout -s KILL 100 "$gudgeon" sweep --check "$work/large.nml" >"$work/out"
+check "a large grid is checked, status $?" [ "$(cat "$work/out")" = "$work/large.nml: correct, 10000000 runs (100000 of them checked)" ]
 study large_grid <<'END'
 &study case = 'base.nml' /
 &parameter key = 'joint.clearance', from = 1e-5, to = 4e-5, count = 3000 /
@@ -477,7 +446,7 @@ study bad <<'END'
 &study case = 'base.nml' /
 &parameter key = 'joint.clearance', from = 1e-5, to = 2e-5 /
 END
-refused "no count" 3 "&parameter count.*required on a grid" "$work/bad.nml"
+refused "no count" 3 "&parameter count.*required with from and to" "$work/bad.nml"
 study bad <<'END'
 &study case = 'base.nml', table = 'bad.csv' /
 END
@@ -525,7 +494,7 @@ study contacts <<'END'
 END
 run sweep --check -s contact=none -s contact.law=hunt_crossley "$work/contacts.nml"
 check "a group that is removed and given anew may be varied" [ "$status" = 0 ]
-refused "an interval of checkpoints" 2 "--checkpoint is for cases" --checkpoint 5 "$work/films.nml"
+refused "--fresh for a part of the rows" 2 "--fresh would discard the results of other rows" --fresh --rows 1:2 "$work/films.nml"
 printf 'joint.clearance\n1e-5\n' >"$work/own.runs.csv"
 echo "&study case = 'base.nml', table = 'own.runs.csv' /" >"$work/own.nml"
 for fresh in "" --fresh; do

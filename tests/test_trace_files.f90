@@ -15,7 +15,6 @@ module test_trace_files
 
   character(len=*), parameter :: folder = 'build/test_trace_files'
 
-
   character(len=name_length), parameter :: names(4) = [character(len=name_length) :: 'time[s]', 'phase[-]', 'energy[J]', &
     'gas_force[N]']
 

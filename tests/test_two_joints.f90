@@ -11,6 +11,7 @@ module test_two_joints
   use state_layout, only: layout_t
   use chain_reactions, only: reactions_t
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact
+  use state_making, only: put_contact
   use ode_method, only: ode_method_t
   use gudgeon_methods, only: new_method
   use gudgeon_solver, only: integrate, integration_done
@@ -51,7 +52,7 @@ contains
     scene%chain%is_loose = .false.
     do i = 1, size(places)
       joints(i) = scene%joints(1)
-      joints(i)%place = places(i)
+      call joints(i)%put_at(places(i))
       scene%chain%is_loose(places(i)) = .true.
     end do
     call move_alloc(joints, scene%joints)
@@ -128,7 +129,7 @@ contains
       scene%joints(i)%phase = phase_contact
       scene%joints(i)%impact_speed = 0.5_dp
       associate (at => scene%joints(i)%at)
-        y(at%position:at%position + 1) = 1.01_dp*case%joint%clearance*[cos(1.9_dp*i), sin(1.9_dp*i)]
+        y(at%position:at%position + 1) = 1.01_dp*case%joints(piston_pin)%clearance*[cos(1.9_dp*i), sin(1.9_dp*i)]
         y(at%rate:at%rate + 1) = [0.2_dp, -0.3_dp]*i
       end associate
     end do
@@ -139,10 +140,10 @@ contains
     call check%close_to(maxval(abs(r%pin + now%joint(1)%contact))/norm2(r%pin), 0.0_dp, 1e-10_dp, 'F5, F6 with two joints')
     call check%close_to(maxval(abs(r%crankpin + now%joint(2)%contact))/norm2(r%crankpin), 0.0_dp, 1e-10_dp, &
       'F3, F4 with two joints')
-    associate (j => now%joint(2), m => now%relative(2))
-      call check%relative(j%power, dot_product(j%contact, m%eccentricity_rate) + j%moment*now%motion%crank_speed &
-        - bearing_moment(m%eccentricity, j%contact, j%moment)*now%motion%rod_speed, 1e-14_dp, 'power of the crank pin')
-      call check%relative(j%power, j%friction_force*m%sliding_speed - j%normal_force*m%penetration_rate, 1e-12_dp, &
+    associate (j => now%joint(2))
+      call check%relative(j%power, dot_product(j%contact, j%eccentricity_rate) + j%moment*now%motion%crank_speed &
+        - bearing_moment(j%eccentricity, j%contact, j%moment)*now%motion%rod_speed, 1e-14_dp, 'power of the crank pin')
+      call check%relative(j%power, j%friction_force*j%sliding_speed - j%normal_force*j%penetration_rate, 1e-12_dp, &
         'power of friction and contact at the crank pin')
     end associate
   end subroutine reactions_are_the_laws_forces
@@ -168,8 +169,9 @@ contains
       [piston_pin, crank_pin], case, scene)
     call run(case, scene, 'auto', t_end, automatic, watcher, status(3))
     call check%that(all(status == integration_done), 'two joints with Adams, Radau and auto')
-    call check%close_to(maxval(abs(one(:4) - other(:4)))/case%joint%clearance, 0.0_dp, 1e-4_dp, 'eccentricities, Radau and Adams')
-    call check%close_to(maxval(abs(one(:4) - automatic(:4)))/case%joint%clearance, 0.0_dp, 1e-4_dp, &
+    call check%close_to(maxval(abs(one(:4) - other(:4)))/case%joints(piston_pin)%clearance, 0.0_dp, 1e-4_dp, &
+      'eccentricities, Radau and Adams')
+    call check%close_to(maxval(abs(one(:4) - automatic(:4)))/case%joints(piston_pin)%clearance, 0.0_dp, 1e-4_dp, &
       'eccentricities, auto and Adams')
   end subroutine methods_agree
 
@@ -192,11 +194,9 @@ contains
       y = scene%initial_state()
       allocate (f(scene%n))
       do i = 1, 2
-        scene%joints(i)%phase = phase_contact
-        scene%joints(i)%impact_speed = 1
-        scene%joints(i)%sliding = 0
+        call put_contact(scene%joints(i), 1.0_dp, 0)
         associate (at => scene%joints(i)%at)
-          y(at%position:at%position + 1) = 1.02_dp*case%joint%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)]
+          y(at%position:at%position + 1) = 1.02_dp*case%joints(piston_pin)%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)]
           y(at%rate:at%rate + 1) = [0.4_dp*cos(2.1_dp*i), 0.3_dp*sin(1.7_dp*i)]
         end associate
       end do
@@ -204,7 +204,7 @@ contains
       call scene%evaluate(1e-3_dp, y, now, inside)
       call scene%evaluate(1e-3_dp + dt, y + dt*f, ahead, inside)
       call scene%evaluate(1e-3_dp - dt, y - dt*f, behind, inside)
-      worst = maxval(abs(ahead%relative%sliding_speed - behind%relative%sliding_speed))/(2*dt)
+      worst = maxval(abs(ahead%joint%sliding_speed - behind%joint%sliding_speed))/(2*dt)
       call check%that(minval(abs(now%joint%friction_force)) > 1, 'both sticking pins have friction forces')
       call check%close_to(worst, 0.0_dp, 1e-2_dp, 'both pins stick: change of the sliding speeds [m/s2]')
       call check%relative(f(scene%work_at), now%power, 1e-14_dp, 'the power is that of the evaluation')
@@ -235,7 +235,7 @@ contains
       call check%that(all(watcher%begun >= 1), 'both contacts are found')
       call check%that(all(watcher%begun == watcher%ended), 'the ends of both contacts are found')
       call check%close_to(watcher%first_begin(1), watcher%first_begin(2), 1e-14_dp, 'both contacts begin at the same time [s]')
-      call check%relative(watcher%first_begin(1), case%joint%clearance/0.5_dp, 1e-9_dp, 'time of both contacts')
+      call check%relative(watcher%first_begin(1), case%joints(piston_pin)%clearance/0.5_dp, 1e-9_dp, 'time of both contacts')
       call check%close_to(energy_residual(scene, 4e-4_dp, y), 0.0_dp, 1e-8_dp, 'contacts at both pins at once: energy residual')
       deallocate (y)
     end do

@@ -6,7 +6,7 @@ module test_wear
   use gudgeon_constants, only: pi, two_pi
   use gudgeon_bearing, only: bearing_t
   use checks, only: checks_t
-  use chain_motion, only: name_prefix
+  use joint_places, only: name_prefix
   use archard_wear, only: worn_surface_t, of_pin, of_bore
   use contact_geometry, only: contact_geometry_t
   use conformal, only: conformal_t

@@ -10,7 +10,7 @@ module test_worn_places
   use archard_wear, only: of_pin, of_bore
   use contact_law, only: contact_law_t
   use laws, only: contact_law_of
-  use chain_motion, only: crank_pin, piston_pin, name_prefix
+  use joint_places, only: crank_pin, piston_pin, name_prefix
   use wear_record, only: wear_profile_t
   use collecting_sink, only: trace_t, run_case, column, values_of
   implicit none

@@ -101,14 +101,14 @@ snakemake -s scripts/cluster/Snakefile --directory "$work" --executor slurm --jo
 check "snakemake, SLURM executor" [ $? = 0 ]
 [ "$failed" = 0 ] || tail -n 40 "$work/snakemake.out"
 jobs=$(grep -c 'has been submitted with SLURM jobid' "$work/snakemake.out")
-check "four chunks were submitted to SLURM ($jobs)" [ "$jobs" = 4 ]
+check "four parts were submitted to SLURM ($jobs)" [ "$jobs" = 4 ]
 check "SLURM lists four completed jobs" [ "$(squeue --states=COMPLETED --noheader | wc -l)" = 4 ]
 
 # shellcheck disable=SC2086  # options are words
-"$work/cluster/small.chunks/gudgeon" sweep -q -o "$work/one" $options "$work/small.nml"
+"$work/cluster/small.jobs/gudgeon" sweep -q -o "$work/one" $options "$work/small.nml"
 check "one process" [ $? = 0 ]
 for kind in runs cycles strobe; do
-  check "$kind: the merged file is that of one process" cmp "$work/one/small.$kind.csv" "$work/cluster/small.$kind.csv"
+  check "$kind: the joined file is that of one process" cmp "$work/one/small.$kind.csv" "$work/cluster/small.$kind.csv"
 done
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

@@ -78,8 +78,7 @@ def write_table_study(study: Study, values: np.ndarray, directory: Path, name: s
     directory.mkdir(parents=True, exist_ok=True)
     table = pd.DataFrame(values, columns=[parameter.key for parameter in study.parameters])
     table.to_csv(directory / f"{name}.csv", index=False, lineterminator="\n", float_format="%.12e")
-    kept = {key: value for key, value in study.settings.items() if key not in ("design", "runs", "seed")}
-    group = kept | {"title": title, "case": str(study.case), "table": f"{name}.csv"}
+    group = study.settings | {"title": title, "case": str(study.case), "table": f"{name}.csv"}
     f90nml.Namelist({"study": group}).write(directory / f"{name}.nml", force=True)
     return directory / f"{name}.nml"
 

@@ -47,11 +47,13 @@ class Gas(Cylinder):
     """Engines of appendix A, four-stroke or two-stroke with ports: the first law of thermodynamics for the closed cylinder,
     integrated.
 
-    p V^g = p_1 V_1^g + (g - 1) * integral of V^(g-1) dQ, Wiebe's release Q = Q_in (1 - exp(-a z^n))."""
+    p V^g = p_1 V_1^g + (g - 1) * integral of V^(g-1) dQ, Wiebe's release Q = Q_in (1 - exp(-a z^n)). An engine whose crank starts, or
+    is held, with a negative speed is the mirror image."""
 
     def __init__(self, run: Run) -> None:
         super().__init__(run, "combustion")
         n = run.number
+        self.sense = -1 if n("initial.crank_speed") < 0 else 1
         self.exponent, self.heat, self.a, self.n = (n("combustion.heat_capacity_ratio"), n("combustion.heat"),
                                                     n("combustion.wiebe_efficiency"), n("combustion.wiebe_form"))
         self.start, self.duration = math.radians(n("combustion.start_deg")), math.radians(n("combustion.duration_deg"))
@@ -82,7 +84,7 @@ class Gas(Cylinder):
 
     def pressure(self, q: float) -> float:
         """Pressure at the crank angle q [Pa]."""
-        angle = self.closes + (q - self.closes) % self.period
+        angle = self.closes + (self.sense * q - self.closes) % self.period
         if not angle < self.opens:
             return self.intake
         added = 0.0
@@ -96,11 +98,11 @@ class Gas(Cylinder):
     def jumps_near(self, q: float, margin: float) -> bool:
         """Whether a part of the cycle begins or ends so near that the row may belong to either side."""
         bounds = (self.closes, self.start, self.start + self.duration, self.opens)
-        return any(abs((q - bound + margin) % self.period) < 2 * margin for bound in bounds)
+        return any(abs((self.sense * q - bound + margin) % self.period) < 2 * margin for bound in bounds)
 
     def part(self, q: float) -> int:
         """Number of the part of the cycle, counted through all cycles."""
-        cycle, angle = divmod(q - self.closes, self.period)
+        cycle, angle = divmod(self.sense * q - self.closes, self.period)
         bounds = (self.start, min(self.start + self.duration, self.opens), self.opens)
         return 4 * int(cycle) + sum(angle + self.closes >= bound for bound in bounds)
 

@@ -17,14 +17,18 @@ module chain_motion
   use gudgeon_kinds, only: dp
   implicit none
   private
-  public :: motion_t, tilting_t, accelerations_t, crank_pin, piston_pin, n_pins, pin_names, name_prefix, most_shapes
+  public :: motion_t, tilting_t, accelerations_t, crank_pin, piston_pin, n_pins, most_shapes
+  public :: body_crank, body_big_end, body_small_end, body_piston, n_bodies, angular_acceleration
   public :: turn_crank, follow_rod, follow_piston
 
   !> The pins of the chain.
   integer, parameter :: crank_pin = 1    !! journal on the crank, bearing in the rod
   integer, parameter :: piston_pin = 2   !! journal on the rod, bearing in the piston
   integer, parameter :: n_pins = 2
-  character(len=*), parameter :: pin_names(n_pins) = [character(len=10) :: 'crank_pin', 'piston_pin']   !! in cases and results
+
+  !> The bodies as they turn at the pins; an elastic rod turns differently at its two ends.
+  integer, parameter :: body_crank = 1, body_big_end = 2, body_small_end = 3, body_piston = 4
+  integer, parameter :: n_bodies = 4
 
   integer, parameter :: most_shapes = 16   !! largest number of bending and axial shapes of an elastic rod
 
@@ -56,7 +60,7 @@ module chain_motion
     real(dp) :: offset(2)           !! o = c + e, plus the offset of the pin's bearing in the bore [m]
     real(dp) :: offset_rate(2)      !! [m/s]
     type(tilting_t) :: tilting      !! for a piston with clearance in its bore
-    real(dp) :: rod_end_speed(n_pins)       !! angular speed of the rod at its ends, positive from x to y [rad/s]
+    real(dp) :: turning(n_bodies)   !! angular speeds of the bodies, positive from x to y; 0 for a piston that does not tilt [rad/s]
     ! the following components are for elastic members only
     real(dp) :: chord                       !! distance between the pins of an elastic rod; the chord has the angle A [m]
     real(dp) :: chord_rate                  !! [m/s]
@@ -80,13 +84,21 @@ module chain_motion
 
 contains
 
-  !> Prefix of the names of a pin's quantities: empty for the piston pin.
-  pure function name_prefix(pin) result(prefix)
-    integer, intent(in) :: pin
-    character(len=:), allocatable :: prefix
-    prefix = ''
-    if (pin /= piston_pin) prefix = trim(pin_names(pin))//'_'
-  end function name_prefix
+  !> Angular acceleration of a body, positive from x to y [rad/s^2].
+  pure real(dp) function angular_acceleration(accelerations, body) result(acceleration)
+    type(accelerations_t), intent(in) :: accelerations
+    integer, intent(in) :: body
+    select case (body)
+    case (body_crank)
+      acceleration = accelerations%crank
+    case (body_big_end)
+      acceleration = accelerations%rod_end(crank_pin)
+    case (body_small_end)
+      acceleration = accelerations%rod_end(piston_pin)
+    case default
+      acceleration = accelerations%tilt
+    end select
+  end function angular_acceleration
 
   !> Set the crank of a motion: its angle [rad] with sine and cosine, and its speed [rad/s].
   pure subroutine turn_crank(motion, crank_angle, crank_speed)
@@ -96,6 +108,8 @@ contains
     motion%sin_crank = sin(crank_angle)
     motion%cos_crank = cos(crank_angle)
     motion%crank_speed = crank_speed
+    motion%turning(body_crank) = crank_speed
+    motion%turning(body_piston) = 0
   end subroutine turn_crank
 
   !> Set the rod of a motion whose crank and offset are known. `reachable` is false if there is no rod angle, |R sin q - o_y| >= L.
@@ -112,7 +126,7 @@ contains
     ! over cos A = cos A/gap: this division is independent of the square root
     motion%rod_speed = (crank_length*motion%cos_crank*motion%crank_speed - motion%offset_rate(2))*per_rod_length/gap &
       *motion%cos_rod
-    motion%rod_end_speed = -motion%rod_speed
+    motion%turning(body_big_end:body_small_end) = -motion%rod_speed
   end subroutine follow_rod
 
   !> Set the piston of a motion whose crank and rod are known.

@@ -22,7 +22,7 @@ module elastic_rod
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
-  use chain_motion, only: motion_t, most_shapes, crank_pin, piston_pin
+  use chain_motion, only: motion_t, most_shapes, crank_pin, piston_pin, body_big_end, body_small_end
   use chain_bodies, only: rod_t
   use small_cholesky, only: factorise_cholesky, solve_cholesky
   implicit none
@@ -220,7 +220,7 @@ contains
     motion%rod_speed = (crank_length*motion%cos_crank*motion%crank_speed - motion%offset_rate(2) &
       - motion%chord_rate*motion%sin_rod)/(motion%chord*motion%cos_rod)
     associate (n => self%n_bending)
-      motion%rod_end_speed = matmul(motion%shape_rate(:n), self%slope(:n, :)) - motion%rod_speed
+      motion%turning(body_big_end:body_small_end) = matmul(motion%shape_rate(:n), self%slope(:n, :)) - motion%rod_speed
     end associate
   end subroutine follow
 

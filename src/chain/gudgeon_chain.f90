@@ -2,7 +2,8 @@
 !> pins into parts with accelerations in closed form.
 module gudgeon_chain
   use gudgeon_kinds, only: dp
-  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, follow_rod, follow_piston
+  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, follow_rod, follow_piston, &
+    body_crank, body_big_end, body_piston
   use chain_bodies, only: bodies_t, drive_t, undriven, weightless
   use chain_loads, only: loads_t
   use chain_reactions, only: reactions_t, reactions_of, elastic_reactions
@@ -34,7 +35,7 @@ module gudgeon_chain
     procedure :: has_crankshaft
     procedure, non_overridable :: move_rod
     procedure, non_overridable :: move_piston
-    procedure :: rod_end_angle
+    procedure :: body_angle
     procedure :: response
     procedure :: complete_loads
     procedure :: add_response
@@ -170,17 +171,24 @@ contains
     end if
   end subroutine move_piston
 
-  !> Angle by which the rod has turned at one of its ends, from x to y [rad].
-  pure real(dp) function rod_end_angle(self, motion, pin)
+  !> Angle by which a body has turned, from x to y [rad].
+  pure real(dp) function body_angle(self, motion, body) result(angle)
     class(chain_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
-    integer, intent(in) :: pin   !! crank_pin or piston_pin
-    rod_end_angle = -atan2(motion%sin_rod, motion%cos_rod)
-    if (.not. self%has_elastic_rod()) return
-    associate (n => self%elastic%rod%n_bending)
-      rod_end_angle = rod_end_angle + dot_product(motion%shape(:n), self%elastic%rod%slope(:n, pin))
-    end associate
-  end function rod_end_angle
+    integer, intent(in) :: body   !! see chain_motion
+    select case (body)
+    case (body_crank)
+      angle = motion%crank_angle
+    case (body_piston)
+      angle = motion%tilting%tilt
+    case default
+      angle = -atan2(motion%sin_rod, motion%cos_rod)
+      if (.not. self%has_elastic_rod()) return
+      associate (n => self%elastic%rod%n_bending, pin => merge(crank_pin, piston_pin, body == body_big_end))
+        angle = angle + dot_product(motion%shape(:n), self%elastic%rod%slope(:n, pin))
+      end associate
+    end select
+  end function body_angle
 
   !> Changes of the accelerations and of the moment on the crank due to a load of pins with clearance or of the gas, on which they
   !> depend linearly. They are computed for bodies at rest without other loads, by the general assembly unless the chain has only

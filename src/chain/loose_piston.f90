@@ -10,7 +10,7 @@
 !> F is the force on the piston pin; the opposite force acts at the pin's bearing, at -p from the centre of mass c.
 module loose_piston
   use gudgeon_kinds, only: dp
-  use chain_motion, only: motion_t, accelerations_t, piston_pin
+  use chain_motion, only: motion_t, accelerations_t, piston_pin, body_piston
   use chain_bodies, only: bodies_t, piston_t
   use chain_loads, only: loads_t, bearing_moment
   implicit none
@@ -19,7 +19,8 @@ module loose_piston
 
 contains
 
-  !> Position of the pin's bearing, from the coordinates of the piston and their rates; it is added to the offset of the chain.
+  !> Position of the pin's bearing and rotation of the piston, from its coordinates and their rates; the position is added to the
+  !> offset of the chain.
   pure subroutine place_piston(piston, motion)
     type(piston_t), intent(in) :: piston
     type(motion_t), intent(inout) :: motion
@@ -32,6 +33,7 @@ contains
       at%across_rate = at%offset_rate - at%com(1)*at%tilt_rate
       motion%offset(2) = motion%offset(2) + at%across
       motion%offset_rate(2) = motion%offset_rate(2) + at%across_rate
+      motion%turning(body_piston) = at%tilt_rate
     end associate
   end subroutine place_piston
 

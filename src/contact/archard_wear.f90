@@ -4,7 +4,6 @@ module archard_wear
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
-  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: wear_law_t, worn_surface_t, of_pin, of_bore
@@ -31,7 +30,6 @@ module archard_wear
     procedure :: prepare
     procedure :: width
     procedure :: add
-    procedure :: exchange
   end type worn_surface_t
 
 contains
@@ -82,11 +80,4 @@ contains
       self%load_path(bin) = self%load_path(bin) + share*amount
     end do
   end subroutine add
-
-  !> Write the load paths to an archive, or read them from it.
-  subroutine exchange(self, archive)
-    class(worn_surface_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%load_path)
-  end subroutine exchange
 end module archard_wear

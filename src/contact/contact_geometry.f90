@@ -24,6 +24,7 @@ module contact_geometry
     procedure, nopass :: needs_length => needs_it
     procedure :: bearing_conflict => fits_every_bearing
     procedure :: foundation => no_foundation
+    procedure, nopass :: has_foundation => has_none
     procedure :: half_angle => line_contact
     procedure :: pressure => no_pressure
     procedure :: total_pressure => only_the_force
@@ -122,6 +123,11 @@ contains
     end associate
     stiffness = 0
   end function no_foundation
+
+  !> Whether the geometry is a foundation of springs. The default is no.
+  pure logical function has_none()
+    has_none = .false.
+  end function has_none
 
   !> Half-angle of the arc on which pin and bore touch [rad]; 0, the default, if the geometry does not say it: the surfaces touch
   !> along a line.

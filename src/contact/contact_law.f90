@@ -32,9 +32,15 @@ module contact_law
     procedure :: damped_force
     procedure :: damped_force_slopes
     procedure :: find_share
+    procedure, nopass :: is_elastic => no
   end type contact_law_t
 
 contains
+
+  !> Whether the force is elastic whatever the parameters. The default is no.
+  pure logical function no()
+    no = .false.
+  end function no
 
   !> Prepare the law for a bearing, before the first evaluation of the force.
   subroutine prepare(self, bearing)

@@ -1,7 +1,9 @@
 !> The contact laws and geometries that a case can name. A new one needs a `use` line and a line with its name in one of the
 !> procedures below.
 module contact_laws
+  use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
+  use contact_geometry, only: contact_geometry_t
   use hertz, only: hertz_t
   use restitution_laws, only: lankarani_nikravesh_t, hunt_crossley_t, herbert_mcwhannell_t, gonthier_t, zhiying_qishao_t, &
     flores_t, carvalho_martins_t
@@ -14,7 +16,7 @@ module contact_laws
   use winkler, only: winkler_t
   implicit none
   private
-  public :: offer_contact_laws, offer_contact_geometries
+  public :: offer_contact_laws, offer_contact_geometries, new_power_geometry
 
 contains
 
@@ -42,4 +44,11 @@ contains
     call list%law('pereira', pereira_t())
     call list%law('winkler', winkler_t())
   end subroutine offer_contact_geometries
+
+  !> The geometry whose elastic force is a stiffness [N/m^exponent] times a power of the penetration.
+  subroutine new_power_geometry(stiffness, exponent, geometry)
+    real(dp), intent(in) :: stiffness, exponent
+    class(contact_geometry_t), allocatable, intent(out) :: geometry
+    allocate (geometry, source=hertz_sphere_t(given_stiffness=stiffness, exponent=exponent))
+  end subroutine new_power_geometry
 end module contact_laws

@@ -10,6 +10,7 @@ module hertz
   type, extends(contact_law_t) :: hertz_t
   contains
     procedure :: parameters
+    procedure, nopass :: is_elastic
   end type hertz_t
 
 contains
@@ -20,4 +21,8 @@ contains
     associate (nothing_to_give => self, unused => list)
     end associate
   end subroutine parameters
+
+  pure logical function is_elastic()
+    is_elastic = .true.
+  end function is_elastic
 end module hertz

@@ -24,6 +24,7 @@ module winkler
     procedure :: slope
     procedure :: elastic_energy
     procedure :: foundation
+    procedure, nopass :: has_foundation
     procedure :: half_angle
     procedure :: pressure
     procedure :: total_pressure
@@ -64,6 +65,10 @@ contains
       key = 'bedding_modulus'
     end if
   end subroutine conflict
+
+  pure logical function has_foundation()
+    has_foundation = .true.
+  end function has_foundation
 
   subroutine prepare(self, bearing)
     class(winkler_t), intent(inout) :: self

@@ -10,7 +10,6 @@
 module worn_bore
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
-  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: worn_bore_t, touching_cells_t
@@ -27,7 +26,6 @@ module worn_bore
     procedure :: find_gap
     procedure :: energy
     procedure :: cells
-    procedure :: exchange
   end type worn_bore_t
 
   !> The part of the foundation that a pin compresses, in pieces that are not longer than half a bin.
@@ -238,11 +236,4 @@ contains
     real(dp), intent(in) :: s
     gap_at = piece%start + s*(piece%rise + (1 - s)*piece%bend)
   end function gap_at
-
-  !> Write the shape to an archive, or read it from it.
-  subroutine exchange(self, archive)
-    class(worn_bore_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%depth)
-  end subroutine exchange
 end module worn_bore

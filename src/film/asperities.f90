@@ -23,10 +23,12 @@ module asperities
     type(bearing_t), private :: bearing
     logical, private :: is_fit = .false.
     real(dp), private :: scale = 0         !! K' E* R_b L [N]
+    integer, private :: last = 0           !! number of the last interval of the table; 0: there is none
     real(dp), allocatable, private :: c(:) !! coefficients of the spline through the forces, by depth, in the form of `folded`
   contains
     procedure :: parameters
     procedure :: prepare
+    procedure :: make_table
     procedure :: force
     procedure :: integrated_force
     procedure :: half_angle
@@ -63,25 +65,32 @@ contains
       '> 0', default='0.01')
   end subroutine parameters
 
-  !> Compute the table of forces for a bearing.
+  !> Prepare for a bearing.
   subroutine prepare(self, bearing)
     class(asperities_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
-    real(dp), allocatable :: values(:, :), coefficients(:, :)
-    integer :: i, n
     self%bearing = bearing
     self%is_fit = self%integral == 'fit'
     self%scale = 16*sqrt(2.0_dp)*pi/15*self%density_product**2*sqrt(self%sharpness) &
       /sum((1 - self%poissons_ratio**2)/self%youngs_modulus)*bearing%radius*bearing%length
+    self%last = 0
+    if (allocated(self%c)) deallocate (self%c)
+  end subroutine prepare
+
+  !> Compute the table of forces. Without it the force is integrated at every evaluation.
+  subroutine make_table(self)
+    class(asperities_t), intent(inout) :: self
+    real(dp), allocatable :: values(:, :), coefficients(:, :)
+    integer :: i, n
     n = nint((farthest_of(self) - deepest)*per_roughness) + 1
     allocate (values(n, 1))
     do i = 1, n
-      values(i, 1) = folded(self, self%integrated_force(bearing%clearance - self%roughness*(farthest_of(self) - depth_at(i))))
+      values(i, 1) = folded(self, self%integrated_force(self%bearing%clearance - self%roughness*(farthest_of(self) - depth_at(i))))
     end do
     coefficients = through_values(values)
-    if (allocated(self%c)) deallocate (self%c)
     allocate (self%c(1 - before:n + after))
     self%c = coefficients(:, 1)
+    self%last = n - 1
 
   contains
 
@@ -91,7 +100,7 @@ contains
       depth_at = (i - 1)/real(per_roughness, dp)
       if (i == 1) depth_at = 1e-3_dp/per_roughness
     end function depth_at
-  end subroutine prepare
+  end subroutine make_table
 
   pure real(dp) function farthest_of(self)
     type(asperities_t), intent(in) :: self
@@ -120,7 +129,7 @@ contains
     depth = (farthest_of(self) - (self%bearing%clearance - distance)/self%roughness)*per_roughness
     if (depth <= 0) return
     i = int(depth) + 1
-    if (i > ubound(self%c, 1) - after - 1) then
+    if (i > self%last) then   ! also without a table
       force = self%integrated_force(distance)
       return
     end if

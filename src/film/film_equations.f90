@@ -1,9 +1,9 @@
 !> The equations of finite volumes of a film (`reynolds_grid`) for a pressure that is 0 outside a set of active nodes.
 !>
-!> In axial direction the equations of all lines of nodes are the same but for a factor, the integral of H^3. In neighbouring lines
-!> whose nodes are all active, the pressure is therefore a sum of modes V, with K V = W V diag(rate) and V^T W V = 1 (K: conductances
-!> along a line, W: widths of its cells), and each mode has a tridiagonal system of its own around the film. These lines are
-!> eliminated. A small system remains, for the active nodes of the other lines, which are at the edges of the film.
+!> In axial direction the equations of all lines of nodes are the same but for a factor, the integral of H^3. In neighbouring
+!> lines whose nodes are all active, the pressure is therefore a sum of modes V, with K V = W V diag(rate) and V^T W V = 1 (K:
+!> conductances along a line, W: widths of its cells), and each mode has a tridiagonal system of its own around the film. These
+!> lines are eliminated. A small system remains, for the active nodes of the other lines, which are at the edges of the film.
 module film_equations
   use gudgeon_kinds, only: dp
   use reynolds_grid, only: reynolds_grid_t

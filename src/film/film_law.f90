@@ -4,7 +4,6 @@ module film_law
   use gudgeon_constants, only: two_pi
   use gudgeon_parameters, only: law_t, parameter_list_t
   use gudgeon_bearing, only: bearing_t
-  use gudgeon_archive, only: archive_t
   use reynolds_grid, only: reynolds_grid_t, new_reynolds_grid
   implicit none
   private
@@ -66,7 +65,8 @@ module film_law
     procedure :: pressure_field => long_field
     procedure :: table_key => no_key
     procedure :: make_table => no_table
-    procedure :: exchange_table => nothing_to_exchange
+    procedure :: table_numbers => no_numbers
+    procedure :: restore_table => no_restored_table
   end type film_law_t
 
   abstract interface
@@ -262,7 +262,7 @@ contains
   end function largest_pressure
 
   !> Key of the law's table, for laws whose table takes long to compute: laws with equal keys have equal tables. A stored table may
-  !> be set (`exchange_table`), together with its key in `table_of`, before `make_table` is called.
+  !> be set (`restore_table`), together with its key in `table_of`, before `make_table` is called.
   function no_key(self, bearing, tolerance) result(key)
     class(film_law_t), intent(in) :: self
     type(bearing_t), intent(in) :: bearing
@@ -284,13 +284,24 @@ contains
     end associate
   end subroutine no_table
 
-  !> Write the table to an archive, or read it from it.
-  subroutine nothing_to_exchange(self, archive)
-    class(film_law_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    associate (unused => self, unused_too => archive)
+  !> The table as numbers, to be stored.
+  pure function no_numbers(self) result(numbers)
+    class(film_law_t), intent(in) :: self
+    real(dp), allocatable :: numbers(:)
+    associate (unused => self)
     end associate
-  end subroutine nothing_to_exchange
+    allocate (numbers(0))
+  end function no_numbers
+
+  !> Restore a stored table; `fits` is false if the numbers are not those of a table of this law.
+  subroutine no_restored_table(self, numbers, fits)
+    class(film_law_t), intent(inout) :: self
+    real(dp), intent(in) :: numbers(:)
+    logical, intent(out) :: fits
+    associate (unused => self, unused_too => numbers)
+    end associate
+    fits = .false.
+  end subroutine no_restored_table
 
   !> Derivatives of the force and the moment (rows F_x, F_y, moment) with respect to e_x, e_y, e_x', e_y' and the pin speed
   !> (columns), for implicit integration. The default is central differences. Other dependencies are left out, since they change
@@ -324,10 +335,10 @@ contains
     step = 1e-5_dp*[room, room, rate*room/clearance, rate*room/clearance, rate/clearance]
   end function difference_steps
 
-  !> The motion with a change of one of e_x, e_y, e_x', e_y' and the pin speed.
+  !> The motion with a change of one of e_x, e_y, e_x', e_y' and the angular speeds of pin and bearing.
   pure type(film_motion_t) function moved(motion, which, by)
     type(film_motion_t), intent(in) :: motion
-    integer, intent(in) :: which    !! number of the changed quantity, 1 to 5
+    integer, intent(in) :: which    !! number of the changed quantity, 1 to 6
     real(dp), intent(in) :: by
     moved = motion
     select case (which)
@@ -337,7 +348,7 @@ contains
       moved%eccentricity_rate(which - 2) = moved%eccentricity_rate(which - 2) + by
     case default
       moved%pin_speed = moved%pin_speed + by
-      moved%turning_speed = moved%turning_speed + by
+      moved%turning_speed = moved%turning_speed + merge(by, -by, which == 5)
     end select
   end function moved
 end module film_law

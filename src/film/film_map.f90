@@ -16,7 +16,6 @@
 module film_map
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
-  use gudgeon_archive, only: archive_t
   use film_law, only: table_watch_t
   use finite_film, only: film_answer_t, cavitation_none
   use film_solution, only: film_solution_t
@@ -41,7 +40,8 @@ module film_map
     procedure :: force
     procedure :: force_slopes
     procedure :: peak_and_flow
-    procedure :: exchange
+    procedure :: numbers
+    procedure :: restore
   end type film_map_t
 
   !> A position in the table, between the third and the fourth of six rows, and of six columns, of coefficients.
@@ -104,7 +104,7 @@ contains
     call find_errors(self, between)
   end subroutine build
 
-  subroutine make_room(self)
+  pure subroutine make_room(self)
     class(film_map_t), intent(inout) :: self
     if (allocated(self%c)) deallocate (self%c, self%more)
     associate (first => 1 - before, last => self%points + after)
@@ -324,21 +324,38 @@ contains
     end do
   end subroutine weigh
 
-  !> Write the table to an archive, or read it.
-  subroutine exchange(self, archive)
+  !> The whole table as numbers, to be stored.
+  pure function numbers(self)
+    class(film_map_t), intent(in) :: self
+    real(dp), allocatable :: numbers(:)
+    numbers = [self%half_length, real([self%cavitation, self%film_points, self%points], dp), self%largest_error, self%mean_error]
+    if (self%points > 0) numbers = [numbers, reshape(self%c, [size(self%c)]), reshape(self%more, [size(self%more)])]
+  end function numbers
+
+  !> Restore a table from its numbers; `fits` is false, and there is no table, if they are not those of one.
+  pure subroutine restore(self, numbers, fits)
     class(film_map_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    integer :: i
-    call archive%exchange(self%half_length)
-    call archive%exchange(self%cavitation, self%film_points, self%points)
-    call archive%exchange(self%largest_error, self%mean_error)
-    if (archive%failed .or. self%points < 8) return
+    real(dp), intent(in) :: numbers(:)
+    logical, intent(out) :: fits
+    integer, parameter :: head = 6
+    integer :: n
+    self%points = 0
+    fits = size(numbers) >= head
+    if (fits) fits = numbers(4) >= 8 .and. numbers(4) <= 1e4_dp
+    if (.not. fits) return
+    n = 2*(nint(numbers(4)) + before + after)**2
+    fits = size(numbers) == head + 2*n
+    if (.not. fits) return
+    self%half_length = numbers(1)
+    self%cavitation = nint(numbers(2))
+    self%film_points = nint(numbers(3))
+    self%points = nint(numbers(4))
+    self%largest_error = numbers(5)
+    self%mean_error = numbers(6)
     self%per_tau = (self%points - 1)/tau_of(last_gap)
     self%per_chi = (self%points - 1)/pi
-    if (archive%is_reading) call make_room(self)
-    do i = lbound(self%c, 3), ubound(self%c, 3)
-      call archive%exchange(self%c(:, :, i))
-      call archive%exchange(self%more(:, :, i))
-    end do
-  end subroutine exchange
+    call make_room(self)
+    self%c = reshape(numbers(head + 1:head + n), shape(self%c))
+    self%more = reshape(numbers(head + n + 1:), shape(self%more))
+  end subroutine restore
 end module film_map

@@ -9,14 +9,13 @@ module film_transition
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
   use gudgeon_bearing, only: bearing_t
-  use gudgeon_archive, only: archive_t
   use film_law, only: film_law_t, film_motion_t
   implicit none
   private
   public :: film_transition_t
 
-  !> A transition. The changes at its kinks are discrete states, so that forces are smooth between two events, even for trial states
-  !> beyond a kink.
+  !> A transition. Whether the eccentricity is beyond a kink is a discrete state that the procedures are told, so that forces are
+  !> smooth between two events, even for trial states beyond a kink.
   type, extends(has_parameters_t) :: film_transition_t
     character(len=:), allocatable :: transition   !! switch or weighted
     character(len=:), allocatable :: shape        !! linear or smooth
@@ -24,17 +23,13 @@ module film_transition
     logical :: is_smooth = .false.                !! the shape is smooth
     real(dp) :: film_reach = 0                    !! (1 - q) c, eccentricity beyond which the film force is held [m]
     real(dp) :: contact_reach = 0                 !! c + e0, eccentricity beyond which the film does not act [m]
-    logical :: film_is_held = .false.             !! the eccentricity is beyond film_reach
-    logical :: film_is_gone = .false.             !! the eccentricity is beyond contact_reach
   contains
     procedure :: parameters
     procedure :: is_weighted
     procedure :: prepare
-    procedure :: begin
     procedure :: weight
     procedure :: held_motion
     procedure :: film_derivatives
-    procedure :: exchange
   end type film_transition_t
 
 contains
@@ -67,34 +62,19 @@ contains
     self%contact_reach = bearing%clearance + self%depth
   end subroutine prepare
 
-  !> Set the discrete state from an eccentricity and its rate.
-  pure subroutine begin(self, distance, rate)
-    class(film_transition_t), intent(inout) :: self
-    real(dp), intent(in) :: distance   !! |e| [m]
-    real(dp), intent(in) :: rate       !! its rate [m/s], which decides exactly at a kink
-    self%film_is_held = is_beyond(self%film_reach)
-    self%film_is_gone = is_beyond(self%contact_reach)
-
-  contains
-
-    pure logical function is_beyond(kink)
-      real(dp), intent(in) :: kink
-      is_beyond = distance > kink .or. (distance >= kink .and. rate >= 0)
-    end function is_beyond
-  end subroutine begin
-
   !> Share w of the contact at a penetration [m], and its derivative [1/m]. A linear share continues beyond its ends for trial
   !> states, since its kinks are events. The smooth share is constant beyond its ends, where its derivative has no jump.
-  pure subroutine weight(self, penetration, w, slope)
+  pure subroutine weight(self, penetration, film_is_gone, w, slope)
     class(film_transition_t), intent(in) :: self
     real(dp), intent(in) :: penetration
+    logical, intent(in) :: film_is_gone   !! the eccentricity is beyond contact_reach
     real(dp), intent(out) :: w
     real(dp), intent(out), optional :: slope
     real(dp) :: s, w_slope
     s = penetration/self%depth
     w = 1
     w_slope = 0
-    if (.not. self%film_is_gone) then
+    if (.not. film_is_gone) then
       w = s
       w_slope = 1/self%depth
       if (self%is_smooth) then
@@ -108,14 +88,15 @@ contains
 
   !> Derivatives of the film force in the form of those of a film law: a held film rotates with the eccentricity and does not depend
   !> on its magnitude.
-  pure subroutine film_derivatives(self, film, motion, derivatives)
+  pure subroutine film_derivatives(self, film, motion, is_held, derivatives)
     class(film_transition_t), intent(in) :: self
     class(film_law_t), intent(in) :: film
     type(film_motion_t), intent(in) :: motion
+    logical, intent(in) :: is_held        !! the eccentricity is beyond film_reach
     real(dp), intent(out) :: derivatives(3, 5)
     real(dp) :: distance, along(3)
-    call film%force_derivatives(self%held_motion(motion), derivatives)
-    if (.not. self%film_is_held) return
+    call film%force_derivatives(self%held_motion(motion, is_held), derivatives)
+    if (.not. is_held) return
     associate (e => motion%eccentricity)
       distance = norm2(e)
       along = (derivatives(:, 2)*e(1) - derivatives(:, 1)*e(2))*self%film_reach/distance**3
@@ -125,18 +106,11 @@ contains
   end subroutine film_derivatives
 
   !> The motion on which the force of the full film depends, which is held where it would grow without bound.
-  pure type(film_motion_t) function held_motion(self, motion) result(held)
+  pure type(film_motion_t) function held_motion(self, motion, is_held) result(held)
     class(film_transition_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
+    logical, intent(in) :: is_held
     held = motion
-    if (self%film_is_held) held%eccentricity = motion%eccentricity*(self%film_reach/norm2(motion%eccentricity))
+    if (is_held) held%eccentricity = motion%eccentricity*(self%film_reach/norm2(motion%eccentricity))
   end function held_motion
-
-  !> Write the discrete state to an archive, or read it from it.
-  subroutine exchange(self, archive)
-    class(film_transition_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%film_is_held)
-    call archive%exchange(self%film_is_gone)
-  end subroutine exchange
 end module film_transition

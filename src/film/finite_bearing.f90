@@ -7,7 +7,6 @@ module finite_bearing
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t
   use gudgeon_bearing, only: bearing_t
-  use gudgeon_archive, only: archive_t
   use film_law, only: film_law_t, film_motion_t, table_watch_t, difference_derivatives, field_points, yes
   use film_direction, only: derivatives_in_components, least_ratio_of_derivatives
   use finite_film, only: film_answer_t, film_solver_t, cavitation_none, cavitation_gumbel, cavitation_reynolds
@@ -41,7 +40,8 @@ module finite_bearing
     procedure :: pressure_field
     procedure :: table_key
     procedure :: make_table
-    procedure :: exchange_table
+    procedure :: table_numbers
+    procedure :: restore_table
   end type finite_bearing_t
 
 contains
@@ -130,7 +130,7 @@ contains
     key = ''
     if (self%variant /= 'table') return
     call choose_points(self, tolerance, table_points, film_points)
-    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 5 '//self%cavitation//' ', 0.5_dp*bearing%length/bearing%pin_radius(), &
+    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 6 '//self%cavitation//' ', 0.5_dp*bearing%length/bearing%pin_radius(), &
       ' ', table_points, ' ', film_points
     key = trim(text)
   end function table_key
@@ -159,12 +159,19 @@ contains
     self%table_mean_error = self%map%mean_error
   end subroutine tell_errors
 
-  subroutine exchange_table(self, archive)
+  pure function table_numbers(self) result(numbers)
+    class(finite_bearing_t), intent(in) :: self
+    real(dp), allocatable :: numbers(:)
+    numbers = self%map%numbers()
+  end function table_numbers
+
+  subroutine restore_table(self, numbers, fits)
     class(finite_bearing_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call self%map%exchange(archive)
+    real(dp), intent(in) :: numbers(:)
+    logical, intent(out) :: fits
+    call self%map%restore(numbers, fits)
     call tell_errors(self)
-  end subroutine exchange_table
+  end subroutine restore_table
 
   !> Force of the pressure, and moment of the shear if it acts on the pin.
   pure subroutine film_force(self, motion, force, moment)

@@ -18,8 +18,8 @@ module finite_film
     real(dp) :: force(2) = 0, flow = 0, most = 0
   end type film_answer_t
 
-  !> A solver for one eccentricity and any direction of the velocity. Pressures and other values at nodes are (axial node, node around
-  !> the film).
+  !> A solver for one eccentricity and any direction of the velocity. Pressures and other values at nodes are (axial node, node
+  !> around the film).
   type :: film_solver_t
     private
     type(film_equations_t) :: equations

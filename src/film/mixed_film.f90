@@ -62,18 +62,19 @@ contains
     end associate
   end subroutine see_gap
 
-  !> Derivatives of the total force and moment on the pin (rows F_x, F_y, moment) with respect to e_x, e_y, e_x', e_y' and the pin
-  !> speed (columns), by central differences.
+  !> Derivatives of the total force and moment on the pin (rows F_x, F_y, moment) with respect to e_x, e_y, e_x', e_y' and the
+  !> angular speeds of pin and bearing (columns), by central differences.
   pure subroutine mixed_derivatives(film, rough, pin_radius, motion, derivatives)
     class(film_law_t), intent(in) :: film
     type(asperities_t), intent(in) :: rough
     real(dp), intent(in) :: pin_radius
     type(film_motion_t), intent(in) :: motion
-    real(dp), intent(out) :: derivatives(3, 5)
-    real(dp) :: step(5), above(3), below(3)
+    real(dp), intent(out) :: derivatives(3, 6)
+    real(dp) :: step(6), above(3), below(3)
     integer :: i
-    step = difference_steps(film%clearance, max(film%clearance - norm2(motion%eccentricity), rough%roughness), motion)
-    do i = 1, 5
+    step(:5) = difference_steps(film%clearance, max(film%clearance - norm2(motion%eccentricity), rough%roughness), motion)
+    step(6) = step(5)
+    do i = 1, size(step)
       call find_whole(moved(motion, i, step(i)), above)
       call find_whole(moved(motion, i, -step(i)), below)
       derivatives(:, i) = (above - below)/(2*step(i))

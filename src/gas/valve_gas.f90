@@ -7,7 +7,6 @@
 module valve_gas
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, two_pi
-  use gudgeon_archive, only: archive_t
   use cylinder, only: cylinder_t
   implicit none
   private
@@ -37,7 +36,6 @@ module valve_gas
     procedure :: pressure_slope
     procedure :: events
     procedure :: pass
-    procedure :: exchange
   end type valve_gas_t
 
 contains
@@ -140,13 +138,4 @@ contains
     self%sense = sign(1.0_dp, crank_speed)
     self%dead_centre = first + self%sense*two_pi*ceiling(self%sense*(q - first)/two_pi)
   end subroutine open_valve
-
-  !> Write the discrete state to an archive, or read it from it.
-  subroutine exchange(self, archive)
-    class(valve_gas_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%state)
-    call archive%exchange(self%held_pressure, self%held_volume, self%discharge_volume, self%suction_volume, self%sense, &
-      self%dead_centre)
-  end subroutine exchange
 end module valve_gas

@@ -3,7 +3,6 @@
 module working_gas
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree
-  use gudgeon_archive, only: archive_t
   use trace_row, only: trace_row_t
   use monotone_cubic, only: monotone_cubic_t
   use cylinder, only: cylinder_t
@@ -21,8 +20,9 @@ module working_gas
   type :: working_gas_t
     integer :: n_events = 0          !! number of event functions, set by `start`
     integer :: revolutions = 1       !! period of the pressure [revolutions]
+    real(dp) :: sense = 1            !! 1 or -1: a cycle follows the crank angle times this
     integer :: part = 0              !! present part of the cycle
-    real(dp) :: cycle_start = 0      !! crank angle at which the present cycle began [rad]
+    real(dp) :: cycle_start = 0      !! that angle at which the present cycle began [rad]
     type(cylinder_t) :: cylinder
     real(dp) :: crankcase_pressure = 0   !! [Pa]
     type(gas_cycle_t), allocatable :: cycle
@@ -37,7 +37,6 @@ module working_gas
     procedure :: events
     procedure :: pass
     procedure :: put_columns
-    procedure :: exchange
   end type working_gas_t
 
 contains
@@ -48,7 +47,7 @@ contains
     real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
     if (allocated(self%cycle)) then
       self%n_events = n_cycle_events
-      call self%cycle%part_at(crank_angle, crank_speed < 0, self%part, self%cycle_start)
+      call self%cycle%part_at(self%sense*crank_angle, self%sense*crank_speed < 0, self%part, self%cycle_start)
     else if (allocated(self%valves)) then
       self%n_events = n_valve_events
       call self%valves%find_state(crank_angle, crank_speed)
@@ -69,7 +68,7 @@ contains
     class(working_gas_t), intent(in) :: self
     real(dp), value, intent(in) :: crank_angle
     if (allocated(self%cycle)) then
-      pressure = self%cycle%pressure(crank_angle, self%part, self%cycle_start)
+      pressure = self%cycle%pressure(self%sense*crank_angle, self%part, self%cycle_start)
     else if (allocated(self%valves)) then
       pressure = self%valves%pressure(crank_angle)
     else
@@ -103,7 +102,7 @@ contains
     class(working_gas_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle
     if (allocated(self%cycle)) then
-      force_slope = self%cycle%pressure_slope(crank_angle, self%part, self%cycle_start)
+      force_slope = self%sense*self%cycle%pressure_slope(self%sense*crank_angle, self%part, self%cycle_start)
     else if (allocated(self%valves)) then
       force_slope = self%valves%pressure_slope(crank_angle)
     else
@@ -119,9 +118,9 @@ contains
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
     real(dp) :: angle
     if (allocated(self%cycle)) then
-      angle = crank_angle - self%cycle_start
+      angle = self%sense*crank_angle - self%cycle_start
       g = [angle - self%cycle%bound(self%part), self%cycle%bound(self%part - 1) - angle]
-      g_rate = [crank_speed, -crank_speed]
+      g_rate = self%sense*[crank_speed, -crank_speed]
     else if (allocated(self%valves)) then
       call self%valves%events(crank_angle, crank_speed, g, g_rate)
     end if
@@ -154,16 +153,4 @@ contains
       if (gas%cycle%bound(gas%part) > gas%cycle%bound(gas%part - 1)) exit
     end do
   end subroutine pass_bound
-
-  !> Write the discrete state to an archive, or read it from it.
-  subroutine exchange(self, archive)
-    class(working_gas_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    if (allocated(self%valves)) then
-      call self%valves%exchange(archive)
-    else
-      call archive%exchange(self%part)
-      call archive%exchange(self%cycle_start)
-    end if
-  end subroutine exchange
 end module working_gas

@@ -6,9 +6,9 @@ module body_rules
   use number_text, only: short_text
   use case_definition, only: case_t
   use case_values, only: case_values_t
-  use ambrosio, only: ambrosio_t
+  use friction_law, only: friction_law_t
   use piston_guide, only: piston_guide_t, corner_t, n_corners
-  use chain_motion, only: tilting_t, motion_t, accelerations_t, turn_crank
+  use chain_motion, only: tilting_t, motion_t, accelerations_t, turn_crank, piston_pin, n_pins
   use chain_bodies, only: rod_t, crank_t, piston_t, bodies_t, new_bodies, drive_t
   use chain_loads, only: loads_t, unloaded
   use elastic_rod, only: elastic_rod_t, largest_shank
@@ -69,12 +69,14 @@ contains
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(inout) :: error
     real(dp) :: most, speed
-    select type (law => c%guide%friction)
-    type is (ambrosio_t)
-      call values%forbid(law%coefficient > 0 .and. .not. law%v1 > 0, 'guide', 'v1', &
-        'must be > 0: friction on the guide is a function of the speed', error)
-    end select
-    if (allocated(error) .or. c%has_loose_guide() .or. c%joint%has_clearance()) return
+    logical :: is_loose(n_pins)
+    class(friction_law_t), allocatable :: law
+    allocate (law, source=c%guide%friction)
+    call law%prepare()
+    call values%forbid(law%coefficient > 0 .and. law%set_valued, 'guide', 'v1', &
+      'must be > 0: friction on the guide is a function of the speed', error)
+    is_loose = c%loose_pins()
+    if (allocated(error) .or. c%has_loose_guide() .or. is_loose(piston_pin)) return
     associate (m => c%mechanism)
       speed = 2*m%crank_length*max(abs(c%initial%crank_speed), two_pi)
       most = sqrt((m%rod_length - m%crank_length)*(m%rod_length + m%crank_length))/m%crank_length
@@ -169,7 +171,7 @@ contains
       call turn_crank(motion, 2*pi*i/angles, 0.0_dp)
       call rod%follow(bodies%crank%length, motion, reachable)
       call accelerate_assembled(bodies, drive_t(c%drive%kind == 'free' .or. allocated(c%crankshaft), 0.0_dp, 0.0_dp, 0.0_dp), &
-        [c%crank_pin%has_clearance(), c%joint%has_clearance()], loads, motion, accelerations, crank_moment, rod, definite)
+        c%loose_pins(), loads, motion, accelerations, crank_moment, rod, definite)
       if (.not. definite) return
     end do
   end function is_definite

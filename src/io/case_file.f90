@@ -4,7 +4,8 @@ module case_file
   use gudgeon_errors, only: error_t, fail, status_case_file
   use text_tools, only: lowercase, printable, case_name
   use text_file, only: read_text_file
-  use case_definition, only: case_t, piston_pin_place, crank_pin_place
+  use joint_places, only: places, n_places, in_order
+  use case_definition, only: case_t
   use case_schema, only: key_table_t, case_schema_of, find_group, is_listed, shown_group
   use case_values, only: case_values_t
   use case_loader, only: load_case
@@ -144,7 +145,6 @@ contains
     type(namelist_t), intent(inout) :: list
     integer, intent(in) :: number   !! number of the group in the file
     type(error_t), allocatable, intent(out) :: error
-    character(len=*), parameter :: places = piston_pin_place//', '//crank_pin_place
     character(len=:), allocatable :: wanted, place, found
     integer :: i
     if (.not. has_places(values, list%groups(number)%name)) return
@@ -158,7 +158,7 @@ contains
           wanted = ''
           place = lowercase(entry%tokens(1)%text)
           if (found /= '') wanted = 'given twice'
-          if (.not. is_listed(place, places)) wanted = 'must be one of '//places
+          if (.not. any(places%name == place)) wanted = 'must be one of '//place_names()
         end if
         if (wanted /= '') then
           call fail(error, list%at(entry%line)//'&'//entry%group//' place = '//printable(place, 48)//': '//wanted, &
@@ -168,7 +168,7 @@ contains
         found = place
       end associate
     end do
-    if (found == '' .or. found == piston_pin_place .and. list%groups(number)%name == 'joint') return
+    if (found == '' .or. found == places(in_order(1))%name .and. list%groups(number)%name == 'joint') return
     list%groups(number)%name = found//'.'//list%groups(number)%name
   end subroutine name_place
 
@@ -176,8 +176,18 @@ contains
   pure logical function has_places(values, name)
     type(case_values_t), intent(in) :: values
     character(len=*), intent(in) :: name
-    has_places = find_group(values%groups, crank_pin_place//'.'//name) > 0
+    has_places = find_group(values%groups, trim(places(in_order(2))%name)//'.'//name) > 0
   end function has_places
+
+  !> The names of all places, separated by commas.
+  pure function place_names() result(text)
+    character(len=:), allocatable :: text
+    integer :: i
+    text = trim(places(in_order(1))%name)
+    do i = 2, n_places
+      text = text//', '//trim(places(in_order(i))%name)
+    end do
+  end function place_names
 
   !> Put an override GROUP.KEY=VALUE into the values; texts need no quotes. GROUP=none removes everything that the file and earlier
   !> overrides have set in that group.
@@ -194,8 +204,9 @@ contains
     group = trim(adjustl(lowercase(override(:max(0, equals - 1)))))
     if (equals > 1 .and. text == 'none' .and. (dot == 0 .or. find_group(values%groups, group) > 0)) then
       if (is_shared(values, group)) then
-        call fail(error, at//'no group of the crank pin alone is given: the group '//group(dot + 1:)//' is for both pins, '// &
-          'and --set '//group(dot + 1:)//'=none removes it from both', status_case_file)
+        call fail(error, at//'no group of the '//trim(places(findloc(places%name == group(:dot - 1), .true., 1))%title)// &
+          ' alone is given: the group '//group(dot + 1:)//' is for all pins, and --set '//group(dot + 1:)// &
+          '=none removes it from all', status_case_file)
       else
         call values%take_out(group, at, error)
       end if
@@ -215,15 +226,16 @@ contains
       error%message = error%message//'; --set '//group//'=none takes the group out'
   end subroutine take_override
 
-  !> Whether the crank pin follows the group of this name for both pins, because it has none of its own.
+  !> Whether a further joint follows the group of this name for all joints, because it has none of its own.
   pure logical function is_shared(values, group)
     type(case_values_t), intent(in) :: values
     character(len=*), intent(in) :: group   !! crank_pin.NAME, or any other name
-    integer :: own, common
+    integer :: own, common, dot
     is_shared = .false.
-    if (index(group, crank_pin_place//'.') /= 1 .or. group == crank_pin_place//'.joint') return
+    dot = index(group, '.')
+    if (.not. any(places(in_order(2:))%name == group(:dot - 1)) .or. group(dot + 1:) == 'joint') return
     own = find_group(values%groups, group)
-    common = find_group(values%groups, group(len(crank_pin_place) + 2:))
+    common = find_group(values%groups, group(dot + 1:))
     if (own > 0 .and. common > 0) is_shared = values%is_present(common) .and. .not. values%is_present(own)
   end function is_shared
 end module case_file

@@ -4,13 +4,16 @@ module case_rules
   use gudgeon_constants, only: two_pi
   use gudgeon_errors, only: error_t
   use number_text, only: short_text
-  use case_definition, only: case_t, joint_case_t, piston_pin_place, crank_pin_place
+  use case_definition, only: case_t
+  use joint_case, only: joint_case_t
   use case_schema, only: find_group
   use measured_pressure, only: measured_pressure_periods
   use case_values, only: case_values_t
   use archard_wear, only: of_bore
   use friction_law, only: friction_law_t
   use body_rules, only: check_guide, check_elastic, bore_reach
+  use chain_motion, only: crank_pin, piston_pin, n_pins, n_bodies, body_crank, body_big_end, body_small_end, body_piston
+  use joint_places, only: places, n_places, in_order, name_prefix
   implicit none
   private
   public :: check_rules, case_warning
@@ -35,12 +38,15 @@ contains
     type(case_values_t), intent(in) :: values
     type(error_t), allocatable, intent(out) :: error
     logical :: turns   ! the crank turns at the start
+    integer :: i
     turns = abs(c%initial%crank_speed) > 0
     call check_bodies()
-    call check_joint(c%joint, 'joint', piston_pin_place)
-    call check_joint(c%crank_pin, crank_pin_place//'.joint', crank_pin_place)
-    call check_friction(c%joint, piston_pin_place)
-    call check_friction(c%crank_pin, crank_pin_place)
+    do i = 1, n_places
+      call check_joint(c%joints(in_order(i)), in_order(i))
+    end do
+    do i = 1, n_places
+      call check_friction(c%joints(in_order(i)), in_order(i))
+    end do
     if (.not. allocated(error)) call check_guide(c, values, error)
     call check_start()
     if (.not. allocated(error)) call check_elastic(c, values, error)
@@ -64,20 +70,22 @@ contains
     subroutine check_bodies()
       character(len=*), parameter :: away = 'must be > 0 unless crank_mass is > 0 away from the axis'
       real(dp) :: reach, crank, rod
+      logical :: is_loose(n_pins)
       associate (m => c%mechanism)
-        reach = m%crank_length
-        if (c%joint%has_clearance()) reach = reach + c%joint%clearance
-        if (c%crank_pin%has_clearance()) reach = reach + c%crank_pin%clearance
-        reach = reach + bore_reach(c)
+        reach = m%crank_length + bore_reach(c)
+        do i = 1, n_places
+          if (c%joints(i)%has_clearance()) reach = reach + c%joints(i)%clearance
+        end do
         call forbid(m%rod_length <= reach, 'mechanism', 'rod_length', &
           'must be > crank_length'//trim(merge(' + clearance', '            ', reach > m%crank_length)))
         crank = m%crank_inertia + c%drive%flywheel_inertia + m%crank_mass*sum(m%crank_com**2)
         rod = m%rod_inertia + m%rod_mass*sum(m%rod_com**2)
-        if (c%crank_pin%has_clearance()) then
+        is_loose = c%loose_pins()
+        if (is_loose(crank_pin)) then
           call forbid(crank <= 0, 'mechanism', 'crank_inertia', away)
           call forbid(m%rod_mass <= 0, 'mechanism', 'rod_mass', 'must be > 0 with clearance at the crank pin')
           call forbid(m%rod_inertia <= 0, 'mechanism', 'rod_inertia', 'must be > 0 with clearance at the crank pin')
-        else if (c%joint%has_clearance()) then
+        else if (is_loose(piston_pin)) then
           call forbid(rod <= 0, 'mechanism', 'rod_inertia', 'must be > 0 unless rod_mass is > 0 away from the crank pin')
           call forbid(crank*rod + m%rod_mass*m%crank_length**2*m%rod_inertia <= 0, 'mechanism', 'crank_inertia', &
             away//', or rod_mass and rod_inertia are')
@@ -88,10 +96,13 @@ contains
     end subroutine check_bodies
 
     !> Check that an ideal joint has neither contact nor film, and that a joint with clearance has at least one of them.
-    subroutine check_joint(joint, group, place)
+    subroutine check_joint(joint, place)
       type(joint_case_t), intent(in) :: joint
-      character(len=*), intent(in) :: group   !! group of the joint
-      character(len=*), intent(in) :: place
+      integer, intent(in) :: place                !! index in `places`
+      character(len=:), allocatable :: group      !! of the joint
+      logical :: bearing_turns
+      group = 'joint'
+      if (place /= in_order(1)) group = trim(places(place)%name)//'.joint'
       if (.not. joint%has_clearance()) then
         call forbid(allocated(joint%contact) .or. allocated(joint%friction) .or. allocated(joint%film) .or. &
           allocated(joint%asperities) .or. allocated(joint%wear) .or. has_own_law(place), group, 'kind', &
@@ -118,7 +129,8 @@ contains
       else if (allocated(joint%contact)) then
         call check_contact(joint, group, law_group('contact', place))
       end if
-      if (allocated(joint%wear)) call check_wear(joint, group, law_group('wear', place))
+      bearing_turns = places(place)%bearing /= body_piston .or. c%has_loose_guide()
+      if (allocated(joint%wear)) call check_wear(joint, bearing_turns, group, law_group('wear', place))
       if (allocated(error) .or. .not. allocated(joint%film)) return
       call check_transition(joint, law_group('lubrication', place))
       call check_elastic_film(joint, law_group('lubrication', place), law_group('contact', place))
@@ -182,7 +194,7 @@ contains
       call forbid(.not. allocated(joint%contact), own, 'elastic_film', &
         'needs the group contact, whose geometry is the stiffness of the walls')
       if (allocated(error)) return
-      call forbid(joint%contact%name /= 'hertz', contact, 'law', 'must be hertz with elastic_film: the film dissipates, '// &
+      call forbid(.not. joint%contact%is_elastic(), contact, 'law', 'must be hertz with elastic_film: the film dissipates, '// &
         'the walls do not')
       call forbid(allocated(joint%friction), own, 'elastic_film', &
         'cannot be combined with the group friction: the surfaces never touch')
@@ -205,14 +217,15 @@ contains
     end subroutine check_asperities
 
     !> Check that wear has a rate, and a contact that wears.
-    subroutine check_wear(joint, group, wear_group)
+    subroutine check_wear(joint, bearing_turns, group, wear_group)
       type(joint_case_t), intent(in) :: joint
+      logical, intent(in) :: bearing_turns
       character(len=*), intent(in) :: group, wear_group   !! groups of the joint and of its wear
       call forbid(.not. any(joint%wear%rate > 0), wear_group, 'rate', 'must be > 0 for the pin or the bore')
       call forbid(.not. (joint%can_touch() .or. allocated(joint%asperities)), wear_group, 'rate', &
         'needs surfaces that touch: the group contact without elastic_film, or asperities')
       call values%demand(joint%bearing_length > 0, group, 'bearing_length', 'with wear', error)
-      if (.not. allocated(error)) call check_worn_bore(joint, wear_group, turns=group /= 'joint' .or. c%has_loose_guide())
+      if (.not. allocated(error)) call check_worn_bore(joint, wear_group, bearing_turns)
     end subroutine check_wear
 
     !> Check that a bore whose shape changes belongs to a dry joint on a foundation, in a piston that does not tilt.
@@ -229,7 +242,7 @@ contains
       end if
       call forbid(allocated(joint%film), group, 'bore', 'must be round with lubrication: the films are those of round bores')
       if (allocated(error)) return
-      call forbid(joint%contact%geometry%name /= 'winkler', group, 'bore', 'worn needs &contact geometry = ''winkler''')
+      call forbid(.not. joint%contact%geometry%has_foundation(), group, 'bore', 'worn needs &contact geometry = ''winkler''')
       call forbid(turns, group, 'bore', 'worn is for the piston pin in a piston that does not tilt')
       call forbid(.not. joint%wear%rate(of_bore) > 0, group, 'rate', 'must be > 0 for the bore with bore = ''worn''')
       call forbid(joint%wear%bins < least_bins, group, 'bins', 'must be >= 36 with bore = ''worn''')
@@ -259,16 +272,18 @@ contains
     end subroutine check_contact
 
     !> Check that at the beginning of a contact friction does not exceed static friction at the sliding speeds of an ideal joint.
-    !> These are at most the crank speed times the ratio of crank to rod length times the pin radius; at the crank pin the crank
-    !> speed times the pin radius is added.
+    !> These are at most the sum of the angular speeds of both bodies times the pin radius; that of the rod is at most the crank
+    !> speed times the ratio of crank to rod length.
     subroutine check_friction(joint, place)
       type(joint_case_t), intent(in) :: joint
-      character(len=*), intent(in) :: place
-      real(dp) :: speed, limit
+      integer, intent(in) :: place   !! index in `places`
+      real(dp) :: turning(n_bodies), speed, limit
       if (allocated(error) .or. .not. (joint%has_clearance() .and. allocated(joint%friction))) return
       associate (m => c%mechanism, bearing => joint%bearing(c%mechanism%rod_length))
-        speed = m%crank_length/m%rod_length
-        if (place == crank_pin_place) speed = 1 + speed
+        turning(body_crank) = 1
+        turning([body_big_end, body_small_end]) = m%crank_length/m%rod_length
+        turning(body_piston) = 0
+        speed = turning(places(place)%journal) + turning(places(place)%bearing)
         speed = speed*abs(c%initial%crank_speed)*bearing%pin_radius()
       end associate
       limit = joint%friction%touch_down_limit()
@@ -279,26 +294,32 @@ contains
 
     !> Whether the case has a law for the joint at this place alone.
     logical function has_own_law(place)
-      character(len=*), intent(in) :: place
-      has_own_law = any(values%is_present .and. index(values%groups%name, place//'.') == 1 .and. &
-                        values%groups%name /= place//'.joint')
+      integer, intent(in) :: place   !! index in `places`
+      has_own_law = any(values%is_present .and. index(values%groups%name, trim(places(place)%name)//'.') == 1 .and. &
+                        values%groups%name /= trim(places(place)%name)//'.joint')
     end function has_own_law
 
     !> Name of the group in which the law of a joint is given.
     function law_group(name, place) result(group)
-      character(len=*), intent(in) :: name, place
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: place   !! index in `places`
       character(len=:), allocatable :: group
-      group = place//'.'//name
+      group = trim(places(place)%name)//'.'//name
       if (.not. values%is_present(find_group(values%groups, group))) group = name
     end function law_group
 
     !> Check that the initial positions of the pins are admissible.
     subroutine check_start()
+      real(dp) :: distance(n_places)
+      integer :: place
       associate (start => c%initial, m => c%mechanism)
-        call check_pin(c%joint, '', norm2(start%eccentricity), start%eccentricity_rate)
-        call check_pin(c%crank_pin, crank_pin_place//'_', norm2(start%crank_pin_eccentricity), start%crank_pin_eccentricity_rate)
-        call forbid(norm2(start%eccentricity) + norm2(start%crank_pin_eccentricity) >= m%rod_length - m%crank_length, 'initial', &
-          trim(merge('eccentricity          ', 'crank_pin_eccentricity', norm2(start%eccentricity) > 0)), &
+        distance = norm2(start%eccentricity, 1)
+        do place = 1, n_places
+          call check_pin(c%joints(in_order(place)), name_prefix(in_order(place)), distance(in_order(place)), &
+            start%eccentricity_rate(:, in_order(place)))
+        end do
+        place = in_order(max(1, findloc(distance(in_order) > 0, .true., 1)))
+        call forbid(sum(distance) >= m%rod_length - m%crank_length, 'initial', name_prefix(place)//'eccentricity', &
           'must be shorter than rod_length - crank_length')
       end associate
     end subroutine check_start
@@ -325,10 +346,12 @@ contains
     !> Check that pressure fields are requested only of films with a pressure.
     subroutine check_film_times()
       logical :: has_film
+      integer :: place
       if (c%output%film_times == '') return
       has_film = .false.
-      if (allocated(c%joint%film)) has_film = c%joint%film%gives_pressure()
-      if (allocated(c%crank_pin%film)) has_film = has_film .or. c%crank_pin%film%gives_pressure()
+      do place = 1, n_places
+        if (allocated(c%joints(place)%film)) has_film = has_film .or. c%joints(place)%film%gives_pressure()
+      end do
       call forbid(.not. allocated(c%output%snapshot_times), 'output', 'film_times', &
         'must be times >= 0 in rising order with commas, or from:to:count')
       call forbid(.not. has_film, 'output', 'film_times', 'needs a film with a pressure: pinkus_sternlicht or finite_bearing')

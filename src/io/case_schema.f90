@@ -4,7 +4,8 @@
 module case_schema
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: parameter_list_t, law_t, key_t, real_kind, integer_kind, logical_kind, word_kind, text_kind
-  use case_definition, only: case_t, visit_case, piston_pin_place
+  use joint_places, only: places, in_order
+  use case_definition, only: case_t, visit_case
   implicit none
   private
   public :: key_t, group_definition_t, key_table_t, schema_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases
@@ -91,11 +92,11 @@ contains
     integer :: i, j, n_groups
     n_groups = schema%n_groups
     do i = 1, n_groups
-      if (schema%groups(i)%place /= piston_pin_place .or. .not. schema%groups(i)%is_model) cycle
+      if (schema%groups(i)%place /= places(in_order(1))%name .or. .not. schema%groups(i)%is_model) cycle
       schema%n_groups = schema%n_groups + 1
       associate (shared => schema%groups(i), own => schema%groups(schema%n_groups))
         own = shared
-        own%name = piston_pin_place//'.'//trim(shared%name)
+        own%name = trim(places(in_order(1))%name)//'.'//trim(shared%name)
         own%first = schema%n_keys + 1
         own%last = schema%n_keys + 1 + shared%last - shared%first
         shared%place = ''
@@ -130,7 +131,7 @@ contains
       if (present(instead_of)) group%instead_of = instead_of
       if (present(place)) then
         group%place = place
-        if (place /= piston_pin_place) then
+        if (place /= places(in_order(1))%name) then
           group%name = place//'.'//name
           group%is_model = .true.
         end if

@@ -11,12 +11,13 @@ module certificate
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
   use gudgeon_errors, only: error_t
-  use case_definition, only: case_t, joint_case_t
+  use case_definition, only: case_t
   use gudgeon_columns, only: column_list_t, choose_columns
   use gudgeon_simulation, only: run_report_t
   use trace_sink, only: trace_event_t
   use film_files, only: provide_tables
-  use run_witness, only: witness_t, run, has_coarse_table, figures_of, means_of, n_statistics, n_figures, loss_figure
+  use run_witness, only: witness_t, run, has_coarse_table, has_figures, figures_of, means_of, n_statistics, n_figures, loss_figure
+  use joint_places, only: n_places, name_prefix
   implicit none
   private
   public :: certificate_t, make_certificate, is_state
@@ -197,21 +198,13 @@ contains
 
     !> Differences between the results of the runs.
     subroutine compare_figures()
-      certificate%has_figure = [.true., case%joint%has_clearance(), case%joint%has_clearance(), case%crank_pin%has_clearance(), &
-        case%crank_pin%has_clearance(), case%crank_pin%has_clearance(), own%figures%time > 0, has_wear(case%joint), &
-        has_wear(case%joint), has_wear(case%crank_pin), has_wear(case%crank_pin), .false.]
+      certificate%has_figure = has_figures(case, own)
       if (allocated(own%cycles)) certificate%has_figure(loss_figure) = min(own%cycles%statistics%cycles, &
         closer_run%cycles%statistics%cycles) > 0
       certificate%figure = figures_of(own)
       certificate%figure_difference = max(abs(figures_of(closer_run) - certificate%figure), &
         abs(figures_of(other_run) - certificate%figure))
     end subroutine compare_figures
-
-    !> Whether the wear of a joint over the whole run is counted.
-    pure logical function has_wear(joint)
-      type(joint_case_t), intent(in) :: joint
-      has_wear = allocated(joint%wear) .and. joint%has_clearance() .and. case%output%window == 'all'
-    end function has_wear
   end subroutine make_certificate
 
   !> The case in the form in which all three runs carry it out: all columns, rows of its own, and the end of the run.
@@ -222,8 +215,8 @@ contains
     type(column_list_t), intent(out) :: list
     type(error_t), allocatable, intent(out) :: error
     real(dp) :: speed
+    integer :: i
     plain = case
-    !$omp critical (texts)
     plain%output%sampling = 'time'
     plain%output%columns = 'standard'
     plain%output%window = 'all'
@@ -235,9 +228,9 @@ contains
       plain%integrator%end_time = report%figures%time
     end if
     call choose_columns(plain, .false., list, error)
-    !$omp end critical (texts)
-    if (allocated(plain%joint%film)) plain%joint%film%table_file = ''   ! the files that the user names are not written again
-    if (allocated(plain%crank_pin%film)) plain%crank_pin%film%table_file = ''
+    do i = 1, n_places   ! the files that the user names are not written again
+      if (allocated(plain%joints(i)%film)) plain%joints(i)%film%table_file = ''
+    end do
     plain%run%lyapunov_revolutions = 0
     plain%output%start_time = 0
     plain%output%every_step = .false.
@@ -250,8 +243,12 @@ contains
   !> Whether a column is a coordinate or a speed.
   pure logical function is_state(name)
     character(len=*), intent(in) :: name
+    integer :: i
     associate (quantity => name(:index(name, '[') - 1))
-      is_state = any(quantity == state_names .or. quantity == 'crank_pin_'//state_names)
+      is_state = .false.
+      do i = 1, n_places
+        is_state = is_state .or. any(quantity == name_prefix(i)//state_names)
+      end do
     end associate
   end function is_state
 

@@ -2,7 +2,7 @@
 module certificate_text
   use gudgeon_kinds, only: dp
   use certificate, only: certificate_t, is_state
-  use run_witness, only: statistic_names, n_statistics, figure_names, n_figures, loss_figure
+  use run_witness, only: statistic_names, n_statistics, name_figure, n_figures, loss_figure
   use gudgeon_columns, only: column_name
   use number_text, only: real_text, short_text
   use text_tools, only: integer_text, quoted
@@ -36,8 +36,7 @@ contains
     type(certificate_t), intent(in) :: certificate
     character(len=:), allocatable :: text
     character(len=8), parameter :: units(n_statistics) = [character(len=8) :: 'N', '1', '1', 'J']
-    character(len=5), parameter :: figure_units(n_figures) = [character(len=5) :: 'N', '1', 'm', 'N', '1', 'm', 'rad/s', &
-      'm3', 'm3', 'm3', 'm3', 'J']
+    character(len=:), allocatable :: name, unit
     integer :: i
     text = ''
     if (.not. certificate%is_made) then
@@ -52,8 +51,9 @@ contains
     call add('certified_with_other_method', trim(merge('yes', 'no ', certificate%has_other_method)), '')
     do i = 1, n_figures
       if (.not. certificate%has_figure(i)) cycle
-      if (i == loss_figure) call add(trim(figure_names(i)), real_text(certificate%figure(i)), trim(figure_units(i)))
-      call add(trim(figure_names(i))//'_difference', real_text(certificate%figure_difference(i)), trim(figure_units(i)))
+      call name_figure(i, name, unit)
+      if (i == loss_figure) call add(name, real_text(certificate%figure(i)), unit)
+      call add(name//'_difference', real_text(certificate%figure_difference(i)), unit)
     end do
     if (certificate%is_whole) return
     call add('beyond_revolutions', integer_text(certificate%revolutions_beyond), '1')

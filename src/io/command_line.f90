@@ -1,6 +1,5 @@
 !> Reads the command line: options, overrides and case files. The arguments are passed as an array so that it can be tested.
 module command_line
-  use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_command_line
   use text_tools, only: printable, lowercase, nearest_word, case_name
   implicit none
@@ -10,13 +9,10 @@ module command_line
   !> The contents of the command line.
   type :: command_line_t
     integer, private :: option_count = 0
-    logical, private :: has_interval = .false.    !! the interval of checkpoints is given
     character(len=:), allocatable :: out          !! folder for results
     character(len=:), allocatable :: overrides(:) !! GROUP.KEY=VALUE or GROUP=none in the given order, padded with blanks
     character(len=:), allocatable :: accuracy     !! draft, standard, reference, or empty: as in the case file
-    integer :: jobs = 0                           !! number of threads; 0: number of processor cores
-    real(dp) :: checkpoint_interval = 60          !! seconds between checkpoints of a run; 0: none
-    logical :: resume = .false.                   !! continue runs that were stopped
+    integer :: jobs = 0                           !! number of processes; 0: number of processors
     logical :: certify = .false.                  !! make certificates of the runs
     character(len=:), allocatable :: reference    !! page of the manual to print: case, study or results; empty: none
     logical :: check = .false., template = .false., quiet = .false., help = .false., version = .false.
@@ -34,10 +30,10 @@ module command_line
     logical :: takes_value = .false.
   end type option_t
 
-  type(option_t), parameter :: options(16) = [ &
+  type(option_t), parameter :: options(14) = [ &
     option_t('out', 'o', .true.), option_t('set', 's', .true.), option_t('accuracy', 'a', .true.), &
     option_t('jobs', 'j', .true.), option_t('progress', '', .true.), option_t('check', '', .false.), &
-    option_t('resume', '', .false.), option_t('checkpoint', '', .true.), option_t('certify', '', .false.), &
+    option_t('certify', '', .false.), &
     option_t('template', '', .false.), option_t('quiet', 'q', .false.), option_t('help', 'h', .false.), &
     option_t('version', 'V', .false.), option_t('fresh', '', .false.), option_t('rows', '', .true.), &
     option_t('reference', '', .true.)]
@@ -90,10 +86,8 @@ contains
       call refuse('--certify is not for gudgeon sweep')
     else if (.not. line%sweep .and. (line%fresh .or. line%last_row > 0)) then
       call refuse('--fresh and --rows are for gudgeon sweep')
-    else if (line%sweep .and. line%resume) then
-      call refuse('--resume is for cases; a stopped sweep continues without it')
-    else if (line%sweep .and. line%has_interval) then
-      call refuse('--checkpoint is for cases; a sweep keeps every run that has ended')
+    else if (line%fresh .and. line%last_row > 0) then
+      call refuse('--fresh would discard the results of other rows: not with --rows')
     else
       call check_names()
     end if
@@ -164,7 +158,6 @@ contains
     subroutine take(name, value)
       character(len=*), intent(in) :: name, value
       character(len=:), allocatable :: wanted
-      integer :: status
       line%option_count = line%option_count + 1
       select case (name)
       case ('out')
@@ -183,14 +176,6 @@ contains
       case ('progress')
         line%progress = value
         if (all(value /= ['auto  ', 'always', 'never '])) wanted = 'must be auto, always or never'
-      case ('checkpoint')
-        line%has_interval = .true.
-        line%checkpoint_interval = -1
-        if (value /= '' .and. value /= '.' .and. verify(value, '0123456789.') == 0 .and. len(value) < 10) &
-          read (value, *, iostat=status) line%checkpoint_interval
-        if (.not. line%checkpoint_interval >= 0) wanted = 'must be a number of seconds, 0 or more'
-      case ('resume')
-        line%resume = .true.
       case ('check')
         line%check = .true.
       case ('template')
@@ -288,11 +273,7 @@ contains
       '  -a, --accuracy LEVEL      draft, standard or reference: about 3, 5 or 8 digits of a motion without impacts. Sets'//n// &
       '                            method auto, contact entry root and the tolerance 1e-4, 1e-6 or 1e-10; --set has'//n// &
       '                            priority'//n// &
-      '  -j, --jobs N              number of threads for cases and their ideal twins (default: number of processor cores)'//n// &
-      '      --resume              continue runs that were stopped, each from its checkpoint in DIR. Give the same case and'//n// &
-      '                            options as before; only the limits max_steps, max_evaluations and'//n// &
-      '                            max_evaluations_per_revolution may change. The results are those of an uninterrupted run'//n// &
-      '      --checkpoint SECONDS  time between checkpoints, in CASE.checkpoint (default: 60; 0: none)'//n// &
+      '  -j, --jobs N              number of processes for cases and studies (default: number of processors)'//n// &
       '      --certify             estimate the accuracy of each case by running it again at a hundredth of its tolerance'//n// &
       '                            and with another method; results in the summary and in CASE.certificate.csv'//n// &
       '      --check               read and validate the cases without running them'//n// &
@@ -300,13 +281,13 @@ contains
       '      --reference SUBJECT   print a reference page in Markdown; SUBJECT is case, study or results'//n// &
       '      --progress WHEN       show progress on standard error: auto (on a terminal), always or never'//n// &
       '  -q, --quiet               print errors only'//n// &
-      '      --fresh               sweep: discard the rows of an earlier sweep (default: continue it)'//n// &
-      '      --rows A:B            sweep: run only the rows A to B, into STUDY.A-B.runs.csv'//n// &
+      '      --fresh               sweep: discard the results of an earlier sweep (default: continue it)'//n// &
+      '      --rows A:B            sweep: run only the rows A to B; a later sweep joins them with the others'//n// &
       '  -h, --help                print this text'//n// &
       '  -V, --version             print the version'//n//n// &
       'Results of CASE.nml: CASE.csv (trace), CASE.events.csv (contacts), CASE.summary.csv, CASE.resolved.nml (the case with'//n// &
       'all defaults). Results of STUDY.nml: STUDY.runs.csv, one row for each run, and STUDY.study.nml.'//n// &
-      'Exit status: 0 all done; 1 internal error; 2 wrong command line; 3 wrong case file or checkpoint; 4 an integration'//n// &
+      'Exit status: 0 all done; 1 internal error; 2 wrong command line; 3 wrong case file; 4 an integration'//n// &
       'could not continue (sweep: in at least one run); 5 a result could not be written.'//n
   end function help_text
 end module command_line

@@ -2,18 +2,18 @@
 !> asks for. Tables are stored between runs, in the user's cache folder or in a file that the case names, since they take long to
 !> compute.
 !>
-!> The file of a table contains a line that identifies its format, the key of the table, the table as an archive, and a checksum of
-!> all this. A damaged file, or one written by another version of the program, is computed again; if it cannot be written into the
-!> cache, the run continues without storing it. A file that a case names is replaced only if it is a table of a film, of any
+!> The file of a table contains a line that identifies its format, the key of the table, the numbers of the table, and a checksum
+!> of all this. A damaged file, or one written by another version of the program, is computed again; if it cannot be written into
+!> the cache, the run continues without storing it. A file that a case names is replaced only if it is a table of a film, of any
 !> parameters.
 module film_files
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_integration, status_case_file
-  use gudgeon_archive, only: archive_t
   use gudgeon_bearing, only: bearing_t
   use gudgeon_checksum, only: checksum_t, mark_of, mark_length
-  use chain_motion, only: pin_names
-  use case_definition, only: case_t, joint_case_t
+  use joint_places, only: places, n_places, in_order
+  use case_definition, only: case_t
+  use joint_case, only: joint_case_t
   use film_snapshots, only: film_field_t
   use film_law, only: film_law_t, table_watch_t
   use gudgeon_posix, only: make_directory, interrupted
@@ -38,15 +38,17 @@ module film_files
 
 contains
 
-  !> Give the films of a case their tables, stored or new ones. `announces`: the user is told, in one line, that a table is computed.
-  !> Errors: the user interrupted (status_integration); the file that the case names is not a table (status_case_file) or cannot be
-  !> written (status_output).
+  !> Give the films of a case their tables, stored or new ones. `announces`: the user is told, in one line, that a table is
+  !> computed. Errors: the user interrupted (status_integration); the file that the case names is not a table (status_case_file) or
+  !> cannot be written (status_output).
   subroutine provide_tables(case, announces, shows_progress, error)
     type(case_t), intent(inout) :: case
     logical, intent(in) :: announces, shows_progress
     type(error_t), allocatable, intent(out) :: error
-    call provide_table(case%joint, case, announces, shows_progress, error)
-    if (.not. allocated(error)) call provide_table(case%crank_pin, case, announces, shows_progress, error)
+    integer :: i
+    do i = 1, n_places
+      if (.not. allocated(error)) call provide_table(case%joints(in_order(i)), case, announces, shows_progress, error)
+    end do
   end subroutine provide_tables
 
   subroutine provide_table(joint, case, announces, shows_progress, error)
@@ -64,7 +66,6 @@ contains
     associate (tolerance => case%integrator%relative_tolerance)
       key = joint%film%table_key(bearing, tolerance)
       if (key == joint%film%table_of) return
-      !$omp critical (film_tables)
       began = clock()
       is_named = .false.
       if (allocated(joint%film%table_file)) is_named = joint%film%table_file /= ''
@@ -90,7 +91,6 @@ contains
         end if
       end if
       joint%film%table_time = clock() - began
-      !$omp end critical (film_tables)
     end associate
   end subroutine provide_table
 
@@ -143,8 +143,8 @@ contains
     character(len=*), intent(in) :: path, key
     class(film_law_t), intent(inout) :: film
     logical, intent(out) :: is_there, is_foreign
-    type(archive_t) :: archive
     character(len=:), allocatable :: bytes, head
+    real(dp) :: numbers(0)
     integer :: status, last
 
     is_there = .false.
@@ -158,10 +158,8 @@ contains
     if (last < len(head)) return
     if (bytes(:len(head)) /= head) return
     if (bytes(last + 1:) /= mark_of(bytes(:last))) return
-    call archive%begin_reading(bytes(len(head) + 1:last))
     film%table_of = ''
-    call film%exchange_table(archive)
-    is_there = archive%is_at_end() .and. .not. archive%failed
+    call film%restore_table(transfer(bytes(len(head) + 1:last), numbers), is_there)
     if (is_there) film%table_of = key
   end subroutine load
 
@@ -170,13 +168,12 @@ contains
     character(len=*), intent(in) :: path, key
     class(film_law_t), intent(inout) :: film
     type(error_t), allocatable, intent(out) :: error
-    type(archive_t) :: archive
+    real(dp), allocatable :: numbers(:)
     character(len=:), allocatable :: bytes
     if (path == '') return
-    call archive%begin_writing()
-    call film%exchange_table(archive)
-    call archive%contents(bytes)
-    bytes = title//key//newline//bytes
+    numbers = film%table_numbers()
+    allocate (character(len=8*size(numbers)) :: bytes)
+    bytes = title//key//newline//transfer(numbers, bytes)
     call write_text(path, bytes//mark_of(bytes), error)
   end subroutine save
 
@@ -193,7 +190,7 @@ contains
       do j = 1, size(fields(i)%angle)
         do k = 1, size(fields(i)%along)
           associate (field => fields(i))
-            call file%append(real_text(field%time)//','//real_text(field%crank_angle)//','//trim(pin_names(field%place))//',')
+            call file%append(real_text(field%time)//','//real_text(field%crank_angle)//','//trim(places(field%place)%name)//',')
             call file%append(real_text(field%angle(j) + field%direction)//',')
             call file%append(real_text(field%clearance - field%distance*cos(field%angle(j)))//',')
             call file%append(real_text(field%along(k))//','//real_text(field%pressure(j, k))//achar(10))

@@ -1,18 +1,18 @@
 !> Thin bindings for Linux to calls of the C library that Fortran does not offer. Error numbers are returned and not stored, so that
 !> they are safe in several threads.
 module gudgeon_posix
-  use, intrinsic :: iso_c_binding, only: c_int, c_long, c_short, c_null_char, &
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_short, c_null_char, c_ptr, &
     c_size_t, c_loc, c_f_pointer, c_associated
-  use posix_calls, only: file_status_t, poll_t, c_open, c_read, c_pread, c_realpath, c_write, c_fsync, c_ftruncate, c_flock, &
-    c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_isatty, c_errno_location, c_strerror_r
+  use posix_calls, only: file_status_t, poll_t, c_open, c_read, c_realpath, c_write, c_fsync, c_ftruncate, c_flock, &
+    c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_rmdir, &
+    c_opendir, c_readdir, c_closedir, c_isatty, c_errno_location, c_strerror_r
   use posix_signals, only: signal_set_t, hold_interrupts, restore_interrupts, interrupted, ignore_write_signals
   implicit none
   private
-  public :: open_file, to_read, to_append, open_standard_input, open_for_writing, open_to_lock, lock_file, &
-    is_file, file_length, absolute_path, read_at, read_bytes, write_all, truncate_file, reserve_file, &
-    synchronise_file, synchronise_folder, close_file, rename_file, remove_file, make_directory, is_terminal, wait_for_input, &
-    error_text, signal_set_t, hold_interrupts, restore_interrupts, interrupted, fill_standard_descriptors, &
-    ignore_write_signals
+  public :: open_file, to_read, to_append, open_standard_input, open_for_writing, lock_file, file_length, absolute_path, &
+    read_bytes, write_all, truncate_file, reserve_file, synchronise_file, synchronise_folder, close_file, rename_file, &
+    remove_file, make_directory, remove_folder, list_folder, longest_name, is_terminal, wait_for_input, error_text, signal_set_t, &
+    hold_interrupts, restore_interrupts, interrupted, fill_standard_descriptors, ignore_write_signals
   public :: error_no_entry, error_interrupted, error_locked, error_exists, error_is_directory, error_no_space, &
     error_broken_pipe, error_not_regular, error_is_link
 
@@ -24,8 +24,10 @@ module gudgeon_posix
 
   !> Flags of open and statx, as far as they are equal on all processors.
   integer(c_int), parameter :: read_only = 0, write_only = 1, read_and_write = 2, o_creat = 64, o_excl = 128, o_append = 1024, &
-    o_nonblock = 2048, o_cloexec = 524288, to_read = read_only, to_append = ior(write_only, o_append), to_lock = read_and_write
+    o_nonblock = 2048, o_cloexec = 524288, to_read = read_only, to_append = ior(write_only, o_append)
   integer(c_int), parameter :: at_working_folder = -100, at_link_itself = 256, at_empty_path = 4096, basic_status = 2047
+
+  integer, parameter :: longest_name = 255   !! bytes of a name in a folder
 
   !> Kinds of files, as in their mode.
   integer, parameter :: kind_mask = 61440, kind_folder = 16384, kind_regular = 32768, kind_link = 40960
@@ -41,14 +43,32 @@ contains
     status = outcome(descriptor)
   end subroutine open_standard_input
 
-  !> Create a new file for writing. An existing file of that name is removed first: following a symbolic link would let anyone who
-  !> can write into the folder overwrite any file of the user. `status` is 0 or the error number.
+  !> Create a new file for writing, and lock it until it is closed. An existing file of that name is removed first, unless another
+  !> program is writing it: then `status` is `error_locked`. (Following a symbolic link would let anyone who can write into the
+  !> folder overwrite any file of the user.)
   subroutine open_for_writing(path, descriptor, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: descriptor, status
-    descriptor = -1
-    call remove_file(path, status)
-    if (status == 0 .or. status == error_no_entry) call create_file(path, descriptor, status)
+    integer, parameter :: most_tries = 1000
+    integer :: ignored, try
+    do try = 1, most_tries
+      call create_file(path, descriptor, status)
+      if (status == 0) then
+        call lock_file(descriptor, status)
+        if (status == 0) then
+          if (is_file(path, descriptor)) return
+        end if
+      else if (status == error_exists) then
+        call open_file(path, to_append, descriptor, status)
+        if (status == 0) call lock_file(descriptor, status)
+        if (status /= error_locked) call remove_file(path, status)
+        if (status == error_no_entry) status = 0   ! another program has just removed it
+      end if
+      if (descriptor >= 0) call close_file(descriptor, ignored)
+      descriptor = -1
+      if (all(status /= [0, error_interrupted])) return
+    end do
+    status = error_exists
   end subroutine open_for_writing
 
   !> Create a file that does not exist yet. A symbolic link counts as an existing file.
@@ -59,18 +79,7 @@ contains
     status = outcome(descriptor)
   end subroutine create_file
 
-  !> Open a file that is used for locking only, and create it if it does not exist. `status` is 0 or the error number; if another
-  !> program has just created or removed the file it is `error_exists` or `error_no_entry`.
-  subroutine open_to_lock(path, descriptor, status)
-    character(len=*), intent(in) :: path
-    integer, intent(out) :: descriptor, status
-    call open_file(path, to_lock, descriptor, status)
-    if (status == error_no_entry) call create_file(path, descriptor, status)
-    if (status /= error_exists) return
-    if (kind_of_file(at_working_folder, path, at_link_itself) == kind_link) status = error_is_link   ! a link without a target
-  end subroutine open_to_lock
-
-  !> Open an existing regular file in the way `to_read`, `to_append` or `to_lock`, without waiting for the other end of a pipe; only
+  !> Open an existing regular file in the way `to_read` or `to_append`, without waiting for the other end of a pipe; only
   !> for reading a symbolic link is followed. `status` is 0 or the error number.
   subroutine open_file(path, way, descriptor, status)
     character(len=*), intent(in) :: path
@@ -96,11 +105,12 @@ contains
   end subroutine open_file
 
   !> Lock an open file for this opening of it, until it is closed or the program ends. `status` is `error_locked` if another opening
-  !> holds the lock.
+  !> holds the lock; on a file system without locks there is none, and `status` is 0.
   subroutine lock_file(descriptor, status)
     integer, intent(in) :: descriptor
     integer, intent(out) :: status
     status = outcome(c_flock(descriptor, ior(lock_exclusive, lock_without_waiting)))
+    if (status /= error_locked) status = 0
   end subroutine lock_file
 
   !> Whether `path` is the name of this open file itself, and not of a link to it.
@@ -139,16 +149,6 @@ contains
     done = int(c_read(descriptor, c_loc(buffer), len(buffer, c_size_t)))
     status = outcome(done)
   end subroutine read_bytes
-
-  !> One call of read at an offset in the file, counted from 0.
-  subroutine read_at(descriptor, offset, buffer, done, status)
-    integer, intent(in) :: descriptor
-    integer(c_long), intent(in) :: offset
-    character(len=*), intent(out), target :: buffer
-    integer, intent(out) :: done, status
-    done = int(c_pread(descriptor, c_loc(buffer), len(buffer, c_size_t), offset))
-    status = outcome(done)
-  end subroutine read_at
 
   !> The absolute path of an existing file; the path itself if it has none.
   function absolute_path(path) result(whole)
@@ -248,6 +248,46 @@ contains
     status = 0
     if (kind_of_file(at_working_folder, path, 0_c_int) /= kind_folder) status = error_not_directory
   end subroutine make_directory
+
+  !> Remove a folder, if it is empty.
+  subroutine remove_folder(path)
+    character(len=*), intent(in) :: path
+    integer(c_int) :: unused
+    unused = c_rmdir(path//c_null_char)
+  end subroutine remove_folder
+
+  !> The names in a folder, in any order, padded with blanks; none if it cannot be read.
+  subroutine list_folder(path, names)
+    character(len=*), intent(in) :: path
+    character(len=longest_name), allocatable, intent(out) :: names(:)
+    integer, parameter :: before_name = 19   !! bytes before d_name in the struct dirent of 64-bit Linux
+    character(kind=c_char), pointer :: entry(:)
+    character(len=longest_name), allocatable :: found(:)
+    character(len=longest_name) :: name
+    type(c_ptr) :: folder, at
+    integer(c_int) :: unused
+    integer :: i, n
+    allocate (found(64))
+    n = 0
+    folder = c_opendir(path//c_null_char)
+    do while (c_associated(folder))
+      at = c_readdir(folder)
+      if (.not. c_associated(at)) exit
+      call c_f_pointer(at, entry, [before_name + longest_name])
+      name = ''
+      do i = 1, longest_name
+        if (entry(before_name + i) == c_null_char) exit
+        name(i:i) = entry(before_name + i)
+      end do
+      if (name == '.' .or. name == '..') cycle
+      if (n == size(found)) found = [found, found]   ! more room
+      n = n + 1
+      found(n) = name
+    end do
+    if (c_associated(folder)) unused = c_closedir(folder)
+    call move_alloc(found, names)
+    names = names(:n)
+  end subroutine list_folder
 
   !> Whether a file descriptor (1 standard output, 2 standard error) is a terminal.
   logical function is_terminal(descriptor) result(answer)

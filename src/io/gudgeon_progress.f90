@@ -5,12 +5,13 @@ module gudgeon_progress
   use gudgeon_kinds, only: dp
   use text_tools, only: printable, integer_text
   use number_text, only: short_text
-  use gudgeon_posix, only: is_terminal, write_all
+  use gudgeon_errors, only: status_output
+  use gudgeon_posix, only: is_terminal, write_all, error_text, error_broken_pipe
   implicit none
   private
-  public :: progress_t, progress_wanted, clock, tell, rate_text, duration_text
+  public :: progress_t, progress_wanted, clock, tell, say, rate_text, duration_text
 
-  integer, parameter :: standard_error = 2
+  integer, parameter :: standard_output = 1, standard_error = 2   !! file descriptors
   real(dp), parameter :: least_interval = 0.2_dp   !! shortest time between two lines [s]
 
   !> The progress of one case.
@@ -125,6 +126,17 @@ contains
     integer :: done, ignored
     call write_all(standard_error, 'gudgeon: '//line//achar(10), done, ignored)
   end subroutine tell
+
+  !> Print one line on standard output. If that fails, `status` is raised, unless the reader has closed the pipe.
+  subroutine say(line, status)
+    character(len=*), intent(in) :: line
+    integer, intent(inout) :: status
+    integer :: done, problem
+    call write_all(standard_output, line//achar(10), done, problem)
+    if (problem == 0 .or. problem == error_broken_pipe) return
+    call tell('standard output: '//error_text(problem))
+    status = max(status, status_output)
+  end subroutine say
 
   subroutine clear_line(self)
     class(progress_t), intent(inout) :: self

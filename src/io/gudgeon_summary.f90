@@ -1,6 +1,6 @@
 !> The summary of a run: NAME.summary.csv, and one line for the user.
 module gudgeon_summary
-  use, intrinsic :: iso_fortran_env, only: int64, compiler_version, compiler_options
+  use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
@@ -8,9 +8,10 @@ module gudgeon_summary
   use run_figures, only: pin_figures_t, elastic_figures_t
   use piston_guide, only: n_corners, corner_names
   use period_watch, only: period_watch_t
-  use chain_motion, only: crank_pin, piston_pin, name_prefix
+  use joint_places, only: places, n_places, in_order, name_prefix
   use archard_wear, only: of_pin, of_bore
-  use case_definition, only: case_t, joint_case_t
+  use case_definition, only: case_t
+  use joint_case, only: joint_case_t
   use number_text, only: real_text, short_text
   use text_tools, only: integer_text, quoted
   use gudgeon_version, only: program_version
@@ -19,22 +20,20 @@ module gudgeon_summary
   public :: summary_table, summary_value, summary_line, energy_warning, build_advice, relative_residual
 
   character(len=*), parameter :: newline = achar(10)
-  character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: the runs that measure it could not continue'
+  character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: '
 
 contains
 
   !> The rows `quantity,value,unit`. Peaks and times have as many digits as the trace, so that rounding does not make a row of the
   !> trace exceed them.
-  function summary_table(case, report, wall_time, identity, trace_length, events_length, is_twin) result(text)
+  function summary_table(case, report, wall_time, is_twin) result(text)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
     real(dp), intent(in) :: wall_time                               !! [s]
-    character(len=*), intent(in) :: identity                        !! identity of the run
-    integer(int64), intent(in) :: trace_length, events_length       !! lengths of the files [bytes]; 0: no such file
     logical, intent(in), optional :: is_twin                        !! true for the ideal twin, whose bodies are rigid
     character(len=:), allocatable :: text
     character(len=5), parameter :: method_names(2) = ['adams', 'radau']
-    integer :: order, limit, mode, method, corner
+    integer :: order, limit, mode, method, corner, i
 
     text = 'quantity,value,unit'//newline
     call add('status', quoted(report%status, '"'), '')
@@ -78,7 +77,7 @@ contains
         end do
       end if
       if (report%auto_saves > 0) call add('evaluations_over_those_of_auto', real_text(report%auto_saves), '1')
-      call add('max_pin_force', peak(f%pin(piston_pin)%max_force), 'N')
+      call add('max_pin_force', peak(f%pin(in_order(1))%max_force), 'N')
       call add('crank_revolutions', real_text(f%crank_travel/two_pi), '1')
       if (f%time > 0) call add('mean_crank_speed', real_text(f%crank_travel/f%time), 'rad/s')
       if (report%periods%is_on) call add_period(report%periods)
@@ -86,17 +85,17 @@ contains
         call add('lyapunov_exponent', real_text(report%exponent%mean), '1/revolution')
         call add('lyapunov_exponent_error', real_text(report%exponent%error), '1/revolution')
         call add('lyapunov_revolutions', integer_text(report%exponent%revolutions), '1')
-      else if (case%run%lyapunov_revolutions > 0 .and. report%status == 'done') then
-        call add('lyapunov_warning', '"'//no_exponent//'"', '')
+      else if (allocated(report%exponent%reason)) then
+        call add('lyapunov_warning', quoted(no_exponent//report%exponent%reason, '"'), '')
       end if
       call add('max_energy_residual', peak(max(f%max_energy_residual, f%row_energy_residual)), 'J')
       call add('max_energy_residual_relative', real_text(relative_residual(report)), '1')
       if (report%energy_is_poor) call add('energy_warning', quoted(energy_warning(case, report), '"'), '')
-      if (case%joint%has_clearance()) call add_joint('', case%joint, f%pin(piston_pin))
-      if (case%crank_pin%has_clearance()) then
-        call add(name_prefix(crank_pin)//'max_pin_force', peak(f%pin(crank_pin)%max_force), 'N')
-        call add_joint(name_prefix(crank_pin), case%crank_pin, f%pin(crank_pin))
-      end if
+      do i = 1, n_places
+        if (.not. case%joints(in_order(i))%has_clearance()) cycle
+        if (i > 1) call add(name_prefix(in_order(i))//'max_pin_force', peak(f%pin(in_order(i))%max_force), 'N')
+        call add_joint(name_prefix(in_order(i)), case%joints(in_order(i)), f%pin(in_order(i)))
+      end do
       if (case%has_loose_guide()) then
         do corner = 1, n_corners
           associate (c => f%corner(corner), prefix => corner_names(corner)//'_')
@@ -107,9 +106,6 @@ contains
       end if
       if (case%is_elastic()) call add_elastic(f%elastic)
     end associate
-    if (trace_length > 0) call add('trace_bytes', integer_text(trace_length), 'B')
-    if (events_length > 0) call add('events_bytes', integer_text(events_length), 'B')
-    call add('identity', identity, '')
     call add('version', program_version, '')
     call add('compiler', quoted(compiler_version(), '"'), '')
     call add('compiler_options', quoted(compiler_options(), '"'), '')
@@ -220,25 +216,29 @@ contains
     end subroutine add
   end function summary_table
 
-  !> Names of the phases of the joints in a mode of the scene, the piston pin first: the digits of the mode in base three. For a
-  !> guide with clearance its phase precedes them; it is the highest digit.
+  !> Names of the phases of the joints in a mode of the scene, in the order of the places: the digits of the mode in base three. If
+  !> the first place has none, the place of the first name precedes it. For a guide with clearance its phase precedes them; it is
+  !> the highest digit.
   function phases_of(case, mode) result(text)
     type(case_t), intent(in) :: case
     integer, intent(in) :: mode   !! number >= 0
     character(len=:), allocatable :: text
     character(len=7), parameter :: names(0:2) = ['free   ', 'film   ', 'contact']
-    integer :: pins
+    integer :: pins, i
     pins = mode
     text = ''
     if (case%has_loose_guide()) then
-      pins = mod(mode, size(names)**count([case%joint%has_clearance(), case%crank_pin%has_clearance()]))
+      pins = mod(mode, size(names)**count(case%joints%has_clearance()))
       text = trim(merge('guide_free   ', 'guide_contact', pins == mode))
-      if (.not. case%has_play()) return
-      text = text//'_'
     end if
-    if (case%crank_pin%has_clearance() .and. .not. case%joint%has_clearance()) text = text//name_prefix(crank_pin)
-    text = text//trim(names(mod(pins, size(names))))
-    if (case%crank_pin%has_clearance() .and. case%joint%has_clearance()) text = text//'_'//trim(names(pins/size(names)))
+    do i = 1, n_places
+      if (.not. case%joints(in_order(i))%has_clearance()) cycle
+      if (text /= '') text = text//'_'
+      if (.not. any(case%joints(in_order(:i - 1))%has_clearance())) text = text//name_prefix(in_order(i))
+      text = text//trim(names(mod(pins, size(names))))
+      pins = pins/size(names)
+    end do
+    if (text == '') text = trim(names(mod(pins, size(names))))
   end function phases_of
 
   !> The value of a quantity in the text of a summary; empty if it is not there.
@@ -290,6 +290,7 @@ contains
     character(len=*), intent(in) :: path   !! path of the results without suffix
     character(len=*), intent(in), optional :: remark   !! text about the certificate, or empty
     character(len=:), allocatable :: text
+    integer :: i
     associate (s => report%statistics, f => report%figures)
       text = case%name//': '//report%status//'; '
       if (present(remark)) then
@@ -298,13 +299,18 @@ contains
       if (report%periods%is_on .and. report%status == 'done') text = text//period_text(report%periods)//'; '
       if (report%exponent%is_known) then
         text = text//'Lyapunov exponent '//short_text(report%exponent%mean)//' per revolution; '
-      else if (case%run%lyapunov_revolutions > 0 .and. report%status == 'done') then
-        text = text//no_exponent//'; '
+      else if (allocated(report%exponent%reason)) then
+        text = text//no_exponent//report%exponent%reason//'; '
       end if
       text = text//short_text(f%time)//' s in '//short_text(wall_time)//' s, '// &
         integer_text(s%accepted)//' steps, '//integer_text(s%evaluations)//' evaluations; '
-      text = text//pin_text(case%joint, f%pin(piston_pin))
-      if (case%crank_pin%has_clearance()) text = text//'; crank pin: '//pin_text(case%crank_pin, f%pin(crank_pin))
+      do i = 1, n_places
+        associate (place => in_order(i))
+          if (i > 1 .and. .not. case%joints(place)%has_clearance()) cycle
+          if (i > 1) text = text//'; '//trim(places(place)%title)//': '
+          text = text//pin_text(case%joints(place), f%pin(place))
+        end associate
+      end do
       if (case%has_loose_guide()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
         ' contacts, largest force '//short_text(maxval(f%corner%max_force))//' N'
       text = text//', relative energy residual '//short_text(relative_residual(report))

@@ -4,9 +4,9 @@ module posix_calls
   implicit none
   private
   public :: file_status_t, poll_t
-  public :: c_open, c_read, c_pread, c_realpath, c_write, c_fsync, c_ftruncate, c_flock, &
-    c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_isatty, c_errno_location, c_strerror_r, &
-    c_exit
+  public :: c_open, c_read, c_realpath, c_write, c_fsync, c_ftruncate, c_flock, &
+    c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_rmdir, c_opendir, c_readdir, c_closedir, c_isatty, &
+    c_errno_location, c_strerror_r, c_exit
 
   !> The struct statx of Linux, which is the same on all processors.
   type, bind(c) :: file_status_t
@@ -37,13 +37,6 @@ module posix_calls
       type(c_ptr), value :: buffer
       integer(c_size_t), value :: count
     end function c_read
-    integer(c_long) function c_pread(descriptor, buffer, count, offset) bind(c, name='pread') result(done)
-      import :: c_int, c_ptr, c_size_t, c_long
-      integer(c_int), value :: descriptor
-      type(c_ptr), value :: buffer
-      integer(c_size_t), value :: count
-      integer(c_long), value :: offset
-    end function c_pread
     type(c_ptr) function c_realpath(path, resolved) bind(c, name='realpath') result(answer)
       import :: c_char, c_ptr
       character(kind=c_char), intent(in) :: path(*)
@@ -102,6 +95,22 @@ module posix_calls
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), value :: mode
     end function c_mkdir
+    integer(c_int) function c_rmdir(path) bind(c, name='rmdir') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+    end function c_rmdir
+    type(c_ptr) function c_opendir(path) bind(c, name='opendir') result(folder)
+      import :: c_char, c_ptr
+      character(kind=c_char), intent(in) :: path(*)
+    end function c_opendir
+    type(c_ptr) function c_readdir(folder) bind(c, name='readdir') result(entry)
+      import :: c_ptr
+      type(c_ptr), value :: folder
+    end function c_readdir
+    integer(c_int) function c_closedir(folder) bind(c, name='closedir') result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: folder
+    end function c_closedir
     integer(c_int) function c_isatty(descriptor) bind(c, name='isatty') result(answer)
       import :: c_int
       integer(c_int), value :: descriptor

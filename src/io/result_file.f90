@@ -5,8 +5,9 @@ module result_file
   use, intrinsic :: iso_c_binding, only: c_long
   use gudgeon_errors, only: error_t, fail, status_output
   use text_tools, only: printable
-  use gudgeon_posix, only: open_for_writing, open_file, to_append, write_all, truncate_file, reserve_file, synchronise_file, &
-    close_file, rename_file, remove_file, error_text, error_interrupted, error_no_entry, error_is_directory
+  use gudgeon_posix, only: open_for_writing, open_file, lock_file, to_append, write_all, truncate_file, reserve_file, &
+    synchronise_file, close_file, rename_file, remove_file, error_text, error_interrupted, error_locked, error_no_entry, &
+    error_is_directory
   implicit none
   private
   public :: result_file_t, write_text, remove_result, fail_with_file
@@ -51,14 +52,12 @@ contains
     integer :: status
     if (present(whole_only)) self%whole_only = whole_only
     self%path = path
-    do
-      call open_for_writing(path//'.part', self%descriptor, status)
-      if (status /= error_interrupted) exit
-    end do
+    call open_for_writing(path//'.part', self%descriptor, status)
     if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine open_result
 
-  !> Continue a file with the final name `path` after its first `length` bytes. The existing file has the name `present`.
+  !> Continue a file with the final name `path` after its first `length` bytes. The existing file has the name `present`, which is
+  !> `path` or its temporary name.
   subroutine reopen(self, path, present, length, error)
     class(result_file_t), intent(out) :: self
     character(len=*), intent(in) :: path, present
@@ -68,6 +67,7 @@ contains
     self%path = path
     self%written = length
     call open_file(present, to_append, self%descriptor, status)
+    if (status == 0) call lock_file(self%descriptor, status)
     if (status == 0) call truncate_file(self%descriptor, length, status)
     if (status == 0 .and. present /= path//'.part') call rename_file(present, path//'.part', status)
     if (status /= 0) call fail_with_file(self%path, status, error)
@@ -116,7 +116,7 @@ contains
   end subroutine flush_rows
 
   !> Write the content of the buffer to the file and to the disk. After a failure nothing more is written, since the system may have
-  !> discarded data; `tell_error` reports it. No text function is used here.
+  !> discarded data; `tell_error` reports it.
   impure elemental subroutine synchronise(self)
     class(result_file_t), intent(inout) :: self
     integer :: status
@@ -126,19 +126,13 @@ contains
     if (self%is_reserved) call truncate_file(self%descriptor, self%written, status)   ! release the unused reserved space
     self%is_reserved = .false.
     if (self%status == 0) call synchronise_file(self%descriptor, status)
-    if (self%status == 0 .and. status /= 0) then
-      !$omp atomic write
-      self%status = status
-    end if
+    if (self%status == 0) self%status = status
   end subroutine synchronise
 
-  !> Whether a write has failed. May be called while another thread writes.
-  impure elemental logical function has_failed(self) result(failed)
+  !> Whether a write has failed.
+  pure elemental logical function has_failed(self) result(failed)
     class(result_file_t), intent(in) :: self
-    integer :: status
-    !$omp atomic read
-    status = self%status
-    failed = status /= 0
+    failed = self%status /= 0
   end function has_failed
 
   !> The first failure, if there was one.
@@ -149,15 +143,12 @@ contains
   end subroutine tell_error
 
   !> Write the remaining rows and give the file its final name. After a failed write the file keeps its complete rows; it is removed
-  !> if it has none, or if a part of it is useless. `close` reports the failure. No text function is used here.
+  !> if it has none, or if a part of it is useless. `close` reports the failure.
   impure elemental subroutine conclude(self)
     class(result_file_t), intent(inout) :: self
     integer :: status, ignored
     if (self%descriptor < 0) return
     call self%flush()
-    call close_file(self%descriptor, status)
-    self%descriptor = -1
-    if (self%status == 0 .and. status /= error_interrupted) self%status = status
     if (self%status == 0 .or. self%written > 0 .and. .not. self%whole_only) then
       call rename_file(self%path//'.part', self%path, status)
       if (self%status == 0) self%status = status
@@ -165,6 +156,9 @@ contains
     else
       call remove_file(self%path//'.part', ignored)
     end if
+    call close_file(self%descriptor, status)   ! last, since this releases the lock on the temporary name
+    self%descriptor = -1
+    if (self%status == 0 .and. status /= error_interrupted) self%status = status
   end subroutine conclude
 
   !> Conclude the file unless that has been done; `error` contains its name and the cause of a failure.
@@ -207,13 +201,14 @@ contains
   end subroutine write_text
 
   !> Remove a result file and its temporary file. `status` is set to the error number if it is the first, but not if there is no
-  !> such file or if it is a folder. `was_there` becomes true if something was removed. No text function is used here.
-  subroutine remove_result(path, was_there, status)
+  !> such file or if it is a folder. `was_there` becomes true if something was removed.
+  subroutine remove_result(path, was_there, status, keeps_part)
     character(len=*), intent(in) :: path
     logical, intent(inout) :: was_there
     integer, intent(inout) :: status
+    logical, intent(in) :: keeps_part   !! the temporary file is not removed
     integer :: failed
-    call remove_file(path//'.part', failed)
+    if (.not. keeps_part) call remove_file(path//'.part', failed)
     call remove_file(path, failed)
     if (failed == 0) was_there = .true.
     if (status == 0 .and. failed /= error_no_entry .and. failed /= error_is_directory) status = failed
@@ -228,7 +223,6 @@ contains
     call write_all(self%descriptor, text, done, status)
     last = done
     if (status /= 0) then
-      !$omp atomic write
       self%status = status
       last = index(text(:done), achar(10), back=.true.)
     end if
@@ -241,6 +235,9 @@ contains
     character(len=*), intent(in) :: path
     integer, intent(in) :: status
     type(error_t), allocatable, intent(out) :: error
-    call fail(error, printable(path, 200)//': '//error_text(status), status_output)
+    character(len=:), allocatable :: cause
+    cause = error_text(status)
+    if (status == error_locked) cause = 'another run is writing it; wait for it or choose another folder with --out'
+    call fail(error, printable(path, 200)//': '//cause, status_output)
   end subroutine fail_with_file
 end module result_file

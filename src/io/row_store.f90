@@ -1,18 +1,12 @@
-!> Sinks that end the run when the user interrupts: one that ignores its results, and one that stores them in memory.
+!> A sink that stores rows and events in memory.
 module row_store
   use gudgeon_kinds, only: dp
   use trace_sink, only: trace_sink_t, trace_event_t
-  use gudgeon_posix, only: interrupted
   implicit none
   private
-  public :: patient_sink_t, row_store_t
+  public :: row_store_t
 
-  type, extends(trace_sink_t) :: patient_sink_t
-  contains
-    procedure :: take_progress
-  end type patient_sink_t
-
-  type, extends(patient_sink_t) :: row_store_t
+  type, extends(trace_sink_t) :: row_store_t
     integer :: rows = 0, events = 0
     real(dp), allocatable :: values(:, :)           !! (columns, rows), larger than necessary
     type(trace_event_t), allocatable :: event(:)    !! larger than necessary
@@ -52,12 +46,4 @@ contains
     self%events = self%events + 1
     self%event(self%events) = event
   end subroutine take_event
-
-  subroutine take_progress(self, time)
-    class(patient_sink_t), intent(inout) :: self
-    real(dp), intent(in) :: time
-    associate (unused => time)
-    end associate
-    if (interrupted()) self%wants_to_stop = .true.
-  end subroutine take_progress
 end module row_store

@@ -2,33 +2,32 @@
 module run_witness
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_integration
-  use case_definition, only: case_t, joint_case_t
-  use chain_motion, only: piston_pin, crank_pin
+  use joint_places, only: n_places, in_order, name_prefix
+  use joint_case, only: joint_case_t
+  use case_definition, only: case_t
   use cycle_statistics, only: cycle_t
   use cycle_watch, only: cycle_watch_t
   use gudgeon_columns, only: column_list_t
   use gudgeon_scene, only: event_contact_begins
-  use gudgeon_simulation, only: simulate, run_report_t
+  use gudgeon_simulation, only: run_t, run_report_t
+  use patient_run, only: go_to_end
   use row_store, only: row_store_t
   use run_figures, only: run_figures_t
   use trace_sink, only: trace_event_t
-  use wear_record, only: wear_profile_t
   implicit none
   private
-  public :: witness_t, run, has_coarse_table, means_of, figures_of, n_statistics, statistic_names, &
-    n_figures, figure_names, loss_figure
+  public :: witness_t, run, has_coarse_table, means_of, has_figures, figures_of, name_figure, n_statistics, &
+    statistic_names, n_figures, loss_figure
 
   integer, parameter :: n_statistics = 4
   character(len=*), parameter :: statistic_names(n_statistics) = [character(len=23) :: 'mean_pin_force', 'contact_time_fraction', &
     'impacts_per_revolution', 'loss_per_revolution']
 
-  !> Results of the whole run, with their names in the summary; wear is in four of them, and the last one is a mean over whole
-  !> revolutions.
-  integer, parameter :: n_figures = 12, wear_figures = 8, loss_figure = 12
-  character(len=*), parameter :: figure_names(n_figures) = [character(len=31) :: 'max_pin_force', 'contact_time_fraction', &
-    'min_film_thickness', 'crank_pin_max_pin_force', 'crank_pin_contact_time_fraction', 'crank_pin_min_film_thickness', &
-    'mean_crank_speed', 'worn_volume_pin', 'worn_volume_bore', 'crank_pin_worn_volume_pin', 'crank_pin_worn_volume_bore', &
-    'loss_per_revolution']
+  !> Results of the whole run, as in the summary: some for each place, in order, the mean crank speed, volumes of wear for each
+  !> place, and a mean over whole revolutions.
+  integer, parameter :: n_figures = 5*n_places + 2, speed_figure = 3*n_places + 1, loss_figure = n_figures
+  character(len=*), parameter :: of_place(3) = [character(len=21) :: 'max_pin_force', 'contact_time_fraction', 'min_film_thickness']
+  character(len=*), parameter :: of_wear(2) = [character(len=16) :: 'worn_volume_pin', 'worn_volume_bore']
 
   !> One run.
   type :: witness_t
@@ -36,7 +35,7 @@ module run_witness
     type(trace_event_t), allocatable :: impact(:)      !! contacts that begin
     type(cycle_watch_t), allocatable :: cycles
     type(run_figures_t) :: figures
-    real(dp) :: worn(4) = 0                            !! volumes of pin and bore, at the piston pin and at the crank pin [m^3]
+    real(dp) :: worn(2, n_places) = 0                  !! volumes of pin and bore, by place [m^3]
     logical :: is_done = .false.
   end type witness_t
 
@@ -51,47 +50,45 @@ contains
     type(witness_t), intent(out) :: witness
     type(error_t), allocatable, intent(out) :: error   !! the user interrupted
     type(error_t), allocatable :: failure
+    type(run_t) :: own
     type(run_report_t) :: report
     type(case_t) :: limited
     type(row_store_t) :: sink
     type(trace_event_t), allocatable :: event(:)
+    logical :: was_interrupted
+    integer :: i
     limited = case
     if (most_evaluations > 0) limited%integrator%max_evaluations = min(limited%integrator%max_evaluations, most_evaluations)
     if (case%has_play()) then   ! without clearance the integrals of the joint would change the steps
       allocate (witness%cycles)
       witness%cycles%keeps_cycles = .true.
-      call simulate(limited, .false., list, sink, report, failure, cycles=witness%cycles)
-    else
-      call simulate(limited, .false., list, sink, report, failure)
+    end if
+    call own%begin(limited, .false., list, sink, failure, witness%cycles)
+    if (.not. allocated(failure)) then
+      call go_to_end(own, was_interrupted)
+      if (was_interrupted) call fail(error, 'interrupted before it was certified', status_integration)
+      call own%finish(report, failure, witness%cycles)
     end if
     witness%is_done = .not. allocated(failure)
     witness%figures = report%figures
-    if (allocated(report%wear)) call take_wear(report%wear, witness%worn)
+    if (allocated(report%wear)) then
+      do i = 1, size(report%wear)
+        witness%worn(:, report%wear(i)%place) = sum(report%wear(i)%volume, 1)
+      end do
+    end if
     call sink%hand_over(size(list%id), witness%values, event)
     witness%impact = pack(event, event%kind == event_contact_begins)
-    if (.not. sink%wants_to_stop) return
-    !$omp critical (texts)
-    call fail(error, 'interrupted before it was certified', status_integration)
-    !$omp end critical (texts)
   end subroutine run
-
-  pure subroutine take_wear(wear, worn)
-    type(wear_profile_t), intent(in) :: wear(:)
-    real(dp), intent(inout) :: worn(:)
-    integer :: i, first
-    do i = 1, size(wear)
-      first = merge(1, 3, wear(i)%place == piston_pin)
-      worn(first:first + 1) = sum(wear(i)%volume, 1)
-    end do
-  end subroutine take_wear
 
   !> Whether a tighter tolerance would give a finer table of a film of the case.
   logical function has_coarse_table(case, tolerance)
     type(case_t), intent(in) :: case
     real(dp), intent(in) :: tolerance   !! the tighter one
+    integer :: i
     has_coarse_table = .false.
-    call look_at(case%joint)
-    call look_at(case%crank_pin)
+    do i = 1, n_places
+      call look_at(case%joints(i))
+    end do
 
   contains
 
@@ -105,31 +102,82 @@ contains
     end subroutine look_at
   end function has_coarse_table
 
-  !> Results of a run in the order of `figure_names`; 0 for results that it does not have.
+  !> Name and unit of a result.
+  pure subroutine name_figure(i, name, unit)
+    integer, intent(in) :: i
+    character(len=:), allocatable, intent(out) :: name, unit
+    character(len=1), parameter :: units(3) = ['N', '1', 'm']   ! of `of_place`
+    integer :: k
+    if (i < speed_figure) then
+      k = mod(i - 1, 3) + 1
+      name = name_prefix(in_order((i - k)/3 + 1))//trim(of_place(k))
+      unit = units(k)
+    else if (i == speed_figure) then
+      name = 'mean_crank_speed'
+      unit = 'rad/s'
+    else if (i < loss_figure) then
+      k = mod(i - speed_figure - 1, 2) + 1
+      name = name_prefix(in_order((i - speed_figure - k)/2 + 1))//trim(of_wear(k))
+      unit = 'm3'
+    else
+      name = 'loss_per_revolution'
+      unit = 'J'
+    end if
+  end subroutine name_figure
+
+  !> Results of a run; 0 for results that it does not have.
   pure function figures_of(witness) result(values)
     type(witness_t), intent(in) :: witness
     real(dp) :: values(n_figures)
+    integer :: i
     values = 0
     if (.not. witness%figures%time > 0) return
-    associate (f => witness%figures, piston => witness%figures%pin(piston_pin), crank => witness%figures%pin(crank_pin))
-      values(:7) = [piston%max_force, piston%contact_time/f%time, piston%min_film_thickness, crank%max_force, &
-        crank%contact_time/f%time, crank%min_film_thickness, f%crank_travel/f%time]
+    associate (f => witness%figures)
+      do i = 1, n_places
+        associate (pin => f%pin(in_order(i)))
+          values(3*i - 2:3*i) = [pin%max_force, pin%contact_time/f%time, pin%min_film_thickness]
+        end associate
+        values(speed_figure + 2*i - 1:speed_figure + 2*i) = witness%worn(:, in_order(i))
+      end do
+      values(speed_figure) = f%crank_travel/f%time
     end associate
-    values(wear_figures:wear_figures + 3) = witness%worn
     if (.not. allocated(witness%cycles)) return
     associate (s => witness%cycles%statistics)
       if (s%cycles > 0) values(loss_figure) = s%total%dissipated_energy/s%cycles
     end associate
   end function figures_of
 
-  !> Statistics of some revolutions, at both pins.
+  !> The results that a run of a case has, but that of whole revolutions.
+  pure function has_figures(case, witness) result(has)
+    type(case_t), intent(in) :: case
+    type(witness_t), intent(in) :: witness
+    logical :: has(n_figures)
+    integer :: i
+    has = .false.
+    do i = 1, n_places
+      associate (joint => case%joints(in_order(i)))
+        has(3*i - 2:3*i) = joint%has_clearance()
+        has(speed_figure + 2*i - 1:speed_figure + 2*i) = allocated(joint%wear) .and. joint%has_clearance() &
+          .and. case%output%window == 'all'
+      end associate
+    end do
+    has(1) = .true.
+    has(speed_figure) = witness%figures%time > 0
+  end function has_figures
+
+  !> Statistics of some revolutions, of all pins; the force is that of the first one.
   pure function means_of(cycles) result(means)
     type(cycle_t), intent(in) :: cycles(:)
-    real(dp) :: means(n_statistics), duration
+    real(dp) :: means(n_statistics), duration, contact_time(size(cycles)), impacts(size(cycles))
+    integer :: i
     duration = sum(cycles%duration)
-    associate (piston => cycles%pin(piston_pin), crank => cycles%pin(crank_pin), n => size(cycles))
-      means = [sum(piston%force_integral/duration), sum((piston%contact_time + crank%contact_time)/duration), &
-        sum(real(piston%impacts + crank%impacts, dp)/n), sum(cycles%dissipated_energy/n)]
-    end associate
+    contact_time = 0
+    impacts = 0
+    do i = 1, n_places
+      contact_time = contact_time + cycles%pin(i)%contact_time
+      impacts = impacts + cycles%pin(i)%impacts
+    end do
+    means = [sum(cycles%pin(in_order(1))%force_integral/duration), sum(contact_time/duration), sum(impacts/size(cycles)), &
+      sum(cycles%dissipated_energy/size(cycles))]
   end function means_of
 end module run_witness

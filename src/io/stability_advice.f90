@@ -2,7 +2,7 @@
 !> take long, otherwise at its end.
 module stability_advice
   use gudgeon_kinds, only: dp
-  use ode_method, only: step_statistics_t
+  use ode_method, only: step_statistics_t, limit_stability
   use case_definition, only: case_t
   use gudgeon_simulation, only: try_auto
   use gudgeon_progress, only: progress_t, duration_text
@@ -26,8 +26,8 @@ module stability_advice
 
 contains
 
-  !> Report that a run limited by stability has reached `time` of `end_time` [s] after `elapsed` seconds. Once, if the remaining
-  !> time is long, measure what method auto would need up to this time, and print the result on standard error.
+  !> Report that a run has reached `time` of `end_time` [s] after `elapsed` seconds. Once, if stability has limited most of it and
+  !> the remaining time is long, measure what method auto would need up to this time, and print the result on standard error.
   subroutine consider(self, time, end_time, elapsed, statistics, progress)
     class(stability_advice_t), intent(inout) :: self
     real(dp), intent(in) :: time, end_time, elapsed
@@ -36,16 +36,15 @@ contains
     real(dp) :: to_go
     integer :: needed
     if (self%has_looked .or. .not. allocated(self%case) .or. elapsed < first_look) return
+    if (.not. statistics%time_limited_by(limit_stability) > 0.5_dp*time) return
     to_go = elapsed*(end_time/time - 1)
     if (to_go < patience) return
     self%has_looked = .true.
     call try_auto(self%case, time, statistics%accepted/10 + 1, needed)
     if (needed == 0 .or. statistics%evaluations < worth_it*needed) return
     self%was_given = .true.
-    !$omp critical (texts)
     call progress%tell(printable(self%case%file, 200)//': about '//duration_text(to_go)//' left; '// &
       advice(real(statistics%evaluations, dp)/needed)//' so far (--set integrator.method=auto)')
-    !$omp end critical (texts)
   end subroutine consider
 
   !> Text for the user of a run that took `ratio` times the evaluations of method auto, or an empty text.

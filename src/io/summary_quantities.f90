@@ -106,9 +106,6 @@ module summary_quantities
     quantity_t('max_rod_strain_energy', 'J', 'largest elastic energy in the rod'), &
     quantity_t('crankshaft_frequency', 'Hz', 'natural frequency of the crank and the flywheel on the elastic shaft'), &
     quantity_t('max_crankshaft_twist', 'rad', 'largest twist'), &
-    quantity_t('trace_bytes', 'B', 'length of NAME.csv'), &
-    quantity_t('events_bytes', 'B', 'length of NAME.events.csv'), &
-    quantity_t('identity', '', 'digest of the resolved case and of the program'), &
     quantity_t('version', '', 'version of the program'), &
     quantity_t('compiler', '', 'compiler of the program'), &
     quantity_t('compiler_options', '', 'its options')]

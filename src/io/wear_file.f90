@@ -2,7 +2,7 @@
 module wear_file
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t
-  use chain_motion, only: pin_names
+  use joint_places, only: places
   use archard_wear, only: of_pin, of_bore
   use wear_record, only: wear_profile_t
   use growing_text, only: growing_text_t
@@ -26,7 +26,7 @@ contains
     do i = 1, size(worn)
       associate (depth => worn(i)%depth, volume => worn(i)%volume)
         do j = 1, size(depth, 1)
-          call file%append(trim(pin_names(worn(i)%place))//','//real_text((j - 0.5_dp)*360/size(depth, 1)))
+          call file%append(trim(places(worn(i)%place)%name)//','//real_text((j - 0.5_dp)*360/size(depth, 1)))
           do k = of_pin, of_bore
             call file%append(','//real_text(depth(j, k)))
           end do

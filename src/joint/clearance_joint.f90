@@ -1,137 +1,141 @@
-!> A joint with clearance: its laws, its discrete state, its loads and its events.
+!> A joint with clearance: its geometry, its motion, its phase, and the list of elements that carry its load.
 !>
 !> Without contact between journal and bearing the joint is free, or a film carries the load; in contact the contact law acts (Reis
-!> 2013, fig. 3.9). A law that the case does not name is not allocated.
+!> 2013, fig. 3.9). One element acts in each phase, and one may act in several; in free flight none does.
 module clearance_joint
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   use gudgeon_bearing, only: bearing_t, crossing_speed
   use state_layout, only: layout_t, coordinates_t, slice_t
-  use chain_motion, only: motion_t, piston_pin
+  use chain_motion, only: motion_t, accelerations_t, angular_acceleration, body_crank, body_big_end, body_small_end, body_piston, &
+    n_bodies
+  use joint_places, only: place_t, places, piston_pin
   use chain_bodies, only: bodies_t
   use ideal_chain, only: ideal_rod
   use chain_loads, only: loads_t, bearing_moment
-  use contact_law, only: contact_law_t
-  use friction_law, only: friction_law_t, most_friction_states
-  use film_law, only: film_law_t, film_motion_t
-  use film_transition, only: film_transition_t
-  use asperities, only: asperities_t
   use archard_wear, only: wear_law_t
-  use worn_bore, only: worn_bore_t
-  use mixed_film, only: mixed_forces, mixed_derivatives
-  use elastic_film, only: elastic_film_t, n_film_states
-  use joint_motion, only: joint_motion_t, most_joint_states, find_polar, find_speeds, find_sliding
+  use contact_arc, only: contact_arc_t
+  use joint_evaluation, only: joint_evaluation_t, joint_rates_t, most_element_states, find_polar, find_sliding
+  use load_element, only: load_element_t, n_motions, n_slopes, n_kinds
+  use film_figures, only: film_figures_t, film_figures_of
   implicit none
   private
-  public :: clearance_joint_t, joint_loads_t, most_joints
-  public :: phase_free, phase_film, phase_contact, n_phases
+  public :: clearance_joint_t, most_joints, most_joint_states, n_joint_slopes
+  public :: phase_free, phase_film, phase_contact, n_phases, contact_changes
 
   integer, parameter :: most_joints = 2
+  integer, parameter :: most_elements = 2                                       !! of a joint
+  integer, parameter :: most_joint_states = most_elements*most_element_states   !! of all its elements
+  integer, parameter :: n_joint_slopes = n_motions + most_joint_states          !! columns of its slopes
 
   !> States of the joint: the values of the column `phase`.
   integer, parameter :: phase_free = 0, phase_film = 1, phase_contact = 2
   integer, parameter :: n_phases = 3
 
-  !> Loads of a joint on its journal. The opposite forces act on the bearing.
-  type :: joint_loads_t
-    real(dp) :: contact(2)        !! force of contact and friction [N]
-    real(dp) :: film(2)           !! force of the film [N]
-    real(dp) :: moment            !! total moment about the journal's centre, positive from x to y [N m]
-    real(dp) :: normal_force      !! normal force of the contact, positive in compression [N]
-    real(dp) :: friction_force    !! friction force along the tangent t [N]
-    real(dp) :: power             !! power of all these loads on the bodies [W]
-    real(dp) :: friction_rates(most_friction_states)   !! rates of the states of the friction law
-    logical :: sticks             !! set-valued friction holds the surfaces together: its force follows from the accelerations
-  end type joint_loads_t
+  !> The first event of a joint with a contact law. The events of its elements follow, one element after the other.
+  integer, parameter :: contact_changes = 1
+
+  !> One place in the list of elements.
+  type :: slot_t
+    class(load_element_t), allocatable :: element
+  end type slot_t
 
   type :: clearance_joint_t
-    integer :: place = piston_pin           !! place of the pin in the chain
-    logical :: bearing_turns = .false.  !! the bearing rotates: true for the crank pin, and for the piston pin if the piston has
-                                        !! clearance in its bore
+    integer :: place = piston_pin           !! index in `places`
+    type(place_t) :: site = places(piston_pin)   !! that place
+    logical :: bearing_turns = .false.      !! false for a bearing in a piston that does not tilt
     type(bearing_t) :: bearing
     real(dp) :: pin_radius = 0              !! of the journal [m]
-    class(contact_law_t), allocatable :: contact
-    class(friction_law_t), allocatable :: friction
-    class(film_law_t), allocatable :: film
-    type(asperities_t), allocatable :: asperities   !! contact of rough surfaces in parallel with the film; without contact law
-    type(film_transition_t), allocatable :: transition   !! film and contact share the load near the wall
-    type(elastic_film_t), allocatable :: elastic    !! film between elastic walls; without contact law
-    type(wear_law_t), allocatable :: wear            !! wear of pin and bore is counted
-    type(worn_bore_t), allocatable :: worn           !! the worn shape of the bore acts in the contact
-    type(slice_t) :: film_states            !! indices of the film's own eccentricity in the state
-    type(coordinates_t) :: at               !! indices of the eccentricity in the state
-    integer :: n_friction_states = 0        !! number of states of the friction law
-    type(slice_t) :: friction_states        !! their indices in the state
-    logical :: reports_friction_work = .false.   !! integrate the work of friction even if the friction law has no states
+    type(wear_law_t), allocatable :: wear   !! wear of pin and bore is counted
+    ! the elements
+    integer :: n_elements = 0
+    type(slot_t) :: slots(most_elements)
+    integer :: acting(0:n_phases - 1) = 0   !! number of the element that acts in each phase; 0: none
+    integer :: n_states = 0                 !! number of their states, one element after the other
+    integer :: n_events = 0                 !! number of event functions of the joint
+    logical :: integrates_friction = .false.  !! the work of friction is integrated
+    logical :: has_own_rates = .false.      !! they have states, or integrate the work of friction
+    logical :: limits_states = .false.      !! there are states that must not reach a magnitude
+    logical :: needs_ideal_motion(0:n_phases - 1) = .false.   !! in each phase: the film needs the motion of an ideal mechanism
+    logical :: has_own_gap = .false.        !! the gap is not that of a round pin in a round bore
+    logical :: has_slopes = .true.          !! the slopes of all of them are in closed form
     logical :: reports_film = .false.       !! report the results of the film in the summary
-    type(slice_t) :: friction_work          !! index of the work of friction in the state, if it is integrated [J]
-    logical :: has_own_rates = .false.      !! the joint has states other than the eccentricity
+    ! state
+    type(coordinates_t) :: at               !! indices of the eccentricity in the state
     integer :: phase = phase_free
-    integer :: sliding = 0                  !! set-valued friction: sign of the sliding speed, 0 while the surfaces stick
     real(dp) :: impact_speed = 0            !! penetration rate at the beginning of the present contact [m/s]
-    logical :: force_is_lost = .false.      !! in contact, but the damper cancels the elastic force: none acts
+    real(dp) :: reach(0:n_phases - 1) = 0   !! largest admissible eccentricity in each phase: see `find_reach` [m]
     real(dp) :: max_penetration = 0  !! largest penetration at the end of the step in which a contact begins, for contact entry by
                                      !! step rejection [m]
     real(dp) :: start_eccentricity(2) = 0   !! initial value [m]
     real(dp) :: start_rate(2) = 0           !! initial value [m/s]
-    real(dp) :: start_deflection(2) = 0     !! initial deflection of the walls of an elastic film [m]
   contains
+    procedure :: put_at
+    procedure :: add
     procedure :: claim
     procedure :: own_speed
     procedure :: put_start
     procedure :: put_own_rates
-    procedure :: reset_friction
-    procedure :: has_friction_work
+    procedure :: reset_states
     procedure :: work_of_friction
     procedure, non_overridable :: read_state
     procedure, non_overridable :: admits
     procedure, non_overridable :: loads
-    procedure, non_overridable, private :: film_motion
-    procedure, non_overridable, private :: elastic_film_motion
-    procedure :: contact_weight
-    procedure :: n_states
-    procedure :: complete
-    procedure :: look
-    procedure :: static_speed
+    procedure, non_overridable :: load_chain
+    procedure, non_overridable :: find_speeds
+    procedure :: relative_rates
+    procedure, non_overridable :: complete
+    procedure, non_overridable :: find_gap
+    procedure, non_overridable :: look
     procedure :: slopes
-    procedure :: reach
-    procedure :: state_slopes
-    procedure :: is_singular
     procedure :: phase_apart
-    procedure :: exchange
+    procedure :: begin_contact
+    procedure :: end_contact
+    procedure :: begin_at
+    procedure :: find_reach
+    procedure :: is_singular
+    procedure :: has_worn_bore
+    procedure :: film_figures => figures_of_joint
+    procedure :: powers
+    procedure :: rubs
+    procedure :: sliding_load
   end type clearance_joint_t
-
-  interface
-    !> Derivatives of the force and the moment on the journal (rows F_x, F_y, moment) with respect to e_x, e_y, e_x', e_y' and the
-    !> angular speed of the journal (columns), for implicit integration. Not defined for surfaces that stick.
-    pure module subroutine slopes(self, bodies, motion, joint, own, derivatives)
-      class(clearance_joint_t), intent(in) :: self
-      type(bodies_t), intent(in) :: bodies
-      type(motion_t), intent(in) :: motion
-      type(joint_motion_t), intent(in) :: joint
-      type(joint_loads_t), intent(in) :: own
-      real(dp), intent(out) :: derivatives(3, 5)
-    end subroutine slopes
-
-    !> Additions to `slopes` for the states of the friction law or of an elastic film: derivatives of the force and the moment on
-    !> the journal (rows F_x, F_y, moment) with respect to these states, and of the rates of the states with respect to e_x, e_y,
-    !> e_x', e_y', the angular speed of the journal and the states (columns).
-    pure module subroutine state_slopes(self, bodies, motion, joint, own, by_states, of_rates)
-      class(clearance_joint_t), intent(in) :: self
-      type(bodies_t), intent(in) :: bodies
-      type(motion_t), intent(in) :: motion
-      type(joint_motion_t), intent(in) :: joint
-      type(joint_loads_t), intent(in) :: own
-      real(dp), intent(out) :: by_states(3, most_joint_states), of_rates(most_joint_states, 5 + most_joint_states)
-    end subroutine state_slopes
-  end interface
 
 contains
 
-  !> Claim the eccentricity, the states of the friction law and its work in the state vector. The scale of the eccentricity is the
-  !> clearance, that of its rate the clearance divided by the time in which the crank turns by one radian. Measured
-  !> (scripts/compare_adams.sh, simulation IV, c = 20 um): the error of the eccentricity at the end is 4e-5 c at the relative
-  !> tolerance 1e-4, 4e-9 c at 1e-6, and 1e-14 c at 1e-12; in the coordinates (q, A, x) rounding alone causes 4e-12 c.
+  !> Put the joint at a place of the chain.
+  subroutine put_at(self, place)
+    class(clearance_joint_t), intent(inout) :: self
+    integer, intent(in) :: place   !! index in `places`
+    self%place = place
+    self%site = places(place)
+    self%bearing_turns = self%site%bearing /= body_piston
+  end subroutine put_at
+
+  !> Add an element, which has been prepared and acts in the given phases.
+  subroutine add(self, element, phases)
+    class(clearance_joint_t), intent(inout) :: self
+    class(load_element_t), allocatable, intent(inout) :: element   !! not allocated afterwards
+    integer, intent(in) :: phases(:)
+    self%n_elements = self%n_elements + 1
+    self%acting(phases) = self%n_elements
+    if (any(phases == phase_contact)) self%n_events = self%n_events + contact_changes
+    element%events = slice_t(self%n_events + 1, self%n_events + element%n_events())
+    self%n_events = element%events%last
+    self%n_states = self%n_states + element%n_states
+    self%integrates_friction = self%integrates_friction .or. element%integrates_friction
+    self%has_own_rates = self%n_states > 0 .or. self%integrates_friction
+    if (allocated(element%film)) self%needs_ideal_motion(phases) = element%film%needs_ideal_motion
+    self%limits_states = self%limits_states .or. element%state_reach > 0
+    self%has_own_gap = self%has_own_gap .or. element%has_own_gap
+    self%has_slopes = self%has_slopes .and. element%has_slopes
+    call move_alloc(element, self%slots(self%n_elements)%element)
+    call self%find_reach()
+  end subroutine add
+
+  !> Claim the eccentricity, and what the elements need, in the state vector. The scale of the eccentricity is the clearance, that
+  !> of its rate the clearance divided by the time in which the crank turns by one radian. Measured (scripts/compare_adams.sh,
+  !> simulation IV, c = 20 um): the error of the eccentricity at the end is 4e-5 c at the relative tolerance 1e-4, 4e-9 c at 1e-6,
+  !> and 1e-14 c at 1e-12; in the coordinates (q, A, x) rounding alone causes 4e-12 c.
   !>
   !> Where the crank hardly turns the journal has a speed scale of its own, `own_speed`. The scale of the rate is then a hundredth
   !> of the speed that crosses the clearance, since a journal that starts at rest is slow at first and may remain slow.
@@ -140,19 +144,19 @@ contains
     type(layout_t), intent(inout) :: layout
     real(dp), intent(in) :: crank_speed   !! natural size of the crank speed [rad/s]
     real(dp), intent(in) :: span          !! duration of the simulation [s]
-    if (self%place /= piston_pin) self%bearing_turns = .true.
+    type(slice_t) :: one
+    integer :: k, i
     call layout%claim_positions(2, self%bearing%clearance, max(self%bearing%clearance*crank_speed, norm2(self%start_rate), &
       0.01_dp*crossing_speed(self%bearing%clearance, span)), self%at, grows=.false.)
-    if (allocated(self%elastic)) then
-      call layout%claim_states(n_film_states, self%bearing%clearance, self%film_states)
-      self%has_own_rates = .true.
-    end if
-    if (.not. allocated(self%friction)) return
-    self%n_friction_states = self%friction%n_states
-    self%has_own_rates = self%n_friction_states > 0 .or. self%reports_friction_work
-    if (self%n_friction_states > 0) &
-      call layout%claim_states(self%n_friction_states, self%friction%state_scale, self%friction_states)
-    if (self%has_own_rates) call layout%claim_quadratures(1, 0.0_dp, self%friction_work)
+    do k = 1, self%n_elements
+      associate (element => self%slots(k)%element)
+        do i = 1, element%n_states
+          call layout%claim_states(1, element%state_scale(i), one)
+          element%states = slice_t(one%last - i + 1, one%last)
+        end do
+        if (element%integrates_friction) call layout%claim_quadratures(1, 0.0_dp, element%friction_work)
+      end associate
+    end do
   end subroutine claim
 
   !> Natural size of the journal's speed in its bearing where it does not follow from the crank speed [m/s]: the initial speed, or
@@ -163,383 +167,295 @@ contains
     own_speed = max(norm2(self%start_rate), crossing_speed(self%bearing%clearance, span))
   end function own_speed
 
-  !> Number of first-order states of the laws.
-  pure integer function n_states(self)
-    class(clearance_joint_t), intent(in) :: self
-    n_states = self%n_friction_states
-    if (allocated(self%elastic)) n_states = n_film_states
-  end function n_states
-
   !> Put the initial values of the joint's states into the state vector.
   pure subroutine put_start(self, y)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(inout) :: y(:)
+    integer :: k
     y(self%at%position:self%at%position + 1) = self%start_eccentricity
     y(self%at%rate:self%at%rate + 1) = self%start_rate
-    if (allocated(self%elastic)) y(self%film_states%first:self%film_states%last) = &
-      self%start_eccentricity - self%start_deflection
+    do k = 1, self%n_elements
+      associate (element => self%slots(k)%element)
+        y(element%states%first:element%states%last) = element%start(:element%n_states)
+      end associate
+    end do
   end subroutine put_start
 
-  !> Rates of the states of an elastic film, of the states of the friction law and of the work of friction. The last two are 0
-  !> without contact.
-  pure subroutine put_own_rates(self, motion, own, dydt)
+  !> Rates of the states of the elements, and of the work of friction. They are 0 while an element does not act, and without
+  !> contact.
+  pure subroutine put_own_rates(self, joint, dydt)
     class(clearance_joint_t), intent(in) :: self
-    type(joint_motion_t), intent(in) :: motion
-    type(joint_loads_t), intent(in) :: own
+    type(joint_evaluation_t), intent(in) :: joint
     real(dp), intent(inout) :: dydt(*)
-    integer :: i
-    if (allocated(self%elastic)) then
-      dydt(self%film_states%first) = motion%film_rate(1)
-      dydt(self%film_states%last) = motion%film_rate(2)
-      return
-    end if
-    do i = 1, self%n_friction_states
-      dydt(self%friction_states%first + i - 1) = 0
-      if (self%phase == phase_contact) dydt(self%friction_states%first + i - 1) = own%friction_rates(i)
+    integer :: k, i
+    do k = 1, self%n_elements
+      associate (element => self%slots(k)%element, acts => k == self%acting(self%phase))
+        do i = 1, element%n_states
+          dydt(element%states%first + i - 1) = 0
+          if (acts) dydt(element%states%first + i - 1) = joint%rates(i)
+        end do
+        if (.not. element%integrates_friction) cycle
+        dydt(element%friction_work%first) = 0
+        if (joint%touches) dydt(element%friction_work%first) = joint%friction_force*joint%sliding_speed
+      end associate
     end do
-    dydt(self%friction_work%first) = 0
-    if (self%phase == phase_contact) dydt(self%friction_work%first) = own%friction_force*motion%sliding_speed
   end subroutine put_own_rates
 
-  !> Set the states of the friction law to 0, at the beginning or end of a contact.
-  pure subroutine reset_friction(self, y)
+  !> Set the states to 0 that are 0 at the beginning of each contact, those of friction laws.
+  pure subroutine reset_states(self, y)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(inout) :: y(:)
-    if (self%n_friction_states > 0) y(self%friction_states%first:self%friction_states%last) = 0
-  end subroutine reset_friction
-
-  !> Whether the work of friction is integrated.
-  pure logical function has_friction_work(self)
-    class(clearance_joint_t), intent(in) :: self
-    has_friction_work = self%has_own_rates .and. allocated(self%friction)
-  end function has_friction_work
+    integer :: k
+    do k = 1, self%n_elements
+      associate (element => self%slots(k)%element)
+        if (element%starts_again) y(element%states%first:element%states%last) = 0
+      end associate
+    end do
+  end subroutine reset_states
 
   !> Work of friction so far [J] if it is integrated, else 0. It is negative where friction takes energy from the bodies.
-  pure real(dp) function work_of_friction(self, y)
+  pure real(dp) function work_of_friction(self, y) result(work)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
-    work_of_friction = 0
-    if (self%has_friction_work()) work_of_friction = y(self%friction_work%first)
+    integer :: k
+    work = 0
+    do k = 1, self%n_elements
+      if (self%slots(k)%element%integrates_friction) work = work + y(self%slots(k)%element%friction_work%first)
+    end do
   end function work_of_friction
 
-  !> Read the eccentricity and its rate from the state vector.
+  !> Read the eccentricity and its rate from the state vector, and set the discrete state of the contact.
   pure subroutine read_state(self, y, joint)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
-    type(joint_motion_t), intent(inout) :: joint
+    type(joint_evaluation_t), intent(inout) :: joint
     joint%eccentricity(1) = y(self%at%position)
     joint%eccentricity(2) = y(self%at%position + 1)
     joint%eccentricity_rate(1) = y(self%at%rate)
     joint%eccentricity_rate(2) = y(self%at%rate + 1)
-    if (allocated(self%elastic)) then
-      joint%film_eccentricity(1) = y(self%film_states%first)
-      joint%film_eccentricity(2) = y(self%film_states%last)
-    end if
+    joint%touches = self%phase == phase_contact
+    joint%impact_speed = self%impact_speed
   end subroutine read_state
 
-  !> Whether the eccentricity is admissible: inside the wall of the bearing and, where the film force is singular at the wall,
-  !> inside the clearance.
-  pure logical function admits(self, joint)
+  !> Whether the state is admissible: the eccentricity within its reach, and the states of the elements within theirs.
+  pure logical function admits(self, y, joint)
     class(clearance_joint_t), intent(in) :: self
-    type(joint_motion_t), intent(in) :: joint
-    real(dp) :: distance_squared
-    distance_squared = joint%eccentricity(1)**2 + joint%eccentricity(2)**2
-    admits = distance_squared < self%bearing%radius**2
-    if (self%phase == phase_film) &
-      admits = admits .and. (distance_squared < self%bearing%clearance**2 .or. .not. is_unbounded(self))
-    if (allocated(self%elastic)) admits = admits .and. sum(joint%film_eccentricity**2) < self%bearing%clearance**2
+    real(dp), intent(in) :: y(*)
+    type(joint_evaluation_t), intent(in) :: joint
+    integer :: k
+    admits = joint%eccentricity(1)**2 + joint%eccentricity(2)**2 < self%reach(self%phase)**2
+    if (.not. self%limits_states) return
+    do k = 1, self%n_elements
+      associate (element => self%slots(k)%element)
+        if (element%state_reach > 0) &
+          admits = admits .and. sum(y(element%states%first:element%states%last)**2) < element%state_reach**2
+      end associate
+    end do
   end function admits
 
-  !> Whether the film of the present phase has a force without bound at the wall.
-  pure logical function is_unbounded(joint)
-    type(clearance_joint_t), intent(in) :: joint
-    is_unbounded = .false.
-    if (joint%phase /= phase_film .or. allocated(joint%asperities) .or. allocated(joint%elastic)) return
-    is_unbounded = joint%film%singular_at_wall
-    if (allocated(joint%transition)) is_unbounded = is_unbounded .and. .not. joint%transition%film_is_held
-  end function is_unbounded
-
-  !> Compute the loads of the present phase and their power on the bodies, and add them to the loads of the chain. Components that
-  !> the present phase does not need are not set.
-  pure subroutine loads(self, bodies, motion, y, joint, own, all)
+  !> Compute the loads of the element that acts and their power on the bodies, and add them to the loads of the chain. Components
+  !> that the element does not have are not set.
+  pure subroutine loads(self, bodies, motion, y, joint, all)
     class(clearance_joint_t), intent(in) :: self
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
-    real(dp), intent(in) :: y(*)          !! the whole state vector, for the states of the laws
-    type(joint_motion_t), intent(inout) :: joint
-    type(joint_loads_t), intent(inout) :: own
+    real(dp), intent(in) :: y(*)          !! the whole state vector, for the states of the elements
+    type(joint_evaluation_t), intent(inout) :: joint
     type(loads_t), intent(inout) :: all
-    real(dp) :: force(2)
-
-    own%sticks = .false.
-    own%moment = 0
-    own%power = 0
-    force = 0
-    if (self%phase /= phase_free) then
-      call find_speeds(self%place, self%bearing_turns, motion, joint)
-      if (self%phase == phase_contact) then
-        call find_contact(self, y, joint, own)
-        force = own%contact
-        if (allocated(self%transition)) then
-          call share_with_film(self, self%film_motion(bodies, motion, joint), joint, own)
-          force = own%film + own%contact
-        end if
-      else if (allocated(self%asperities)) then
-        call find_mixed(self, self%film_motion(bodies, motion, joint), joint, own)
-        force = own%film + own%contact
-      else if (allocated(self%elastic)) then
-        call find_elastic(self, bodies, motion, joint, own)
-        force = own%film
-      else
-        if (allocated(self%transition)) then
-          call self%film%film_force(self%transition%held_motion(self%film_motion(bodies, motion, joint)), own%film, own%moment)
-        else
-          call self%film%film_force(self%film_motion(bodies, motion, joint), own%film, own%moment)
-        end if
-        force = own%film
-      end if
-      own%power = (force(1)*joint%eccentricity_rate(1) + force(2)*joint%eccentricity_rate(2)) + own%moment*joint%journal_speed
+    integer :: k
+    joint%sticks = .false.
+    k = self%acting(self%phase)
+    if (k > 0) then
+      call self%find_speeds(motion, joint)
+      if (self%needs_ideal_motion(self%phase)) call find_ideal_motion(self, bodies, motion, joint)
+      call self%slots(k)%element%find_loads(y, joint)
+      joint%power = (joint%force(1)*joint%eccentricity_rate(1) + joint%force(2)*joint%eccentricity_rate(2)) &
+        + joint%moment*joint%journal_speed
       if (self%bearing_turns) &
-        own%power = own%power + bearing_moment(joint%eccentricity, force, own%moment)*joint%bearing_speed
+        joint%power = joint%power + bearing_moment(joint%eccentricity, joint%force, joint%moment)*joint%bearing_speed
+    else
+      joint%force = 0
+      joint%moment = 0
+      joint%power = 0
     end if
-    all%force(1, self%place) = force(1)
-    all%force(2, self%place) = force(2)
-    all%moment(self%place) = own%moment
+    call self%load_chain(joint, joint%force, joint%moment, all)
   end subroutine loads
 
-  !> Contact and friction: the force -F_N n + F_T t on the journal and the moment F_T R. If the surfaces stick, friction is not set
-  !> here; it follows from the accelerations.
-  pure subroutine find_contact(self, y, joint, own)
-    type(clearance_joint_t), intent(in) :: self
-    real(dp), intent(in) :: y(*)
-    type(joint_motion_t), intent(inout) :: joint
-    type(joint_loads_t), intent(inout) :: own
-    call find_polar(self%bearing%clearance, joint)
-    if (allocated(self%worn)) then
-      call find_worn(self, joint, own%normal_force)
-    else
-      own%normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
-    end if
-    if (self%force_is_lost) own%normal_force = 0
-    own%friction_force = 0
-    if (allocated(self%friction)) then
-      call find_sliding(self%pin_radius, joint)
-      if (self%n_friction_states > 0) then
-        call find_state_friction(self, y, joint, own)
-      else
-        own%sticks = self%friction%set_valued .and. self%sliding == 0
-        if (.not. own%sticks) own%friction_force = own%normal_force*self%friction%friction_ratio(joint%sliding_speed, self%sliding)
+  !> Set the loads of the chain's pin from a force [N] and a moment [N m] on the journal.
+  pure subroutine load_chain(self, joint, force, moment, all)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    real(dp), intent(in) :: force(2), moment
+    type(loads_t), intent(inout) :: all
+    associate (pin => self%site%pin)
+      if (self%site%sense > 0) then
+        all%force(1, pin) = force(1)
+        all%force(2, pin) = force(2)
+        all%moment(pin) = moment
+      else   ! the chain's force is that on the body of the bearing
+        all%force(:, pin) = -force
+        all%moment(pin) = bearing_moment(joint%eccentricity, force, moment)
       end if
-    end if
-    associate (n => joint%normal, pressing => own%normal_force, friction => own%friction_force)
-      own%contact(1) = -pressing*n(1) - friction*n(2)
-      own%contact(2) = friction*n(1) - pressing*n(2)
-      own%moment = friction*self%pin_radius
     end associate
-  end subroutine find_contact
+  end subroutine load_chain
 
-  !> A journal in a worn bore: its penetration, the normal force, and the direction in which it presses, if it does.
-  pure subroutine find_worn(self, joint, normal_force)
+  !> Set the angular speeds of journal and bearing.
+  pure subroutine find_speeds(self, motion, joint)
     class(clearance_joint_t), intent(in) :: self
-    type(joint_motion_t), intent(inout) :: joint
-    real(dp), intent(out) :: normal_force
-    real(dp) :: gradient(2), elastic(2), pressing, unused
-    normal_force = 0
-    call self%worn%find_gap(joint%eccentricity, joint%penetration, gradient)
-    joint%penetration_rate = dot_product(gradient, joint%eccentricity_rate)
-    if (self%phase /= phase_contact) return
-    call self%worn%press(joint%eccentricity, elastic, unused)
-    pressing = norm2(elastic)
-    if (.not. pressing > 0) return
-    joint%normal = elastic/pressing
-    associate (n => joint%normal, rate => joint%eccentricity_rate)
-      joint%tangential_rate = n(1)*rate(2) - n(2)*rate(1)
-      if (.not. self%force_is_lost) &
-        normal_force = self%contact%damped_by(pressing, joint%penetration, dot_product(n, rate), self%impact_speed)
-    end associate
-  end subroutine find_worn
+    type(motion_t), intent(in) :: motion
+    type(joint_evaluation_t), intent(inout) :: joint
+    joint%journal_speed = motion%turning(self%site%journal)
+    joint%bearing_speed = 0
+    if (self%bearing_turns) joint%bearing_speed = motion%turning(self%site%bearing)
+  end subroutine find_speeds
 
-  !> Weight the contact force, computed as if there were no film, and the film force with their shares of the load.
-  pure subroutine share_with_film(self, motion, joint, own)
-    type(clearance_joint_t), intent(in) :: self
-    type(film_motion_t), intent(in) :: motion
-    type(joint_motion_t), intent(in) :: joint
-    type(joint_loads_t), intent(inout) :: own
-    real(dp) :: w, force(2), moment
-    own%film = 0
-    if (self%transition%film_is_gone) return
-    call self%transition%weight(joint%penetration, w)
-    call self%film%film_force(self%transition%held_motion(motion), force, moment)
-    own%film = (1 - w)*force
-    own%contact = w*own%contact
-    own%moment = w*own%moment + (1 - w)*moment
-    own%normal_force = w*own%normal_force
-    own%friction_force = w*own%friction_force
-  end subroutine share_with_film
-
-  !> Share of the contact in the load of a joint with a weighted transition, at a penetration [m]; 0 without contact.
-  pure real(dp) function contact_weight(self, penetration) result(w)
-    class(clearance_joint_t), intent(in) :: self
-    real(dp), intent(in) :: penetration
-    w = 0
-    if (self%phase == phase_contact) call self%transition%weight(penetration, w)
-  end function contact_weight
-
-  !> Loads of a film between rough surfaces and of the contact of their asperities.
-  pure subroutine find_mixed(self, motion, joint, own)
-    type(clearance_joint_t), intent(in) :: self
-    type(film_motion_t), intent(in) :: motion
-    type(joint_motion_t), intent(inout) :: joint
-    type(joint_loads_t), intent(inout) :: own
-    call mixed_forces(self%film, self%asperities, self%pin_radius, motion, own%film, own%moment, own%normal_force, &
-      own%friction_force)
-    call find_polar(self%bearing%clearance, joint)
-    associate (n => joint%normal)
-      own%contact = -own%normal_force*n + own%friction_force*[-n(2), n(1)]
-    end associate
-    own%moment = own%moment + own%friction_force*self%pin_radius
-  end subroutine find_mixed
-
-  !> Loads of a film between elastic walls: the force of the walls, and the rate of the film's own eccentricity under this load.
-  pure subroutine find_elastic(self, bodies, motion, joint, own)
+  !> Set the speeds of a mechanism with ideal joints at (q, q'), at constant crank speed.
+  pure subroutine find_ideal_motion(self, bodies, motion, joint)
     type(clearance_joint_t), intent(in) :: self
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
-    type(joint_motion_t), intent(inout) :: joint
-    type(joint_loads_t), intent(inout) :: own
-    associate (e => joint%film_eccentricity, drawn => 0.5_dp*(joint%journal_speed + joint%bearing_speed))
-      own%film = -self%elastic%load(joint%eccentricity - e)
-      joint%film_rate = self%elastic%velocity(self%film, e, -own%film) + drawn*[-e(2), e(1)]
-    end associate
-    if (self%film%film_moment) &
-      own%moment = self%elastic%moment(self%film, self%elastic_film_motion(bodies, motion, joint), -own%film)
-  end subroutine find_elastic
+    type(joint_evaluation_t), intent(inout) :: joint
+    real(dp) :: rod_speed, rod_acceleration, turning(n_bodies)
+    call ideal_rod(bodies, motion, rod_speed, rod_acceleration)
+    turning(body_crank) = motion%crank_speed
+    turning(body_big_end:body_small_end) = -rod_speed
+    turning(body_piston) = 0
+    joint%ideal_speed = turning(self%site%journal) + turning(self%site%bearing)
+    joint%ideal_acceleration = -rod_acceleration
+    joint%frequency = abs(motion%crank_speed)
+  end subroutine find_ideal_motion
 
-  !> The thickness of an elastic film, which does not follow from the eccentricity of its pin, expressed as a penetration. Its rate
-  !> does not include the rotation of the film.
-  pure subroutine find_elastic_thickness(self, joint)
-    type(clearance_joint_t), intent(in) :: self
-    type(joint_motion_t), intent(inout) :: joint
-    real(dp) :: distance
-    associate (e => joint%film_eccentricity)
-      distance = norm2(e)
-      joint%penetration = distance - self%bearing%clearance
-      joint%penetration_rate = 0
-      if (distance > 0 .and. distance < self%bearing%clearance) joint%penetration_rate = dot_product(e, &
-        self%elastic%velocity(self%film, e, self%elastic%load(joint%eccentricity - e)))/distance
-    end associate
-  end subroutine find_elastic_thickness
-
-  !> The motion on which the force of a film between elastic walls depends: that of the place where the film is.
-  pure type(film_motion_t) function elastic_film_motion(self, bodies, motion, joint) result(film)
+  !> Accelerations of journal and bearing relative to each other.
+  pure type(joint_rates_t) function relative_rates(self, accelerations) result(rates)
     class(clearance_joint_t), intent(in) :: self
-    type(bodies_t), intent(in) :: bodies
-    type(motion_t), intent(in) :: motion
-    type(joint_motion_t), intent(in) :: joint
-    film = self%film_motion(bodies, motion, joint)
-    film%eccentricity = joint%film_eccentricity
-    film%eccentricity_rate = joint%film_rate
-  end function elastic_film_motion
+    type(accelerations_t), intent(in) :: accelerations
+    rates%eccentricity = self%site%sense*accelerations%pin(:, self%site%pin)
+    rates%journal = angular_acceleration(accelerations, self%site%journal)
+    rates%bearing = 0
+    if (self%bearing_turns) rates%bearing = angular_acceleration(accelerations, self%site%bearing)
+  end function relative_rates
 
-  !> Friction by a law with states.
-  pure subroutine find_state_friction(self, y, joint, own)
-    type(clearance_joint_t), intent(in) :: self
-    real(dp), intent(in) :: y(*)
-    type(joint_motion_t), intent(inout) :: joint
-    type(joint_loads_t), intent(inout) :: own
-    real(dp) :: ratio
-    integer :: i
-    do i = 1, self%n_friction_states
-      joint%friction_states(i) = y(self%friction_states%first + i - 1)
-    end do
-    call self%friction%state_friction(joint%sliding_speed, joint%friction_states, ratio, own%friction_rates)
-    own%friction_force = own%normal_force*ratio
-  end subroutine find_state_friction
-
-  !> Set what `loads` does not: the relative motion of journal and bearing in any phase, and zeros for loads that the phase does not
-  !> have. If the motion of the bodies is not known, angular speeds and sliding speed are not set.
-  pure subroutine complete(self, motion, is_known, joint, own)
+  !> Set what `loads` does not: the relative motion of journal and bearing in any phase, and the states of the element that acts. If
+  !> the motion of the bodies is not known, angular speeds and sliding speed are not set.
+  pure subroutine complete(self, motion, is_known, y, joint)
     class(clearance_joint_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
     logical, intent(in) :: is_known
-    type(joint_motion_t), intent(inout) :: joint
-    type(joint_loads_t), intent(inout) :: own
-    real(dp) :: normal_force
-    if (self%phase == phase_free .or. (self%phase == phase_contact .and. .not. allocated(self%transition))) own%film = 0
-    if (self%phase /= phase_contact .and. .not. allocated(self%asperities)) then
-      own%contact = 0
-      own%normal_force = 0
-      own%friction_force = 0
-      joint%friction_states = 0
+    real(dp), intent(in) :: y(*)
+    type(joint_evaluation_t), intent(inout) :: joint
+    integer :: k
+    if (.not. (is_known .and. joint%touches)) call self%find_gap(y, joint)   ! else `loads` has
+    k = self%acting(self%phase)
+    if (k > 0 .and. self%n_states > 0) then
+      associate (states => self%slots(k)%element%states)
+        joint%states(:states%last - states%first + 1) = y(states%first:states%last)
+      end associate
     end if
-    if (.not. (is_known .and. self%phase == phase_contact)) then   ! else `loads` has set these
-      call find_polar(self%bearing%clearance, joint)
-      if (allocated(self%worn)) call find_worn(self, joint, normal_force)
-    end if
-    if (allocated(self%elastic)) call find_elastic_thickness(self, joint)
     if (.not. is_known) return
-    call find_speeds(self%place, self%bearing_turns, motion, joint)
+    call self%find_speeds(motion, joint)
     call find_sliding(self%pin_radius, joint)
   end subroutine complete
 
-  !> The position and velocity of the journal in its bearing, without angular and sliding speeds, and the normal force: all that
-  !> follows from the state without the motion of the bodies.
+  !> Set the position of the journal in its bearing and the gap.
+  pure subroutine find_gap(self, y, joint)
+    class(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: y(*)
+    type(joint_evaluation_t), intent(inout) :: joint
+    call find_polar(self%bearing%clearance, joint)
+    if (self%has_own_gap) call find_own_gap(self, y, joint)
+  end subroutine find_gap
+
+  !> Set the gap of elements that have one of their own.
+  pure subroutine find_own_gap(self, y, joint)
+    type(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: y(*)
+    type(joint_evaluation_t), intent(inout) :: joint
+    integer :: k
+    do k = 1, self%n_elements
+      call self%slots(k)%element%find_gap(y, joint)
+    end do
+  end subroutine find_own_gap
+
+  !> The position and velocity of the journal in its bearing, without angular and sliding speeds, and the normal force of the
+  !> contact: all that follows from the state without the motion of the bodies.
   pure subroutine look(self, y, joint, normal_force)
     class(clearance_joint_t), intent(in) :: self
-    real(dp), intent(in) :: y(:)
-    type(joint_motion_t), intent(inout) :: joint
+    real(dp), intent(in) :: y(*)
+    type(joint_evaluation_t), intent(inout) :: joint
     real(dp), intent(out) :: normal_force
     call self%read_state(y, joint)
-    call find_polar(self%bearing%clearance, joint)
-    if (allocated(self%elastic)) call find_elastic_thickness(self, joint)
+    call self%find_gap(y, joint)
     normal_force = 0
-    if (allocated(self%worn)) call find_worn(self, joint, normal_force)
-    if (self%phase /= phase_contact .or. allocated(self%worn)) return
-    if (.not. self%force_is_lost) &
-      normal_force = self%contact%normal_force(joint%penetration, joint%penetration_rate, self%impact_speed)
-    if (allocated(self%transition)) normal_force = normal_force*self%contact_weight(joint%penetration)
+    if (self%phase == phase_contact) normal_force = self%slots(self%acting(phase_contact))%element%normal_force(joint)
   end subroutine look
 
-  !> See `static_speed` of friction_law_t; 0 without friction or without contact.
-  elemental real(dp) function static_speed(self)
+  !> Derivatives of the force and the moment on the journal (rows F_x, F_y, moment) and of the rates of the joint's states, with
+  !> respect to e_x, e_y, e_x', e_y', the angular speeds of journal and bearing, and the states (columns), for implicit integration.
+  !> Not defined for surfaces that stick.
+  pure subroutine slopes(self, joint, of_loads, of_rates)
     class(clearance_joint_t), intent(in) :: self
-    static_speed = 0
-    if (allocated(self%friction) .and. self%phase == phase_contact) static_speed = self%friction%static_speed()
-  end function static_speed
-
-  !> The motion on which the film force depends. If both bodies rotate, the film is entrained with the sum of their angular speeds.
-  pure function film_motion(self, bodies, motion, joint) result(film)
-    class(clearance_joint_t), intent(in) :: self
-    type(bodies_t), intent(in) :: bodies
-    type(motion_t), intent(in) :: motion
-    type(joint_motion_t), intent(in) :: joint
-    type(film_motion_t) :: film
-    real(dp) :: rod_speed, rod_acceleration
-    film%eccentricity = joint%eccentricity
-    film%eccentricity_rate = joint%eccentricity_rate
-    film%pin_speed = joint%journal_speed + joint%bearing_speed
-    film%turning_speed = joint%journal_speed - joint%bearing_speed
-    if (self%film%needs_ideal_motion) then
-      call ideal_rod(bodies, motion, rod_speed, rod_acceleration)
-      film%ideal_pin_speed = -rod_speed
-      film%ideal_pin_acceleration = -rod_acceleration
-      film%frequency = abs(motion%crank_speed)
-      if (self%place /= piston_pin) film%ideal_pin_speed = motion%crank_speed - rod_speed
-    end if
-  end function film_motion
+    type(joint_evaluation_t), intent(in) :: joint
+    real(dp), intent(out) :: of_loads(3, n_joint_slopes), of_rates(most_joint_states, n_joint_slopes)
+    real(dp) :: loads_slopes(3, n_slopes), rate_slopes(most_element_states, n_slopes)
+    integer :: i, k, first, n
+    of_loads = 0
+    of_rates = 0
+    k = self%acting(self%phase)
+    if (k == 0) return
+    call self%slots(k)%element%find_slopes(joint, loads_slopes, rate_slopes)
+    n = self%slots(k)%element%n_states
+    first = sum([(self%slots(i)%element%n_states, i=1, k - 1)])   ! number of states before those of this element
+    of_loads(:, :n_motions) = loads_slopes(:, :n_motions)
+    of_loads(:, n_motions + first + 1:n_motions + first + n) = loads_slopes(:, n_motions + 1:n_motions + n)
+    of_rates(first + 1:first + n, :n_motions) = rate_slopes(:n, :n_motions)
+    of_rates(first + 1:first + n, n_motions + first + 1:n_motions + first + n) = rate_slopes(:n, n_motions + 1:n_motions + n)
+  end subroutine slopes
 
   !> The phase of the joint while there is no contact.
   pure integer function phase_apart(self)
     class(clearance_joint_t), intent(in) :: self
-    phase_apart = merge(phase_film, phase_free, allocated(self%film))
+    phase_apart = merge(phase_film, phase_free, self%acting(phase_film) > 0)
   end function phase_apart
 
-  !> Largest admissible eccentricity in the present phase [m].
-  pure real(dp) function reach(self)
-    class(clearance_joint_t), intent(in) :: self
-    reach = self%bearing%radius
-    if (is_unbounded(self)) reach = min(reach, self%bearing%clearance)
-  end function reach
+  !> Begin a contact with a penetration rate [m/s].
+  pure subroutine begin_contact(self, rate)
+    class(clearance_joint_t), intent(inout) :: self
+    real(dp), intent(in) :: rate
+    self%phase = phase_contact
+    self%impact_speed = max(rate, 0.0_dp)
+    self%slots(self%acting(phase_contact))%element%force_is_lost = .false.
+  end subroutine begin_contact
+
+  !> End a contact: the journal is free or carried by the film again, and its force is no longer lost.
+  pure subroutine end_contact(self)
+    class(clearance_joint_t), intent(inout) :: self
+    self%phase = self%phase_apart()
+    self%slots(self%acting(phase_contact))%element%force_is_lost = .false.
+  end subroutine end_contact
+
+  !> Tell the elements whether an eccentricity [m] is beyond their kinks; exactly at a kink its rate [m/s] decides.
+  pure subroutine begin_at(self, distance, rate)
+    class(clearance_joint_t), intent(inout) :: self
+    real(dp), intent(in) :: distance, rate
+    integer :: k
+    do k = 1, self%n_elements
+      associate (element => self%slots(k)%element)
+        element%is_beyond = element%kinks > 0 .and. (distance > element%kinks .or. (distance >= element%kinks .and. rate >= 0))
+      end associate
+    end do
+    call self%find_reach()
+  end subroutine begin_at
+
+  !> Set the largest admissible eccentricities: inside the wall of the bearing and, while a film acts whose force has no bound
+  !> there, inside the clearance.
+  pure subroutine find_reach(self)
+    class(clearance_joint_t), intent(inout) :: self
+    self%reach = self%bearing%radius
+    if (self%acting(phase_film) == 0) return
+    associate (element => self%slots(self%acting(phase_film))%element)   ! beyond its first kink a film is held
+      if (element%is_unbounded .and. .not. element%is_beyond(1)) self%reach(phase_film) = self%bearing%clearance
+    end associate
+  end subroutine find_reach
 
   !> Whether the film force has no bound at the wall and the film thickness is almost 0.
   pure logical function is_singular(self, y)
@@ -547,18 +463,50 @@ contains
     real(dp), intent(in) :: y(:)
     real(dp), parameter :: thin = 1e-6_dp   !! film thickness over clearance
     is_singular = .false.
-    if (is_unbounded(self)) is_singular = norm2(y(self%at%position:self%at%position + 1)) > (1 - thin)*self%bearing%clearance
+    if (self%reach(self%phase) < self%bearing%radius) &
+      is_singular = norm2(y(self%at%position:self%at%position + 1)) > (1 - thin)*self%bearing%clearance
   end function is_singular
 
-  !> Write the discrete state to an archive, or read it from it.
-  subroutine exchange(self, archive)
-    class(clearance_joint_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%phase)
-    call archive%exchange(self%impact_speed)
-    call archive%exchange(self%sliding)
-    call archive%exchange(self%force_is_lost)
-    if (allocated(self%transition)) call self%transition%exchange(archive)
-    if (allocated(self%worn)) call self%worn%exchange(archive)
-  end subroutine exchange
+  !> Whether the worn shape of the bore acts in the contact.
+  pure logical function has_worn_bore(self)
+    class(clearance_joint_t), intent(in) :: self
+    has_worn_bore = .false.
+    if (allocated(self%wear)) has_worn_bore = self%wear%bore == 'worn'
+  end function has_worn_bore
+
+  !> Results of the film besides its force; all are 0 without a film, and while it does not act.
+  pure type(film_figures_t) function figures_of_joint(self, joint) result(figures)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    if (self%acting(phase_film) > 0) figures = film_figures_of(self%slots(self%acting(phase_film))%element, joint)
+  end function figures_of_joint
+
+  !> Powers of the kinds of load on the bodies [W]; their sum is the power of the joint.
+  pure function powers(self, joint)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    real(dp) :: powers(n_kinds)
+    powers = 0
+    if (self%acting(self%phase) > 0) powers = self%slots(self%acting(self%phase))%element%powers(joint)
+  end function powers
+
+  !> Whether surfaces may touch in the present phase.
+  pure logical function rubs(self)
+    class(clearance_joint_t), intent(in) :: self
+    rubs = .false.
+    if (self%acting(self%phase) > 0) rubs = self%slots(self%acting(self%phase))%element%rubs
+  end function rubs
+
+  !> Int p R L dtheta |v|: the force that presses on the surfaces, summed without regard to its direction, times the sliding speed
+  !> [W]. Times the wear rate of a surface it is the volume that wears in a second. On a wide arc it is larger than the normal force
+  !> times the speed.
+  pure real(dp) function sliding_load(self, joint)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    real(dp) :: ratio
+    sliding_load = abs(joint%normal_force*joint%sliding_speed)
+    if (.not. sliding_load > 0) return
+    call self%slots(self%acting(self%phase))%element%spread(joint, ratio=ratio)
+    sliding_load = sliding_load*ratio
+  end function sliding_load
 end module clearance_joint

@@ -1,6 +1,6 @@
-!> A film between elastic walls, in its simplest form: the walls are a spring in series with the film.
+!> Load element: a film between elastic walls, in its simplest form: the walls are a spring in series with the film.
 !>
-!> The film has its own eccentricity e_f, a state of the joint. The rest of the pin's eccentricity, d = e - e_f, is the deflection
+!> The film has its own eccentricity e_f, a state of the element. The rest of the pin's eccentricity, d = e - e_f, is the deflection
 !> of the walls. Their force f(|d|) d/|d| is the load on the film; f is the elastic force of a contact geometry. The eccentricity
 !> e_f changes with the velocity at which the film carries this load (`film_mobility`):
 !>
@@ -11,67 +11,105 @@
 !> the viscosity mu exp(alpha p) (Barus) at its mean pressure p = load/(2 R L).
 module elastic_film
   use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use trace_row, only: trace_row_t
   use contact_geometry, only: contact_geometry_t
-  use film_law, only: film_law_t, film_motion_t
+  use film_law, only: film_motion_t
   use film_mobility, only: driven_velocity
+  use joint_case, only: joint_case_t
+  use joint_evaluation, only: joint_evaluation_t, most_element_states
+  use load_element, only: n_slopes, n_motions, by_journal_speed, by_bearing_speed
+  use film_figures, only: put_film_force, put_film_figures
+  use oil_film, only: oil_film_t, film_motion_of, unit_drag
   implicit none
   private
-  public :: elastic_film_t, n_film_states
+  public :: elastic_film_t, wall_load, wall_deflection
 
-  integer, parameter :: n_film_states = 2   !! e_f
-
-  type, extends(has_parameters_t) :: elastic_film_t
-    logical :: is_wanted = .false.
-    real(dp) :: pressure_viscosity = 0                     !! alpha [1/Pa]
-    class(contact_geometry_t), allocatable :: walls        !! geometry of the group contact
-    real(dp) :: per_area = 0                               !! 1/(2 R L) [1/m^2]
+  type, extends(oil_film_t) :: elastic_film_t
+    real(dp) :: pressure_viscosity = 0     !! alpha [1/Pa]
+    real(dp), private :: per_area = 0      !! 1/(2 R L) [1/m^2]
   contains
-    procedure :: parameters
     procedure :: prepare
-    procedure :: load
-    procedure :: deflection
-    procedure :: energy
-    procedure :: thickening
+    procedure :: find_loads
+    procedure :: find_slopes
+    procedure :: find_gap
+    procedure :: put_columns
+    procedure :: see_film
     procedure :: velocity
-    procedure :: moment
-    procedure :: slopes
   end type elastic_film_t
 
 contains
 
-  subroutine parameters(self, list)
+  subroutine prepare(self, wanted, tolerance, makes_tables)
     class(elastic_film_t), intent(inout) :: self
-    class(parameter_list_t), intent(inout) :: list
-    call list%add('elastic_film', self%is_wanted, &
-      'elastic walls in series with the film; &contact with law = ''hertz'' gives their stiffness', '.false.')
-    call list%add('pressure_viscosity', self%pressure_viscosity, &
-      'elastic_film: exponential growth of the viscosity with the mean pressure (Barus)', &
-      '1/Pa', '>= 0 and <= 1e-6', default='0.0')
-  end subroutine parameters
-
-  subroutine prepare(self, bearing)
-    class(elastic_film_t), intent(inout) :: self
-    type(bearing_t), intent(in) :: bearing
-    call self%walls%prepare(bearing)
-    self%per_area = 1/(2*bearing%pin_radius()*bearing%length)
+    type(joint_case_t), intent(in) :: wanted
+    real(dp), intent(in) :: tolerance
+    logical, intent(in) :: makes_tables
+    call self%prepare_film(wanted, tolerance, makes_tables)
+    allocate (self%walls, source=wanted%contact%geometry)
+    call self%walls%prepare(self%bearing)
+    self%pressure_viscosity = wanted%elastic%pressure_viscosity
+    self%per_area = 1/(2*self%bearing%pin_radius()*self%bearing%length)
+    self%is_unbounded = .false.
+    self%has_own_gap = .true.
+    self%n_states = 2   ! e_f
+    self%state_scale = self%bearing%clearance
+    self%state_reach = self%bearing%clearance
   end subroutine prepare
 
-  !> Load on the film [N] at the deflection d [m] of the walls.
-  pure function load(self, d)
+  !> The force of the walls, and the rate of the film's eccentricity under this load.
+  pure subroutine find_loads(self, y, joint)
     class(elastic_film_t), intent(in) :: self
+    real(dp), intent(in) :: y(*)
+    type(joint_evaluation_t), intent(inout) :: joint
+    associate (e => y(self%states%first:self%states%last), drawn => 0.5_dp*(joint%journal_speed + joint%bearing_speed))
+      joint%film = -wall_load(self%walls, joint%eccentricity - e)
+      joint%rates = self%velocity(e, -joint%film) + drawn*[-e(2), e(1)]
+      joint%moment = 0
+      if (self%film%film_moment) joint%moment = moment(self, motion_of_film(self, joint, e), -joint%film)
+    end associate
+    joint%force = joint%film
+  end subroutine find_loads
+
+  !> The motion on which the force of the film depends: that of the place where the film is.
+  pure type(film_motion_t) function motion_of_film(self, joint, e) result(seen)
+    type(elastic_film_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    real(dp), intent(in) :: e(2)   !! e_f [m]
+    seen = film_motion_of(self%film, joint)
+    seen%eccentricity = e
+    seen%eccentricity_rate = joint%rates
+  end function motion_of_film
+
+  !> The thickness of the film, which does not follow from the eccentricity of the pin. Its rate does not include the rotation of
+  !> the film.
+  pure subroutine find_gap(self, y, joint)
+    class(elastic_film_t), intent(in) :: self
+    real(dp), intent(in) :: y(*)
+    type(joint_evaluation_t), intent(inout) :: joint
+    real(dp) :: distance
+    associate (e => y(self%states%first:self%states%last))
+      distance = norm2(e)
+      joint%penetration = distance - self%bearing%clearance
+      joint%penetration_rate = 0
+      if (distance > 0 .and. distance < self%bearing%clearance) joint%penetration_rate = &
+        dot_product(e, self%velocity(e, wall_load(self%walls, joint%eccentricity - e)))/distance
+    end associate
+  end subroutine find_gap
+
+  !> Load on the film [N] at the deflection d [m] of the walls.
+  pure function wall_load(walls, d) result(load)
+    class(contact_geometry_t), intent(in) :: walls
     real(dp), intent(in) :: d(2)
     real(dp) :: load(2)
     real(dp) :: depth
     load = 0
     depth = sqrt(d(1)**2 + d(2)**2)
-    if (depth > 0) load = self%walls%elastic_force(depth)/depth*d
-  end function load
+    if (depth > 0) load = walls%elastic_force(depth)/depth*d
+  end function wall_load
 
   !> Deflection d [m] of the walls under a load [N], by bisection.
-  pure function deflection(self, load) result(d)
-    class(elastic_film_t), intent(in) :: self
+  pure function wall_deflection(walls, load) result(d)
+    class(contact_geometry_t), intent(in) :: walls
     real(dp), intent(in) :: load(2)
     real(dp) :: d(2)
     real(dp) :: low, high, middle
@@ -80,101 +118,90 @@ contains
     if (.not. norm2(load) > 0) return
     low = 0
     high = 1e-9_dp
-    do while (self%walls%elastic_force(high) < norm2(load) .and. high < 1)
+    do while (walls%elastic_force(high) < norm2(load) .and. high < 1)
       high = 2*high
     end do
     do i = 1, 60
       middle = 0.5_dp*(low + high)
-      if (self%walls%elastic_force(middle) < norm2(load)) then
+      if (walls%elastic_force(middle) < norm2(load)) then
         low = middle
       else
         high = middle
       end if
     end do
     d = load*(high/norm2(load))
-  end function deflection
-
-  !> Elastic energy of the walls [J].
-  pure real(dp) function energy(self, d)
-    class(elastic_film_t), intent(in) :: self
-    real(dp), intent(in) :: d(2)
-    energy = 0
-    if (norm2(d) > 0) energy = self%walls%elastic_energy(norm2(d))
-  end function energy
+  end function wall_deflection
 
   !> Ratio of the viscosity under a load to that without pressure [-].
-  pure real(dp) function thickening(self, load)
+  pure real(dp) function thickening_of(self, load)
     class(elastic_film_t), intent(in) :: self
     real(dp), intent(in) :: load(2)   !! [N]
-    thickening = 1
-    if (self%pressure_viscosity > 0) thickening = exp(self%pressure_viscosity*self%per_area*norm2(load))
-  end function thickening
+    thickening_of = 1
+    if (self%pressure_viscosity > 0) thickening_of = exp(self%pressure_viscosity*self%per_area*norm2(load))
+  end function thickening_of
 
   !> v* [m/s] at an eccentricity of the film under a load.
-  pure function velocity(self, film, film_eccentricity, load)
+  pure function velocity(self, e, load)
     class(elastic_film_t), intent(in) :: self
-    class(film_law_t), intent(in) :: film
-    real(dp), intent(in) :: film_eccentricity(2), load(2)
+    real(dp), intent(in) :: e(2), load(2)   !! [m], [N]
     real(dp) :: velocity(2)
-    call driven_velocity(film, film_eccentricity, load/self%thickening(load), velocity)
+    call driven_velocity(self%film, e, load/thickening_of(self, load), velocity)
   end function velocity
 
   !> Moment of the film on the pin about the pin's centre [N m]. It equals that about the film's own centre, since the load passes
   !> through both.
-  pure real(dp) function moment(self, film, motion, load)
-    class(elastic_film_t), intent(in) :: self
-    class(film_law_t), intent(in) :: film
-    type(film_motion_t), intent(in) :: motion   !! with the film's own eccentricity
+  pure real(dp) function moment(self, seen, load)
+    type(elastic_film_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: seen
     real(dp), intent(in) :: load(2)
     real(dp) :: factor
-    factor = self%thickening(load)
-    moment = factor*film%drag_moment(motion, -load/factor)
+    factor = thickening_of(self, load)
+    moment = factor*self%film%drag_moment(seen, -load/factor)
   end function moment
 
-  !> Derivatives with respect to e, e', the angular speed of the journal and e_f (columns), for implicit integration: of force and
-  !> moment on the pin (rows of `of_loads`) and of e_f' (rows of `of_rates`). The derivatives of the film's velocity follow from
-  !> those of its force, which is opposite to the load at every instant.
-  pure subroutine slopes(self, film, motion, d, has_moment, of_loads, of_rates)
+  !> The derivatives of the film's velocity follow from those of its force, which is opposite to the load at every instant.
+  pure subroutine find_slopes(self, joint, of_loads, of_rates)
     class(elastic_film_t), intent(in) :: self
-    class(film_law_t), intent(in) :: film
-    type(film_motion_t), intent(in) :: motion   !! with the film's own eccentricity
-    real(dp), intent(in) :: d(2)
-    logical, intent(in) :: has_moment
-    real(dp), intent(out) :: of_loads(3, 7), of_rates(2, 7)
-    real(dp) :: wall(2, 2), relieved(2, 2), of_film(3, 5), pressing(2), factor, determinant, right(2, 7), drag, by_load(2)
-    type(film_motion_t) :: turning
-    pressing = self%load(d)
+    type(joint_evaluation_t), intent(in) :: joint
+    real(dp), intent(out) :: of_loads(3, n_slopes), of_rates(most_element_states, n_slopes)
+    integer, parameter :: first = n_motions + 1, last = n_motions + 2
+    real(dp) :: wall(2, 2), relieved(2, 2), of_film(3, by_journal_speed), pressing(2), factor, determinant, right(2, n_slopes), &
+      drag, by_load(2), d(2)
+    type(film_motion_t) :: seen
+    seen = motion_of_film(self, joint, joint%states)
+    d = joint%eccentricity - joint%states
+    pressing = wall_load(self%walls, d)
     wall = wall_slopes(self, d)
     of_loads = 0
     of_loads(1:2, 1:2) = -wall
-    of_loads(1:2, 6:7) = wall
-    factor = self%thickening(pressing)
-    if (has_moment) then
-      turning = motion
-      turning%turning_speed = 1
-      drag = factor*film%drag_moment(turning, [0.0_dp, 0.0_dp])   ! at unit angular speed
-      by_load = 0.5_dp*[-motion%eccentricity(2), motion%eccentricity(1)] &
-        + drag*motion%turning_speed*self%pressure_viscosity*self%per_area*pressing/max(norm2(pressing), tiny(1.0_dp))
+    of_loads(1:2, first:last) = wall
+    factor = thickening_of(self, pressing)
+    if (self%film%film_moment) then
+      drag = factor*unit_drag(self%film, seen)
+      by_load = 0.5_dp*[-seen%eccentricity(2), seen%eccentricity(1)] &
+        + drag*seen%turning_speed*self%pressure_viscosity*self%per_area*pressing/max(norm2(pressing), tiny(1.0_dp))
       of_loads(3, 1:2) = matmul(by_load, wall)
-      of_loads(3, 5) = drag
-      of_loads(3, 6:7) = -of_loads(3, 1:2) + 0.5_dp*[pressing(2), -pressing(1)] + drag*motion%turning_speed*motion%eccentricity &
-        /(film%clearance**2 - sum(motion%eccentricity**2))
+      of_loads(3, by_journal_speed) = drag
+      of_loads(3, by_bearing_speed) = -drag
+      of_loads(3, first:last) = -of_loads(3, 1:2) + 0.5_dp*[pressing(2), -pressing(1)] &
+        + drag*seen%turning_speed*seen%eccentricity/(self%bearing%clearance**2 - sum(seen%eccentricity**2))
     end if
-    call film%force_derivatives(motion, of_film)
+    call self%film%force_derivatives(seen, of_film)
     relieved = wall
     if (self%pressure_viscosity > 0) relieved = relieved - self%pressure_viscosity*self%per_area/max(norm2(pressing), &
       tiny(1.0_dp))*spread(pressing, 2, 2)*spread(matmul(pressing, wall), 1, 2)
     relieved = relieved/factor
     right = 0
     right(:, 1:2) = -relieved
-    right(:, 5) = -of_film(1:2, 5)
-    right(:, 6:7) = relieved - of_film(1:2, 1:2)
+    right(:, by_journal_speed) = -of_film(1:2, by_journal_speed)
+    right(:, by_bearing_speed) = -of_film(1:2, by_journal_speed)
+    right(:, first:last) = relieved - of_film(1:2, 1:2)
     of_rates = 0
     determinant = of_film(1, 3)*of_film(2, 4) - of_film(1, 4)*of_film(2, 3)
     if (.not. abs(determinant) > 0) return
     of_rates(1, :) = (of_film(2, 4)*right(1, :) - of_film(1, 4)*right(2, :))/determinant
     of_rates(2, :) = (of_film(1, 3)*right(2, :) - of_film(2, 3)*right(1, :))/determinant
-  end subroutine slopes
+  end subroutine find_slopes
 
   !> Derivatives of the load with respect to d [N/m].
   pure function wall_slopes(self, d) result(slopes)
@@ -192,4 +219,33 @@ contains
     slopes(1, 1) = slopes(1, 1) + across
     slopes(2, 2) = slopes(2, 2) + across
   end function wall_slopes
+
+  pure subroutine put_columns(self, joint, row)
+    class(elastic_film_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    type(trace_row_t), intent(inout) :: row
+    real(dp) :: deflection, stored
+    call put_film_force(joint, row)
+    call row%put('film_eccentricity_x[m]', joint%states(1), &
+      'eccentricity of the film between elastic walls, along x: eccentricity less wall deflection')
+    call row%put('film_eccentricity_y[m]', joint%states(2), 'the same along y')
+    deflection = norm2(joint%eccentricity - joint%states)
+    call row%put('wall_deflection[m]', deflection, 'elastic deflection of the bearing walls under the film')
+    stored = 0
+    if (row%wants(1) .and. deflection > 0) stored = self%walls%elastic_energy(deflection)
+    call row%put('wall_energy[J]', stored, 'elastic energy stored in the bearing walls')
+    call put_film_figures(self, joint, row)
+  end subroutine put_columns
+
+  !> The elastic energy of the walls does not belong to the film.
+  pure subroutine see_film(self, joint, seen, rate, share, thickening)
+    class(elastic_film_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    type(film_motion_t), intent(out) :: seen
+    real(dp), intent(out) :: rate(2), share, thickening
+    seen = motion_of_film(self, joint, joint%states)
+    rate = joint%rates
+    share = 1
+    thickening = thickening_of(self, wall_load(self%walls, joint%eccentricity - joint%states))
+  end subroutine see_film
 end module elastic_film

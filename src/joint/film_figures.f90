@@ -1,19 +1,18 @@
-!> Results of a film besides its force: moment, power, largest pressure, side flow. The right-hand side does not need them, and they
-!> take additional evaluations; they are computed only on request.
+!> Results of the film of a load element besides its force: moment, power, largest pressure, side flow. The right-hand side does not
+!> need them, and they take additional evaluations; they are computed only on request.
 module film_figures
   use gudgeon_kinds, only: dp
+  use trace_row, only: trace_row_t
   use film_law, only: film_motion_t
-  use joint_motion, only: joint_motion_t
-  use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact, phase_film
-  use chain_loads, only: bearing_moment
-  use mixed_film, only: motion_in_gap
+  use joint_evaluation, only: joint_evaluation_t
+  use load_element, only: load_element_t, power_of
   implicit none
   private
-  public :: film_figures_t, film_figures_of, film_moment, acting_film
+  public :: film_figures_t, film_figures_of, put_film_force, put_film_figures
 
   type :: film_figures_t
     real(dp) :: power = 0         !! taken from the bodies by the film's force and by the moment of its shear, if that acts [W]
-    real(dp) :: neglected_moment = 0   !! of the shear on the pin about its centre that does not act since the case neglects it [N m]
+    real(dp) :: neglected_moment = 0   !! of shear on the pin about its centre that does not act since the case neglects it [N m]
     real(dp) :: neglected_power = 0    !! that this moment would take from the bodies [W]
     real(dp) :: max_pressure = 0  !! [Pa]
     real(dp) :: side_flow = 0     !! out of both ends of the bearing [m^3/s]
@@ -21,67 +20,69 @@ module film_figures
 
 contains
 
-  !> Results of the film of a joint; all are 0 while the film does not act. If film and contact share the load, the film's results
-  !> are multiplied by its share.
-  pure type(film_figures_t) function film_figures_of(joint, motion, loads) result(figures)
-    type(clearance_joint_t), intent(in) :: joint
-    type(joint_motion_t), intent(in) :: motion
-    type(joint_loads_t), intent(in) :: loads
+  !> Results of a film; all are 0 while it does not act. If film and contact share the load, the film's results are multiplied by
+  !> its share.
+  pure type(film_figures_t) function film_figures_of(element, joint) result(figures)
+    class(load_element_t), intent(in) :: element   !! with a film
+    type(joint_evaluation_t), intent(in) :: joint
     type(film_motion_t) :: seen
-    real(dp) :: share, rate(2), moment
-    call acting_film(joint, motion, seen, share)
+    real(dp) :: rate(2), share, thickening
+    call element%see_film(joint, seen, rate, share, thickening)
     if (.not. share > 0) return
-    rate = motion%eccentricity_rate
-    if (allocated(joint%elastic)) rate = motion%film_rate   ! the elastic energy of the walls does not belong to the film
-    moment = film_moment(joint, loads)
-    figures%power = -(dot_product(loads%film, rate) + moment*motion%journal_speed &
-      + bearing_moment(motion%eccentricity, loads%film, moment)*motion%bearing_speed)
-    if (joint%film%neglects_shear()) then
-      figures%neglected_moment = share*joint%film%drag_moment(seen, loads%film/share)
-      figures%neglected_power = -figures%neglected_moment*(motion%journal_speed - motion%bearing_speed)
-    end if
-    if (.not. joint%film%gives_pressure()) return
-    call joint%film%peak_and_flow(seen, figures%max_pressure, figures%side_flow)
-    figures%max_pressure = share*figures%max_pressure
-    figures%side_flow = film_share(joint, motion)*figures%side_flow
+    associate (film => element%film, factor => share*thickening)
+      figures%power = -power_of(joint, joint%film, rate, element%film_moment(joint))
+      if (film%neglects_shear()) then
+        figures%neglected_moment = factor*film%drag_moment(seen, joint%film/factor)
+        figures%neglected_power = -figures%neglected_moment*(joint%journal_speed - joint%bearing_speed)
+      end if
+      if (.not. film%gives_pressure()) return
+      call film%peak_and_flow(seen, figures%max_pressure, figures%side_flow)
+      figures%max_pressure = factor*figures%max_pressure
+      figures%side_flow = share*figures%side_flow
+    end associate
   end function film_figures_of
 
-  !> The motion on which the film of a joint depends, and the share of the full film that acts.
-  pure subroutine acting_film(joint, motion, seen, share)
-    type(clearance_joint_t), intent(in) :: joint
-    type(joint_motion_t), intent(in) :: motion
-    type(film_motion_t), intent(out) :: seen
-    real(dp), intent(out) :: share
-    share = film_share(joint, motion)
-    seen%eccentricity = motion%eccentricity
-    seen%eccentricity_rate = motion%eccentricity_rate
-    seen%pin_speed = motion%journal_speed + motion%bearing_speed
-    seen%turning_speed = motion%journal_speed - motion%bearing_speed
-    if (allocated(joint%asperities)) seen = motion_in_gap(joint%film, joint%asperities, seen)
-    if (allocated(joint%transition)) seen = joint%transition%held_motion(seen)
-    if (.not. allocated(joint%elastic)) return
-    share = share*joint%elastic%thickening(joint%elastic%load(motion%eccentricity - motion%film_eccentricity))
-    seen%eccentricity = motion%film_eccentricity
-    seen%eccentricity_rate = motion%film_rate
-  end subroutine acting_film
+  !> Put the columns of the force of a film.
+  pure subroutine put_film_force(joint, row)
+    type(joint_evaluation_t), intent(in) :: joint
+    type(trace_row_t), intent(inout) :: row
+    call row%put('film_force_x[N]', joint%film(1), 'force of the oil film on the pin along x')
+    call row%put('film_force_y[N]', joint%film(2), 'the same along y')
+  end subroutine put_film_force
 
-  !> Share of the full film that acts.
-  pure real(dp) function film_share(joint, motion)
-    type(clearance_joint_t), intent(in) :: joint
-    type(joint_motion_t), intent(in) :: motion
-    film_share = merge(1.0_dp, 0.0_dp, joint%phase == phase_film)
-    if (.not. allocated(joint%transition) .or. joint%phase /= phase_contact) return
-    if (.not. joint%transition%film_is_gone) film_share = 1 - joint%contact_weight(motion%penetration)
-  end function film_share
-
-  !> Moment on the journal [N m] from the shear of the film, if the case includes it; without the moment of friction.
-  pure real(dp) function film_moment(joint, loads)
-    type(clearance_joint_t), intent(in) :: joint
-    type(joint_loads_t), intent(in) :: loads
-    logical :: has_film
-    has_film = joint%phase == phase_film
-    if (allocated(joint%transition)) has_film = .not. joint%transition%film_is_gone
-    film_moment = 0
-    if (has_film) film_moment = loads%moment - loads%friction_force*joint%pin_radius
-  end function film_moment
+  !> Put the column of the film's moment, and those that need more computation than its force, which are computed only if the case
+  !> names one.
+  pure subroutine put_film_figures(element, joint, row)
+    class(load_element_t), intent(in) :: element   !! with a film
+    type(joint_evaluation_t), intent(in) :: joint
+    type(trace_row_t), intent(inout) :: row
+    type(film_figures_t) :: figures
+    integer :: columns
+    associate (film => element%film)
+      if (film%film_moment) call row%put('film_moment[N.m]', element%film_moment(joint), &
+        'moment of the oil shear on the pin about its centre, positive from x to y')
+      columns = 1
+      if (film%neglects_shear()) columns = columns + 2
+      if (film%gives_pressure()) columns = columns + 1
+      if (film%gives_side_flow()) columns = columns + 1
+      if (row%wants(columns)) then
+        figures = film_figures_of(element, joint)
+      else if (.not. row%is_naming) then
+        call row%skip(columns)
+        return
+      end if
+      call row%put_on_request('film_power[W]', figures%power, &
+        'power that the film takes from the bodies, by pressure and by shear that acts; < 0: it gives')
+      if (film%neglects_shear()) then
+        call row%put_on_request('neglected_shear_moment[N.m]', figures%neglected_moment, &
+          'moment of the oil shear on the pin that does not act (film_moment = .false.)')
+        call row%put_on_request('neglected_shear_power[W]', figures%neglected_power, &
+          'power that this shear would take from the bodies')
+      end if
+      if (film%gives_pressure()) call row%put_on_request('max_film_pressure[Pa]', figures%max_pressure, &
+        'largest pressure in the film')
+      if (film%gives_side_flow()) call row%put_on_request('film_side_flow[m3/s]', figures%side_flow, &
+        'oil flow out of both ends of the bearing')
+    end associate
+  end subroutine put_film_figures
 end module film_figures

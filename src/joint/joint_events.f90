@@ -1,198 +1,203 @@
-!> Events of a joint with clearance: contact begins and ends, set-valued friction changes.
+!> Events of a joint with clearance: contact begins and ends, and the events of its elements.
 module joint_events
   use gudgeon_kinds, only: dp
   use ode_problem, only: step_admitted, step_too_deep, step_too_far
-  use chain_motion, only: accelerations_t
-  use clearance_joint, only: clearance_joint_t, joint_loads_t, phase_contact
   use chain_motion, only: motion_t
-  use joint_motion, only: joint_motion_t, find_polar, find_speeds, find_sliding, sliding_acceleration, outward_acceleration
+  use joint_evaluation, only: joint_evaluation_t, joint_rates_t, find_polar, find_sliding, sliding_acceleration, reach_event
+  use load_element, only: load_element_t, sliding_changes, first_kink, force_changes
+  use clearance_joint, only: clearance_joint_t, phase_contact, contact_changes
   implicit none
   private
-  public :: n_events, may_stick, may_lose_force
-  public :: contact_changes, sliding_changes, film_held_changes, film_gone_changes, force_changes
-  public :: contact_event, sliding_event, force_event, force_share
-  public :: may_pass_static, judge_entry, judge_reversal, rough_end, begin_contact, end_contact, choose_sliding
-  public :: penetration_and_rate, transition_events, pass_kink
-
-  !> The events of a joint, in this order. A joint without contact law has no events. The second event exists only for set-valued
-  !> friction, the next two only for joints in which film and contact share the load, the last one only for a contact law whose
-  !> damper may cancel the elastic force: there the forces have kinks.
-  integer, parameter :: contact_changes = 1, sliding_changes = 2, film_held_changes = 3, film_gone_changes = 4, force_changes = 5
+  public :: contact_changes, find_joint_events, has_force_events, find_joint_force_events, pass_joint_event
+  public :: sliding_event, choose_sliding
+  public :: may_touch, may_pass_static, may_lose_force, find_lost_force, static_speed
+  public :: penetration_and_rate, judge_entry, judge_reversal, rough_end
 
 contains
 
-  !> Number of event functions of a joint, with those before the last one that its laws need.
-  pure integer function n_events(joint)
+  !> Whether the joint has a contact law.
+  pure logical function may_touch(joint)
     type(clearance_joint_t), intent(in) :: joint
-    n_events = 0
-    if (allocated(joint%contact)) n_events = contact_changes
-    if (may_stick(joint)) n_events = sliding_changes
-    if (allocated(joint%transition)) n_events = film_gone_changes
-    if (may_lose_force(joint)) n_events = force_changes
-  end function n_events
+    may_touch = joint%acting(phase_contact) > 0
+  end function may_touch
 
-  !> Whether the joint has set-valued friction.
-  pure logical function may_stick(joint)
+  !> Event functions of a joint and their rates. Those that need the forces are -1 and 0 here.
+  pure subroutine find_joint_events(joint, y, g, g_rate)
     type(clearance_joint_t), intent(in) :: joint
-    may_stick = .false.
-    if (allocated(joint%friction)) may_stick = joint%friction%set_valued
-  end function may_stick
+    real(dp), intent(in) :: y(:)
+    real(dp), intent(out) :: g(joint%n_events), g_rate(joint%n_events)
+    type(joint_evaluation_t) :: now
+    integer :: i, k
+    call joint%read_state(y, now)
+    if (may_touch(joint)) call contact_event(joint, y, now, g(contact_changes), g_rate(contact_changes))
+    if (joint%n_events <= contact_changes) return
+    g(contact_changes + 1:) = -1
+    g_rate(contact_changes + 1:) = 0
+    do k = 1, joint%n_elements
+      associate (element => joint%slots(k)%element)
+        if (.not. element%kinks(1) > 0) cycle
+        do i = 1, size(element%kinks)
+          associate (at => element%events%first + first_kink + i - 2)
+            call reach_event(now, element%kinks(i), element%is_beyond(i), g(at), g_rate(at))
+          end associate
+        end do
+      end associate
+    end do
+  end subroutine find_joint_events
 
-  !> Whether the damper of the contact law may cancel the elastic force.
-  pure logical function may_lose_force(joint)
+  !> Whether some event functions need the forces in the present phase.
+  pure logical function has_force_events(joint)
     type(clearance_joint_t), intent(in) :: joint
-    may_lose_force = .false.
-    if (allocated(joint%contact)) may_lose_force = joint%contact%may_lose_force
+    has_force_events = joint%phase == phase_contact
+    if (.not. has_force_events) return
+    associate (element => joint%slots(joint%acting(phase_contact))%element)
+      has_force_events = element%may_stick .or. element%may_lose_force
+    end associate
+  end function has_force_events
+
+  !> Event functions that need the forces, of a joint that has such events in its present phase.
+  pure subroutine find_joint_force_events(joint, now, rates, g, g_rate)
+    type(clearance_joint_t), intent(in) :: joint
+    type(joint_evaluation_t), intent(in) :: now
+    type(joint_rates_t), intent(in) :: rates
+    real(dp), intent(inout) :: g(joint%n_events), g_rate(joint%n_events)
+    associate (element => joint%slots(joint%acting(phase_contact))%element)
+      associate (before => element%events%first - 1)
+        if (element%may_stick) &
+          call sliding_event(element, now, rates, g(before + sliding_changes), g_rate(before + sliding_changes))
+        if (.not. element%may_lose_force) return
+        call element%find_share(now, rates, g(before + force_changes), g_rate(before + force_changes))
+        if (element%force_is_lost) return
+        g(before + force_changes) = -g(before + force_changes)
+        g_rate(before + force_changes) = -g_rate(before + force_changes)
+      end associate
+    end associate
+  end subroutine find_joint_force_events
+
+  !> Event function of set-valued friction in contact: sticking surfaces begin to slide, or the sliding speed passes zero.
+  pure subroutine sliding_event(element, now, rates, g, g_rate)
+    class(load_element_t), intent(in) :: element
+    type(joint_evaluation_t), intent(in) :: now
+    type(joint_rates_t), intent(in) :: rates
+    real(dp), intent(out) :: g, g_rate
+    if (element%sliding == 0) then
+      g = abs(now%friction_force) - element%holding_ratio*now%normal_force
+      g_rate = 0
+    else
+      g = -element%sliding*now%sliding_speed
+      g_rate = -element%sliding*sliding_acceleration(element%pin_radius, now, rates, at_rest=.false.)
+    end if
+  end subroutine sliding_event
+
+  !> Choose the state of set-valued friction from an evaluation in which the surfaces are assumed to stick. A nonzero sliding speed
+  !> gives the direction; at the beginning of a contact (`may_slide`) this holds for any value. At zero speed the surfaces stick if
+  !> friction can hold them; otherwise they begin to slide in the direction of the force.
+  pure subroutine choose_sliding(element, now, was_sliding, may_slide)
+    class(load_element_t), intent(inout) :: element
+    type(joint_evaluation_t), intent(in) :: now
+    logical, intent(in) :: was_sliding, may_slide
+    if (may_slide .and. abs(now%sliding_speed) > 0) then
+      element%sliding = nint(sign(1.0_dp, now%sliding_speed))
+    else if (abs(now%friction_force) > element%holding_ratio*now%normal_force .or. .not. (may_slide .or. was_sliding)) then
+      element%sliding = -nint(sign(1.0_dp, now%friction_force))
+    end if
+  end subroutine choose_sliding
+
+  !> Pass an event of an element. `asks`: the scene is to choose whether the surfaces slide.
+  pure subroutine pass_joint_event(joint, event, asks)
+    type(clearance_joint_t), intent(inout) :: joint
+    integer, intent(in) :: event    !! > contact_changes
+    logical, intent(out) :: asks
+    integer :: k
+    asks = .false.
+    do k = 1, joint%n_elements
+      associate (element => joint%slots(k)%element)
+        if (event < element%events%first .or. event > element%events%last) cycle
+        select case (event - element%events%first + 1)
+        case (sliding_changes)
+          asks = .true.
+        case (force_changes)
+          element%force_is_lost = .not. element%force_is_lost
+        case default
+          associate (is_beyond => element%is_beyond(event - element%events%first - first_kink + 2))
+            is_beyond = .not. is_beyond
+          end associate
+        end select
+      end associate
+    end do
+    call joint%find_reach()
+  end subroutine pass_joint_event
+
+  !> Whether the present contact may lose its force.
+  elemental logical function may_lose_force(joint)
+    type(clearance_joint_t), intent(in) :: joint
+    may_lose_force = joint%phase == phase_contact
+    if (may_lose_force) may_lose_force = joint%slots(joint%acting(phase_contact))%element%may_lose_force
   end function may_lose_force
+
+  !> Find whether a contact that may lose its force has lost it.
+  pure subroutine find_lost_force(joint, now, rates)
+    type(clearance_joint_t), intent(inout) :: joint
+    type(joint_evaluation_t), intent(in) :: now
+    type(joint_rates_t), intent(in) :: rates
+    real(dp) :: share, share_rate
+    associate (element => joint%slots(joint%acting(phase_contact))%element)
+      call element%find_share(now, rates, share, share_rate)
+      element%force_is_lost = share < 0
+    end associate
+  end subroutine find_lost_force
+
+  !> Whether a step of this joint may pass over static friction: that of a law in which it depends on the sliding speed alone.
+  pure logical function may_pass_static(joint)
+    type(clearance_joint_t), intent(in) :: joint
+    may_pass_static = .false.
+    if (may_touch(joint)) may_pass_static = joint%slots(joint%acting(phase_contact))%element%static_speed > 0
+  end function may_pass_static
+
+  !> Sliding speed up to which the friction of the present contact clearly exceeds that of faster sliding [m/s]; 0: there is none.
+  elemental real(dp) function static_speed(joint)
+    type(clearance_joint_t), intent(in) :: joint
+    static_speed = 0
+    if (joint%phase == phase_contact) static_speed = joint%slots(joint%acting(phase_contact))%element%static_speed
+  end function static_speed
 
   !> Penetration [m] and its rate [m/s].
   pure function penetration_and_rate(joint, y) result(values)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: y(:)
-    real(dp) :: values(2), distance, gradient(2)
-    if (allocated(joint%worn)) then
-      call joint%worn%find_gap(y(joint%at%position:joint%at%position + 1), values(1), gradient)
-      values(2) = dot_product(gradient, y(joint%at%rate:joint%at%rate + 1))
-      return
-    end if
-    associate (x => y(joint%at%position), x_rate => y(joint%at%rate), &
-               across => y(joint%at%position + 1), across_rate => y(joint%at%rate + 1))
-      distance = sqrt(x**2 + across**2)
-      values(1) = distance - joint%bearing%clearance
-      values(2) = 0
-      if (distance > 0) values(2) = (x*x_rate + across*across_rate)/distance
-    end associate
-  end function penetration_and_rate
-
-  !> Event function of the beginning or end of a contact, and its rate: (e . e - c^2)/2 [m^2] without contact, which is smooth in
-  !> every state, and its negative in contact. In a worn bore the difference of the eccentricity from the clearance is the largest
-  !> gap of its foundation, times the clearance.
-  pure subroutine contact_event(joint, y, g, g_rate)
-    type(clearance_joint_t), intent(in) :: joint
-    real(dp), intent(in) :: y(:)
-    real(dp), intent(out) :: g, g_rate
-    real(dp) :: worn(2)
-    if (allocated(joint%worn)) then
-      worn = sign(joint%bearing%clearance, merge(-1.0_dp, 1.0_dp, joint%phase == phase_contact))*penetration_and_rate(joint, y)
-      g = worn(1)
-      g_rate = worn(2)
-      return
-    end if
-    call reach_event(joint, y, joint%bearing%clearance, joint%phase == phase_contact, g, g_rate)
-  end subroutine contact_event
-
-  !> Event functions of the kinks of a weighted transition, and their rates. (At the end of a smooth share only the curvature is
-  !> discontinuous; the event costs no more evaluations than it saves.)
-  pure subroutine transition_events(joint, y, g, g_rate)
-    type(clearance_joint_t), intent(in) :: joint
-    real(dp), intent(in) :: y(*)
-    real(dp), intent(out) :: g(2), g_rate(2)
-    associate (kinks => joint%transition)
-      call reach_event(joint, y, kinks%film_reach, kinks%film_is_held, g(1), g_rate(1))
-      call reach_event(joint, y, kinks%contact_reach, kinks%film_is_gone, g(2), g_rate(2))
-    end associate
-  end subroutine transition_events
-
-  !> Half the difference between e . e and its value at an eccentricity [m^2], and its rate, with the sign that makes the next
-  !> passage one from negative to positive.
-  pure subroutine reach_event(joint, y, reach, is_beyond, g, g_rate)
-    type(clearance_joint_t), intent(in) :: joint
-    real(dp), intent(in) :: y(*), reach   !! [m]
-    logical, intent(in) :: is_beyond      !! the eccentricity is the larger one
-    real(dp), intent(out) :: g, g_rate
-    associate (x => y(joint%at%position), x_rate => y(joint%at%rate), &
-               across => y(joint%at%position + 1), across_rate => y(joint%at%rate + 1))
-      g = 0.5_dp*(x**2 + across**2 - reach**2)
-      g_rate = x*x_rate + across*across_rate
-      if (.not. is_beyond) return
-      g = -g
-      g_rate = -g_rate
-    end associate
-  end subroutine reach_event
-
-  !> The journal passes a kink of a weighted transition.
-  pure subroutine pass_kink(joint, event)
-    type(clearance_joint_t), intent(inout) :: joint
-    integer, intent(in) :: event   !! film_held_changes or film_gone_changes
-    associate (kinks => joint%transition)
-      if (event == film_held_changes) then
-        kinks%film_is_held = .not. kinks%film_is_held
-      else
-        kinks%film_is_gone = .not. kinks%film_is_gone
-      end if
-    end associate
-  end subroutine pass_kink
-
-  !> Event function of set-valued friction in contact: sticking surfaces begin to slide, or the sliding speed passes zero.
-  pure subroutine sliding_event(joint, motion, own, accelerations, g, g_rate)
-    type(clearance_joint_t), intent(in) :: joint
-    type(joint_motion_t), intent(in) :: motion
-    type(joint_loads_t), intent(in) :: own
-    type(accelerations_t), intent(in) :: accelerations
-    real(dp), intent(out) :: g, g_rate
-    if (joint%sliding == 0) then
-      g = abs(own%friction_force) - sticking_limit(joint, own%normal_force)
-      g_rate = 0
-    else
-      g = -joint%sliding*motion%sliding_speed
-      g_rate = -joint%sliding*sliding_acceleration(joint%place, joint%bearing_turns, joint%pin_radius, motion, &
-        accelerations, at_rest=.false.)
-    end if
-  end subroutine sliding_event
-
-  !> Event function of a law whose damper may cancel the elastic force: the contact loses its force, or the force acts again.
-  pure subroutine force_event(joint, motion, accelerations, g, g_rate)
-    type(clearance_joint_t), intent(in) :: joint
-    type(joint_motion_t), intent(in) :: motion
-    type(accelerations_t), intent(in) :: accelerations
-    real(dp), intent(out) :: g, g_rate
-    call force_share(joint, motion, accelerations, g, g_rate)
-    if (joint%force_is_lost) return
-    g = -g
-    g_rate = -g_rate
-  end subroutine force_event
-
-  !> The damped over the elastic force, without the limit 0, and its rate [1/s]. In a worn bore the rate is a difference over a
-  !> short part of the motion.
-  pure subroutine force_share(joint, motion, accelerations, share, share_rate)
-    type(clearance_joint_t), intent(in) :: joint
-    type(joint_motion_t), intent(in) :: motion
-    type(accelerations_t), intent(in) :: accelerations
-    real(dp), intent(out) :: share, share_rate
-    real(dp) :: onwards
-    if (.not. (allocated(joint%worn) .and. motion%penetration > 0)) then
-      call joint%contact%find_share(motion%penetration, motion%penetration_rate, &
-        outward_acceleration(joint%place, motion, accelerations), share, share_rate)
+    real(dp) :: values(2), distance
+    type(joint_evaluation_t) :: motion
+    call joint%read_state(y, motion)
+    if (joint%has_own_gap .and. may_touch(joint)) then
+      call joint%find_gap(y, motion)
+      values = [motion%penetration, motion%penetration_rate]
       return
     end if
     associate (e => motion%eccentricity, rate => motion%eccentricity_rate)
-      share = share_in_worn_bore(joint, e, rate)
-      share_rate = 0
-      if (.not. norm2(rate) > 0) return
-      onwards = 1e-6_dp*motion%penetration/norm2(rate)
-      share_rate = (share_in_worn_bore(joint, e + onwards*rate, rate + onwards*accelerations%pin(:, joint%place)) - share)/onwards
+      distance = sqrt(e(1)**2 + e(2)**2)
+      values(1) = distance - joint%bearing%clearance
+      values(2) = 0
+      if (distance > 0) values(2) = (e(1)*rate(1) + e(2)*rate(2))/distance
     end associate
-  end subroutine force_share
+  end function penetration_and_rate
 
-  !> The share in a worn bore; 1 without contact.
-  pure real(dp) function share_in_worn_bore(joint, e, rate) result(share)
+  !> Event function of the beginning or end of a contact, and its rate: (e . e - c^2)/2 [m^2] without contact, and its negative in
+  !> contact. For an element with a gap of its own the difference of the eccentricity from the clearance is that gap, times the
+  !> clearance.
+  pure subroutine contact_event(joint, y, motion, g, g_rate)
     type(clearance_joint_t), intent(in) :: joint
-    real(dp), intent(in) :: e(2), rate(2)   !! eccentricity and its rate [m], [m/s]
-    real(dp) :: elastic(2), unused, pressing, penetration, gradient(2)
-    share = 1
-    call joint%worn%press(e, elastic, unused)
-    pressing = norm2(elastic)
-    call joint%worn%find_gap(e, penetration, gradient)
-    if (pressing > 0 .and. penetration > 0) &
-      share = joint%contact%damped_force(pressing, penetration, dot_product(elastic, rate)/pressing)/pressing
-  end function share_in_worn_bore
-
-  !> Largest friction force of a set-valued law while the surfaces stick [N].
-  pure real(dp) function sticking_limit(joint, normal_force)
-    type(clearance_joint_t), intent(in) :: joint
-    real(dp), intent(in) :: normal_force
-    sticking_limit = joint%friction%holding_ratio()*normal_force
-  end function sticking_limit
+    real(dp), intent(in) :: y(:)
+    type(joint_evaluation_t), intent(in) :: motion   !! eccentricity and its rate
+    real(dp), intent(out) :: g, g_rate
+    real(dp) :: gap(2)
+    if (joint%has_own_gap) then
+      gap = sign(joint%bearing%clearance, merge(-1.0_dp, 1.0_dp, motion%touches))*penetration_and_rate(joint, y)
+      g = gap(1)
+      g_rate = gap(2)
+    else
+      call reach_event(motion, joint%bearing%clearance, motion%touches, g, g_rate)
+    end if
+  end subroutine contact_event
 
   !> Judge a step that begins without contact: at its end the penetration must be at most `max_penetration` (4.12-4.13), and the
   !> step must not pass through a contact. The penetration inside the step is approximated by the cubic through its values and rates
@@ -208,7 +213,7 @@ contains
 
     verdict = step_admitted
     fraction = 1
-    if (joint%phase == phase_contact .or. .not. allocated(joint%contact)) return
+    if (joint%phase == phase_contact .or. .not. may_touch(joint)) return
     left = penetration_and_rate(joint, y_old)
     right = penetration_and_rate(joint, y)
     left(2) = left(2)*(t - t_old)
@@ -233,13 +238,6 @@ contains
     fraction = max(upper, 1e-3_dp)
   end subroutine judge_entry
 
-  !> Whether a step of this joint may pass over static friction: that of a law in which it depends on the sliding speed alone.
-  pure logical function may_pass_static(joint)
-    type(clearance_joint_t), intent(in) :: joint
-    may_pass_static = .false.
-    if (allocated(joint%contact) .and. allocated(joint%friction)) may_pass_static = joint%friction%static_speed() > 0
-  end function may_pass_static
-
   !> Refuse a step in which a journal in contact reverses its sliding and passes over the static friction: at both ends the speed is
   !> beyond that of static friction, with opposite signs. No evaluation may show that the surfaces would stick in between. (Brown
   !> and McPhee's law, c_s = 10 c_f, v_t = 1e-5 m/s, simulation I with a softer pin, 1e-6: the motion of Coulomb's law with 33,000
@@ -249,18 +247,18 @@ contains
     type(clearance_joint_t), intent(in) :: joint
     type(motion_t), intent(in) :: motion               !! of the bodies at the end of the step
     real(dp), intent(in) :: y_old(:)                   !! state at its beginning
-    type(joint_motion_t), intent(inout) :: now         !! eccentricity and rate at its end
+    type(joint_evaluation_t), intent(inout) :: now         !! eccentricity and rate at its end
     integer, intent(out) :: verdict
     real(dp), intent(out) :: fraction
     real(dp), parameter :: closest = 1e-9_dp
-    type(joint_motion_t) :: old
+    type(joint_evaluation_t) :: old
     real(dp) :: before
     verdict = step_admitted
     fraction = 1
     call find_polar(joint%bearing%clearance, now)
-    call find_speeds(joint%place, joint%bearing_turns, motion, now)
+    call joint%find_speeds(motion, now)
     call find_sliding(joint%pin_radius, now)
-    associate (after => now%sliding_speed, static => joint%friction%static_speed())
+    associate (after => now%sliding_speed, static => static_speed(joint))
       if (abs(after) <= static) return
       call joint%read_state(y_old, old)
       call find_polar(joint%bearing%clearance, old)
@@ -282,11 +280,11 @@ contains
   pure real(dp) function rough_end(joint, t, y)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: t, y(:)
-    real(dp) :: distance, product, worn(2)
+    real(dp) :: distance, product, gap(2)
     rough_end = huge(rough_end)
-    if (allocated(joint%worn)) then
-      worn = penetration_and_rate(joint, y)
-      if (worn(2) < 0 .and. worn(1) > 0) rough_end = t - worn(1)/worn(2)
+    if (joint%has_own_gap) then
+      gap = penetration_and_rate(joint, y)
+      if (gap(2) < 0 .and. gap(1) > 0) rough_end = t - gap(1)/gap(2)
       return
     end if
     associate (x => y(joint%at%position), x_rate => y(joint%at%rate), &
@@ -297,35 +295,4 @@ contains
       if (distance > joint%bearing%clearance) rough_end = t - (distance - joint%bearing%clearance)*distance/product
     end associate
   end function rough_end
-
-  !> Begin a contact with a penetration rate [m/s].
-  pure subroutine begin_contact(joint, rate)
-    type(clearance_joint_t), intent(inout) :: joint
-    real(dp), intent(in) :: rate
-    joint%phase = phase_contact
-    joint%impact_speed = max(rate, 0.0_dp)
-    joint%force_is_lost = .false.
-  end subroutine begin_contact
-
-  !> End a contact: the journal is free or carried by the film again, and its force is no longer lost.
-  pure subroutine end_contact(joint)
-    type(clearance_joint_t), intent(inout) :: joint
-    joint%phase = joint%phase_apart()
-    joint%force_is_lost = .false.
-  end subroutine end_contact
-
-  !> Choose the state of set-valued friction from an evaluation in which the surfaces are assumed to stick. A nonzero sliding speed
-  !> gives the direction; at the beginning of a contact (`may_slide`) this holds for any value. At zero speed the surfaces stick if
-  !> friction can hold them; otherwise they begin to slide in the direction of the force.
-  pure subroutine choose_sliding(joint, motion, own, was_sliding, may_slide)
-    type(clearance_joint_t), intent(inout) :: joint
-    type(joint_motion_t), intent(in) :: motion
-    type(joint_loads_t), intent(in) :: own
-    logical, intent(in) :: was_sliding, may_slide
-    if (may_slide .and. abs(motion%sliding_speed) > 0) then
-      joint%sliding = nint(sign(1.0_dp, motion%sliding_speed))
-    else if (abs(own%friction_force) > sticking_limit(joint, own%normal_force) .or. .not. (may_slide .or. was_sliding)) then
-      joint%sliding = -nint(sign(1.0_dp, own%friction_force))
-    end if
-  end subroutine choose_sliding
 end module joint_events

@@ -9,7 +9,6 @@
 !> and its penetration into the wall of the bore is d_i = +-(y_i) - R_p - c; -d_i is its gap.
 module piston_guide
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   use gudgeon_bearing, only: bearing_t, crossing_speed
   use state_layout, only: layout_t, coordinates_t
   use chain_motion, only: motion_t, tilting_t
@@ -66,7 +65,6 @@ module piston_guide
     procedure :: friction_on_guide
     procedure :: put_rates
     procedure :: own_speed
-    procedure :: exchange
   end type piston_guide_t
 
 contains
@@ -235,16 +233,4 @@ contains
     dydt(self%tilt%position) = tilting%tilt_rate
     dydt(self%tilt%rate) = tilt_acceleration
   end subroutine put_rates
-
-  !> Write the discrete state to an archive, or read it from it.
-  subroutine exchange(self, archive)
-    class(piston_guide_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    integer :: i
-    do i = 1, n_corners
-      call archive%exchange(self%touches(i))
-      call archive%exchange(self%impact_speed(i))
-      call archive%exchange(self%force_is_lost(i))
-    end do
-  end subroutine exchange
 end module piston_guide

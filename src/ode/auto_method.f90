@@ -10,7 +10,6 @@ module auto_method
   use ode_method, only: step_statistics_t, step_done, limit_stability, with_adams, with_radau
   use adams, only: adams_t
   use radau, only: radau_t
-  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: auto_t
@@ -42,7 +41,6 @@ module auto_method
     procedure :: withdraw
     procedure :: count_time
     procedure :: totals
-    procedure :: exchange
   end type auto_t
 
 contains
@@ -84,24 +82,6 @@ contains
     allocate (self%loss(0:highest), source=0.0_dp)
     allocate (self%time_with(2, 0:highest), source=0.0_dp)
   end subroutine forget_modes
-
-  !> Write both methods and the data for the choice to an archive, or read them from it.
-  subroutine exchange(self, problem, archive)
-    class(auto_t), intent(inout) :: self
-    class(ode_problem_t), intent(in) :: problem
-    type(archive_t), intent(inout) :: archive
-    self%radau%settings = self%settings
-    if (archive%is_reading) call forget_modes(self, problem%highest_mode)
-    call self%adams_t%exchange(problem, archive)
-    call self%radau%exchange(problem, archive)
-    call archive%exchange(self%stiff)
-    call archive%exchange(self%stiff_in)
-    call archive%exchange(self%mode)
-    call archive%exchange(self%excess)
-    call archive%exchange(self%patience)
-    call archive%exchange(self%loss)
-    call archive%exchange(self%time_with)
-  end subroutine exchange
 
   !> Start a method at (t, y), continuing the statistics.
   subroutine begin_with(self, problem, stiff, t, y, first, status)

@@ -9,7 +9,6 @@ module gudgeon_events
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, max_events
   use ode_method, only: ode_method_t
-  use gudgeon_archive, only: archive_t
   use gudgeon_roots, only: bracket_t, next_abscissa, narrow, abscissa_by_rates
   implicit none
   private
@@ -36,7 +35,6 @@ module gudgeon_events
     procedure :: begin
     procedure :: step_back
     procedure :: search
-    procedure :: exchange
   end type event_watch_t
 
 contains
@@ -93,25 +91,6 @@ contains
     self%t = t
     call problem%events(t, y, self%g, self%rate)
   end subroutine look
-
-  !> Write the state to an archive, or read it from it; the problem must have been read before.
-  subroutine exchange(self, problem, archive)
-    class(event_watch_t), intent(inout) :: self
-    class(ode_problem_t), intent(in) :: problem
-    type(archive_t), intent(inout) :: archive
-    integer :: i
-    if (.not. allocated(self%y)) allocate (self%y(problem%n))
-    if (archive%is_reading) call prepare(self, problem)
-    do i = 1, self%n
-      call archive%exchange(self%low(i))
-      call archive%exchange(self%leaving(i))
-    end do
-    call archive%exchange(self%just_taken)
-    call archive%exchange(self%fresh)
-    call archive%exchange(self%t)
-    call archive%exchange(self%g)
-    call archive%exchange(self%rate)
-  end subroutine exchange
 
   !> Search the last step of the method up to t_last. `index` is the first event, or 0. t_event is its time, at a non-negative value
   !> of the function, or the end of the search.
@@ -262,7 +241,7 @@ contains
         return
       end if
     end if
-    if (low .and. start%g < 0 .and. right%g >= 0) then
+    if (low .and. start%g < 0 .and. right%g >= 0 .and. .not. falls_in_resolution(start, right)) then
       found = .true.
       t_found = passage(self, method, problem, index, start, right)
     else if (low .and. start%g < 0 .and. start%rate > 0 .and. right%rate < 0) then
@@ -274,6 +253,15 @@ contains
     end if
     low = low .or. right%g < 0
   end subroutine search_piece
+
+  !> Whether a function falls at both ends, and its values there are no larger than its change while the time advances by a few
+  !> roundings: steps may be shorter than these (after a contact has begun), and the sign is then rounding too.
+  pure logical function falls_in_resolution(left, right)
+    type(sample_t), intent(in) :: left, right
+    real(dp) :: change
+    change = -4*epsilon(right%t)*abs(right%t)*min(left%rate, right%rate)
+    falls_in_resolution = left%rate < 0 .and. right%rate < 0 .and. -left%g <= change .and. right%g <= change
+  end function falls_in_resolution
 
   !> The first instant, within the resolution of the time, at which the function is non-negative.
   real(dp) function passage(self, method, problem, index, left, right)

@@ -1,51 +1,57 @@
 !> Integrates from one time to another with events: take a step, search it for events, report it to the observer, handle the event,
-!> restart.
+!> restart. An integration can pause at any time without an influence on its steps.
 module gudgeon_solver
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, event_stop, max_events
   use ode_method, only: ode_method_t, step_done
   use gudgeon_events, only: event_watch_t
-  use gudgeon_archive, only: archive_t
   implicit none
   private
-  public :: integrate, observer_t, silent_observer_t
+  public :: integrate, integration_t, observer_t, silent_observer_t
   public :: integration_done, integration_stopped, step_limit_reached, integration_interrupted, chattering, &
-    evaluation_limit_reached, unreadable_archive
+    evaluation_limit_reached
 
   !> Outcomes of an integration, in addition to failures of a step (status codes of `ode_method`).
   integer, parameter :: integration_done = 0          !! the end time was reached
   integer, parameter :: integration_stopped = -1      !! an event ended the run
   integer, parameter :: step_limit_reached = 11       !! more steps than allowed
-  integer, parameter :: integration_interrupted = 12  !! the observer ended the run
+  integer, parameter :: integration_interrupted = 12  !! the observer or the caller ended the run
   integer, parameter :: chattering = 13               !! many events without progress in time
   integer, parameter :: evaluation_limit_reached = 14 !! more evaluations of the right-hand side than the settings allow
-
-  integer, parameter :: unreadable_archive = 15       !! the archive does not match the problem and the method
 
   integer, parameter :: most_events_in_place = 100    !! number of events within the chatter time that count as chatter
 
   !> An observer of accepted steps and events. During `step_taken` it may call the interpolant of the method.
   type, abstract :: observer_t
     logical :: wants_to_stop = .false.
-    logical :: wants_archive = .false.    !! the state is requested now
-    logical :: keeps_archives = .false.   !! the state is also requested when the integration ends but could be continued
   contains
-    procedure :: take_archive => ignore_archive
-    procedure :: exchange => exchange_nothing
     procedure :: event_handled => change_nothing
     procedure(step_taken), deferred :: step_taken
     procedure(event_taken), deferred :: event_taken
   end type observer_t
 
-  !> The state of an integration, besides problem, method and observer.
-  type :: position_t
-    real(dp) :: t = 0
-    real(dp), allocatable :: y(:)      !! state at t; set only by events
-    integer :: event = 0               !! event at t, 0: none
-    type(event_watch_t) :: watch
-    real(dp) :: t_place = 0            !! time of the first of several events without progress in time
-    integer :: in_place = 0            !! number of these events
-  end type position_t
+  !> An integration under way: everything besides problem, method and observer. The part of the last step up to the next event is
+  !> final. It is reported to the observer when the integration goes on beyond it; at a pause within it, it is kept.
+  type :: integration_t
+    real(dp) :: t = 0                  !! end of the part that is final: the last step, the next event, or the end
+    real(dp), allocatable :: y(:)      !! state at t; set only by events and at the end
+    integer :: status = integration_done
+    logical :: is_over = .false.       !! the integration has ended, with this status
+    logical :: is_kept = .false.       !! the final part of the last step has not been reported
+    logical, private :: has_begun = .false.
+    real(dp), private :: t_end = 0
+    integer, private :: max_steps = 0
+    integer, private :: event = 0               !! event at t, 0: none
+    type(event_watch_t), private :: watch
+    real(dp), private :: t_place = 0            !! time of the first of several events without progress in time
+    integer, private :: in_place = 0            !! number of these events
+  contains
+    procedure :: begin
+    procedure :: go_to
+    procedure :: cut
+    procedure :: state
+    procedure :: finish
+  end type integration_t
 
   !> An observer that ignores everything.
   type, extends(observer_t) :: silent_observer_t
@@ -76,9 +82,8 @@ module gudgeon_solver
 
 contains
 
-  !> Integrate from (t, y) to t_end, or continue from an `archive`; with the same settings, problem and observer the results are
-  !> then identical to those without interruption. On return (t, y) is the end of the integration. max_steps = 0: no limit.
-  subroutine integrate(problem, method, t, y, t_end, max_steps, observer, status, archive)
+  !> Integrate from (t, y) to t_end without a pause. On return (t, y) is the end of the integration. max_steps = 0: no limit.
+  subroutine integrate(problem, method, t, y, t_end, max_steps, observer, status)
     class(ode_problem_t), intent(inout) :: problem
     class(ode_method_t), intent(inout) :: method
     real(dp), intent(inout) :: t, y(:)
@@ -86,96 +91,178 @@ contains
     integer, intent(in) :: max_steps
     class(observer_t), intent(inout) :: observer
     integer, intent(out) :: status
-    type(archive_t), intent(inout), optional :: archive
-    type(position_t) :: at
-
-    status = integration_done
-    if (.not. t < t_end) return
-    method%settings%stop_time = t_end
-    at%t = t
-    at%y = y
-    if (present(archive)) then
-      call exchange_all(problem, method, observer, at, archive)
-      if (archive%failed) status = unreadable_archive
-      if (archive%failed) return
-      call look_around(method, max_steps, observer, status)
-    else
-      call method%start(problem, at%t, at%y, .true., status)
-      call at%watch%begin(problem, at%t, at%y, 0, .false.)
-      at%t_place = t
-    end if
-    do while (status == step_done)
-      method%rough_time = problem%rough_time(method%t, method%y)
-      call method%step(problem, status)
-      if (status /= step_done) exit
-      call at%watch%search(method, problem, t_end, at%event, at%t)
-      if (at%event == 0) then
-        call method%count_time(at%t)
-        call observer%step_taken(method, problem, at%t)
-        if (method%t >= t_end) exit
-      else
-        call take_event(problem, method, observer, t_end, at, status)
-        if (status == integration_stopped .or. is_at_end(at%t, t_end)) exit
-      end if
-      call look_around(method, max_steps, observer, status)
-      if (observer%keeps_archives) call hand_over(problem, method, observer, at, status)
-    end do
-    if (status == step_done) then
-      if (at%event == 0) call method%interpolate(at%t, at%y)
-    else if (status /= integration_stopped .and. at%event == 0) then
-      at%t = method%t
-      at%y = method%y
-    end if
-    t = at%t
-    y = at%y
+    type(integration_t) :: integration
+    call integration%begin(problem, method, t, y, t_end, max_steps)
+    call integration%go_to(problem, method, observer, t_end, 0)
+    call integration%finish(method)
+    status = integration%status
+    t = integration%t
+    y = integration%y
   end subroutine integrate
 
-  !> Move to the event found in an accepted step, report step and event to the observer, handle the event and restart. If the state
-  !> at the event cannot be computed accurately, the step is taken back and shorter ones are made: at%event is then 0.
-  subroutine take_event(problem, method, observer, t_end, at, status)
+  !> Begin at (t, y). The integration will end at t_end, or after max_steps accepted steps (0: no limit).
+  subroutine begin(self, problem, method, t, y, t_end, max_steps)
+    class(integration_t), intent(out) :: self
+    class(ode_problem_t), intent(in) :: problem
+    class(ode_method_t), intent(inout) :: method
+    real(dp), intent(in) :: t, y(:), t_end
+    integer, intent(in) :: max_steps
+    self%t = t
+    self%y = y
+    self%t_end = t_end
+    self%max_steps = max_steps
+    self%t_place = t
+    self%is_over = .not. t < t_end
+    if (self%is_over) return
+    self%has_begun = .true.
+    method%settings%stop_time = t_end
+    call method%start(problem, t, self%y, .true., self%status)
+    self%is_over = self%status /= step_done
+    if (.not. self%is_over) call self%watch%begin(problem, t, self%y, 0, .false.)
+  end subroutine begin
+
+  !> Go on to t_pause, or through `most_steps` more accepted steps (0: no limit), unless the integration ends before. Steps are not
+  !> shortened for a pause: a step that reaches beyond it is kept. A pause within rounding of the end is the end.
+  subroutine go_to(self, problem, method, observer, t_pause, most_steps)
+    class(integration_t), intent(inout) :: self
     class(ode_problem_t), intent(inout) :: problem
     class(ode_method_t), intent(inout) :: method
     class(observer_t), intent(inout) :: observer
-    real(dp), intent(in) :: t_end
-    type(position_t), intent(inout) :: at
-    integer, intent(inout) :: status
-    real(dp) :: chatter_time, g(max_events), rate(max_events)
-    integer :: action
-    logical :: landed, falls
-
-    if (at%t < method%t) then
-      call land(problem, method, at%event, at%t, at%y, landed)
-      if (.not. landed) then
-        call method%withdraw(problem, 0.5_dp*(at%t - method%t_old), status)
-        call at%watch%step_back(problem, method%t, method%y)
-        at%event = 0
-        at%t = method%t
-        return
+    real(dp), intent(in) :: t_pause
+    integer, intent(in) :: most_steps
+    real(dp) :: pause
+    integer :: steps
+    pause = t_pause
+    if (is_at_end(t_pause, self%t_end)) pause = self%t_end
+    steps = 0
+    do while (.not. self%is_over)
+      if (.not. self%is_kept) then
+        if (.not. self%t < pause .or. most_steps > 0 .and. steps >= most_steps) exit
+        steps = steps + 1
+        call take_step(self, problem, method, observer)
+        if (.not. self%is_kept) cycle
       end if
-    else
-      call method%interpolate(at%t, at%y)
-    end if
-    call method%count_time(at%t)
-    call observer%step_taken(method, problem, at%t)
-    call observer%event_taken(problem, at%event, at%t, at%y)
-    call problem%events(at%t, at%y, g, rate)
-    falls = rate(at%event) < 0
-    call problem%handle_event(at%event, at%t, at%y, action)
-    call observer%event_handled(problem, at%event, at%t, at%y)
-    if (action == event_stop) then
-      status = integration_stopped
+      if (self%t > pause) exit
+      self%is_kept = .false.
+      call method%count_time(self%t)
+      call observer%step_taken(method, problem, self%t)
+      if (self%event == 0) then
+        self%is_over = method%t >= self%t_end
+      else
+        call handle_event(self, problem, method, observer)
+      end if
+      if (.not. self%is_over) call look_around(self, method, observer)
+    end do
+  end subroutine go_to
+
+  !> Take one step and search it for events. If the state at an event cannot be computed accurately, the step is taken back, and
+  !> nothing is kept; shorter steps follow.
+  subroutine take_step(self, problem, method, observer)
+    type(integration_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    class(ode_method_t), intent(inout) :: method
+    class(observer_t), intent(in) :: observer
+    logical :: landed
+    method%rough_time = problem%rough_time(method%t, method%y)
+    call method%step(problem, self%status)
+    self%is_over = self%status /= step_done
+    if (self%is_over) return
+    self%is_kept = .true.
+    call self%watch%search(method, problem, self%t_end, self%event, self%t)
+    if (self%event == 0) return
+    if (.not. self%t < method%t) then
+      call method%interpolate(self%t, self%y)
       return
     end if
+    call land(problem, method, self%event, self%t, self%y, landed)
+    if (landed) return
+    call method%withdraw(problem, 0.5_dp*(self%t - method%t_old), self%status)
+    call self%watch%step_back(problem, method%t, method%y)
+    self%event = 0
+    self%t = method%t
+    self%is_kept = .false.
+    self%is_over = self%status /= step_done
+    if (.not. self%is_over) call look_around(self, method, observer)
+  end subroutine take_step
+
+  !> Handle the event at which the last step ends, and restart.
+  subroutine handle_event(self, problem, method, observer)
+    type(integration_t), intent(inout) :: self
+    class(ode_problem_t), intent(inout) :: problem
+    class(ode_method_t), intent(inout) :: method
+    class(observer_t), intent(inout) :: observer
+    real(dp) :: chatter_time, g(max_events), rate(max_events)
+    integer :: action
+    logical :: falls
+    call observer%event_taken(problem, self%event, self%t, self%y)
+    call problem%events(self%t, self%y, g, rate)
+    falls = rate(self%event) < 0
+    call problem%handle_event(self%event, self%t, self%y, action)
+    call observer%event_handled(problem, self%event, self%t, self%y)
+    if (action == event_stop) self%status = integration_stopped
+    self%is_over = action == event_stop
+    if (self%is_over) return
     chatter_time = method%settings%chatter_time
     if (.not. chatter_time > 0) chatter_time = 1e-9_dp*method%settings%span
-    if (at%t - at%t_place > chatter_time) at%in_place = 0
-    if (at%in_place == 0) at%t_place = at%t
-    at%in_place = at%in_place + 1
-    if (at%in_place > most_events_in_place) status = chattering
-    if (is_at_end(at%t, t_end)) return
-    if (status == step_done) call method%start(problem, at%t, at%y, .false., status)
-    call at%watch%begin(problem, at%t, at%y, at%event, falls)
-  end subroutine take_event
+    if (self%t - self%t_place > chatter_time) self%in_place = 0
+    if (self%in_place == 0) self%t_place = self%t
+    self%in_place = self%in_place + 1
+    if (self%in_place > most_events_in_place) self%status = chattering
+    self%is_over = is_at_end(self%t, self%t_end) .or. self%status /= step_done
+    if (self%is_over) return
+    call method%start(problem, self%t, self%y, .false., self%status)
+    call self%watch%begin(problem, self%t, self%y, self%event, falls)
+    self%is_over = self%status /= step_done
+  end subroutine handle_event
+
+  !> End a kept step at a time inside its final part, and restart there: after this the problem may have been changed.
+  subroutine cut(self, problem, method, observer, t)
+    class(integration_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    class(ode_method_t), intent(inout) :: method
+    class(observer_t), intent(inout) :: observer
+    real(dp), intent(in) :: t
+    logical :: landed
+    if (.not. self%is_kept) return
+    self%t = t
+    call method%land_on(problem, t, self%y, landed)
+    if (.not. landed) call method%interpolate(t, self%y)
+    self%event = 0
+    self%is_kept = .false.
+    call method%count_time(t)
+    call observer%step_taken(method, problem, t)
+    call method%start(problem, t, self%y, .false., self%status)
+    call self%watch%begin(problem, t, self%y, 0, .false.)
+    self%is_over = self%status /= step_done
+    if (.not. self%is_over) call look_around(self, method, observer)
+  end subroutine cut
+
+  !> The state at time t while nothing is kept.
+  pure function state(self, method) result(y)
+    class(integration_t), intent(in) :: self
+    class(ode_method_t), intent(in) :: method
+    real(dp) :: y(size(self%y))
+    y = self%y
+    if (self%event == 0 .and. self%has_begun .and. .not. self%is_over) y = method%y
+  end function state
+
+  !> Set (t, y) to the last final state that has been reported: at the end of the integration, or at a pause. A kept step is
+  !> dropped.
+  subroutine finish(self, method)
+    class(integration_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    if (self%is_kept) then
+      self%t = method%t_old
+      self%y = method%y_old
+    else if (self%event == 0 .and. self%has_begun) then
+      if (self%is_over .and. self%status == integration_done) then
+        call method%interpolate(self%t, self%y)
+      else
+        self%t = method%t
+        self%y = method%y
+      end if
+    end if
+  end subroutine finish
 
   !> Whether an event is so close to the end that no step fits between them.
   pure logical function is_at_end(t, t_end)
@@ -184,57 +271,19 @@ contains
   end function is_at_end
 
   !> Check the conditions to end the integration between two steps.
-  subroutine look_around(method, max_steps, observer, status)
+  subroutine look_around(self, method, observer)
+    type(integration_t), intent(inout) :: self
     class(ode_method_t), intent(in) :: method
-    integer, intent(in) :: max_steps
     class(observer_t), intent(in) :: observer
-    integer, intent(inout) :: status
-    if (observer%wants_to_stop) status = integration_interrupted
-    if (max_steps > 0 .and. method%statistics%accepted >= max_steps .and. status == step_done) &
-      status = step_limit_reached
-    if (method%settings%max_evaluations > 0 .and. method%statistics%evaluations >= method%settings%max_evaluations &
-        .and. status == step_done) status = evaluation_limit_reached
+    if (observer%wants_to_stop) then
+      self%status = integration_interrupted
+    else if (self%max_steps > 0 .and. method%statistics%accepted >= self%max_steps) then
+      self%status = step_limit_reached
+    else if (method%settings%max_evaluations > 0 .and. method%statistics%evaluations >= method%settings%max_evaluations) then
+      self%status = evaluation_limit_reached
+    end if
+    self%is_over = self%status /= step_done
   end subroutine look_around
-
-  !> Hand over the state, if the observer asks for it, or if the integration ends here although it could be continued.
-  subroutine hand_over(problem, method, observer, at, status)
-    class(ode_problem_t), intent(inout) :: problem
-    class(ode_method_t), intent(inout) :: method
-    class(observer_t), intent(inout) :: observer
-    type(position_t), intent(inout) :: at
-    integer, intent(in) :: status
-    type(archive_t) :: archive
-    select case (status)
-    case (step_done)
-      if (.not. observer%wants_archive) return
-    case (integration_interrupted, step_limit_reached, evaluation_limit_reached)
-    case default
-      return
-    end select
-    call archive%begin_writing()
-    call exchange_all(problem, method, observer, at, archive)
-    call observer%take_archive(archive)
-    observer%wants_archive = .false.
-  end subroutine hand_over
-
-  !> Write the whole state between two steps to an archive, or read it from it.
-  subroutine exchange_all(problem, method, observer, at, archive)
-    class(ode_problem_t), intent(inout) :: problem
-    class(ode_method_t), intent(inout) :: method
-    class(observer_t), intent(inout) :: observer
-    type(position_t), intent(inout) :: at
-    type(archive_t), intent(inout) :: archive
-    call problem%exchange(archive)
-    call method%exchange(problem, archive)
-    call at%watch%exchange(problem, archive)
-    call archive%exchange(at%t)
-    call archive%exchange(at%y)
-    call archive%exchange(at%event)
-    call archive%exchange(at%t_place)
-    call archive%exchange(at%in_place)
-    call observer%exchange(archive)
-    if (archive%is_reading .and. .not. archive%is_at_end()) archive%failed = .true.
-  end subroutine exchange_all
 
   !> Move to an event inside the last step. If the method can compute the state there more accurately than its interpolant, on
   !> which the event was found, the instant is corrected by Newton's method. This may fail because the function hardly changes.
@@ -297,13 +346,6 @@ contains
     end associate
   end subroutine ignore_step
 
-  subroutine ignore_archive(self, archive)
-    class(observer_t), intent(inout) :: self
-    type(archive_t), intent(in) :: archive
-    associate (unused_self => self, unused_archive => archive)
-    end associate
-  end subroutine ignore_archive
-
   !> Called when the problem has handled an event. An observer may then change the discrete state of the problem, or y.
   subroutine change_nothing(self, problem, index, t, y)
     class(observer_t), intent(inout) :: self
@@ -314,14 +356,6 @@ contains
     associate (unused_self => self, unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
     end associate
   end subroutine change_nothing
-
-  !> Archive of an observer without state.
-  subroutine exchange_nothing(self, archive)
-    class(observer_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    associate (unused_self => self, unused_archive => archive)
-    end associate
-  end subroutine exchange_nothing
 
   subroutine ignore_event(self, problem, index, t, y)
     class(silent_observer_t), intent(inout) :: self

@@ -2,7 +2,6 @@
 module ode_method
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t
-  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: ode_method_t, ode_settings_t, step_statistics_t, start_again
@@ -66,8 +65,6 @@ module ode_method
     real(dp) :: time_limited_by(n_limits) = 0   !! duration of these steps
     integer :: switches = 0                     !! number of changes between Adams and Radau
     real(dp) :: stiffness = 0     !! integral of rho dt, where rho is the estimated rate of the fastest mode; 0: not estimated
-  contains
-    procedure :: exchange => exchange_statistics
   end type step_statistics_t
 
   !> A method that advances a problem step by step and provides the solution anywhere inside its last step.
@@ -95,8 +92,6 @@ module ode_method
     procedure :: land_on
     procedure :: withdraw => start_again
     procedure, non_overridable :: difference
-    procedure, non_overridable :: exchange_solution
-    procedure(exchange), deferred :: exchange
   end type ode_method_t
 
   abstract interface
@@ -127,15 +122,6 @@ module ode_method
       real(dp), intent(in) :: t
       real(dp), intent(out) :: y(:)
     end subroutine interpolate
-
-    !> Write everything that the method needs between two steps, except the settings, to an archive, or read it from it. Reading
-    !> does not require a start.
-    subroutine exchange(self, problem, archive)
-      import :: ode_method_t, ode_problem_t, archive_t
-      class(ode_method_t), intent(inout) :: self
-      class(ode_problem_t), intent(in) :: problem
-      type(archive_t), intent(inout) :: archive
-    end subroutine exchange
   end interface
 
 contains
@@ -214,42 +200,6 @@ contains
     end do
     difference = sqrt(difference/max(counted, 1))
   end function difference
-
-  !> The part of `exchange` that all methods have in common.
-  subroutine exchange_solution(self, problem, archive)
-    class(ode_method_t), intent(inout) :: self
-    class(ode_problem_t), intent(in) :: problem
-    type(archive_t), intent(inout) :: archive
-    if (.not. allocated(self%y)) allocate (self%y(problem%n))
-    if (.not. allocated(self%y_old)) allocate (self%y_old(problem%n))
-    call archive%exchange(self%t_old)
-    call archive%exchange(self%t)
-    call archive%exchange(self%order)
-    call archive%exchange(self%y_old)
-    call archive%exchange(self%y)
-    call self%statistics%exchange(archive)
-  end subroutine exchange_solution
-
-  !> Write the statistics to an archive, or read them from it.
-  subroutine exchange_statistics(self, archive)
-    class(step_statistics_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%accepted)
-    call archive%exchange(self%rejected_error)
-    call archive%exchange(self%rejected_penetration)
-    call archive%exchange(self%rejected_domain)
-    call archive%exchange(self%rejected_convergence)
-    call archive%exchange(self%jacobians)
-    call archive%exchange(self%stage_count)
-    call archive%exchange(self%evaluations)
-    call archive%exchange(self%restarts)
-    call archive%exchange(self%smallest_step)
-    call archive%exchange(self%order_count)
-    call archive%exchange(self%limited_by)
-    call archive%exchange(self%time_limited_by)
-    call archive%exchange(self%switches)
-    call archive%exchange(self%stiffness)
-  end subroutine exchange_statistics
 
   !> Count the duration of the last accepted step, once it is known which part of it is final: up to t_to, which is self%t or the
   !> time at which an event or the end of the integration cuts the step.

@@ -5,7 +5,6 @@
 !> the problem.
 module ode_problem
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: ode_problem_t, difference_jacobian
@@ -43,8 +42,6 @@ module ode_problem
     procedure :: handle_event => stop_at_event
     procedure :: lands_on_step_end => never_on_step_end
     procedure :: rough_time => never_rough
-    procedure, non_overridable :: exchange_mode
-    procedure :: exchange => exchange_mode
   end type ode_problem_t
 
   abstract interface
@@ -104,16 +101,6 @@ contains
       end if
     end do
   end subroutine difference_jacobian
-
-  !> Write the discrete state that every problem has to an archive, or read it from it. A problem with other discrete states
-  !> overrides `exchange` and calls this procedure.
-  subroutine exchange_mode(self, archive)
-    class(ode_problem_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%mode)
-    call archive%exchange(self%n_events)
-    call archive%exchange(self%smooth_in_root)
-  end subroutine exchange_mode
 
   !> Event functions and their rates along the motion, with signs such that an event is a passage from negative to positive. g and
   !> g_rate have n_events elements. The default is for problems without events.

@@ -3,7 +3,6 @@
 module angle_grid
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
-  use gudgeon_archive, only: archive_t
   use ode_method, only: ode_method_t
   use gudgeon_scene, only: scene_t
   use crank_passage, only: find_passage
@@ -21,7 +20,6 @@ module angle_grid
     procedure :: begin
     procedure :: next_passage
     procedure :: is_due
-    procedure :: exchange
   end type angle_grid_t
 
 contains
@@ -101,11 +99,4 @@ contains
     grid_angle = angle(self, nearest_one)
     is_there = abs(nearest_one - self%last) > 0 .and. abs(crank_angle - grid_angle) <= rounding
   end subroutine is_due
-
-  !> Write the variables that change during a run to an archive, or read them from it.
-  subroutine exchange(self, archive)
-    class(angle_grid_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%last, self%side)
-  end subroutine exchange
 end module angle_grid

@@ -8,19 +8,11 @@
 module case_definition
   use gudgeon_kinds, only: dp
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
-  use gudgeon_bearing, only: bearing_t
   use run_length, only: run_length_t
-  use chain_motion, only: crank_pin, piston_pin, pin_names
-  use contact_law, only: contact_law_t
-  use contact_geometry, only: contact_geometry_t
-  use friction_law, only: friction_law_t
+  use chain_motion, only: n_pins
+  use joint_places, only: places, n_places, in_order, name_prefix
+  use joint_case, only: joint_case_t
   use guide_case, only: guide_case_t, guide_clearance
-  use film_law, only: film_law_t
-  use film_transition, only: film_transition_t
-  use oil_viscosity, only: oil_t
-  use elastic_film, only: elastic_film_t
-  use asperities, only: asperities_t
-  use archard_wear, only: wear_law_t
   use elastic_rod, only: elastic_rod_t
   use elastic_crankshaft, only: elastic_crankshaft_t
   use gas_law, only: gas_law_t
@@ -28,7 +20,7 @@ module case_definition
   use measured_pressure, only: measured_pressure_t
   implicit none
   private
-  public :: case_t, joint_case_t, visit_case, piston_pin_place, crank_pin_place
+  public :: case_t, visit_case
 
   type, extends(has_parameters_t) :: mechanism_case_t
     real(dp) :: crank_length = 0, crank_mass = 0, crank_inertia = 0, crank_com(2) = 0
@@ -49,34 +41,12 @@ module case_definition
 
   type, extends(has_parameters_t) :: initial_case_t
     real(dp) :: crank_angle_deg = 0, crank_speed = 0
-    real(dp) :: eccentricity(2) = 0, eccentricity_rate(2) = 0   !! of a piston with clearance
-    real(dp) :: crank_pin_eccentricity(2) = 0, crank_pin_eccentricity_rate(2) = 0   !! of the crank pin in its bearing
+    real(dp) :: eccentricity(2, n_places) = 0, eccentricity_rate(2, n_places) = 0   !! of the pin in its bearing, by place
     real(dp) :: piston_offset = 0, piston_offset_rate = 0, piston_tilt = 0, piston_tilt_rate = 0  !! of a piston with clearance in
                                                                                                   !! its bore
   contains
     procedure :: parameters => initial_parameters
   end type initial_case_t
-
-  !> A joint with the laws that act in it. An ideal joint has no laws.
-  type, extends(has_parameters_t) :: joint_case_t
-    character(len=:), allocatable :: kind
-    real(dp) :: clearance = 0, bearing_radius = 0, bearing_length = 0
-    class(contact_law_t), allocatable :: contact
-    class(friction_law_t), allocatable :: friction
-    logical :: reports_friction_work = .false.
-    class(film_law_t), allocatable :: film
-    type(film_transition_t) :: transition
-    logical :: reports_film = .false.
-    type(oil_t) :: oil
-    type(elastic_film_t) :: elastic
-    type(asperities_t), allocatable :: asperities
-    type(wear_law_t), allocatable :: wear
-  contains
-    procedure :: parameters => joint_parameters
-    procedure :: has_clearance
-    procedure :: can_touch
-    procedure :: bearing => bearing_of
-  end type joint_case_t
 
   type, extends(has_parameters_t) :: integrator_case_t
     character(len=:), allocatable :: method, contact_entry
@@ -112,8 +82,7 @@ module case_definition
     type(mechanism_case_t) :: mechanism
     type(drive_case_t) :: drive
     type(initial_case_t) :: initial
-    type(joint_case_t) :: joint        !! joint of rod and piston, at the piston pin
-    type(joint_case_t) :: crank_pin    !! joint of crank and rod
+    type(joint_case_t) :: joints(n_places)   !! by place
     type(guide_case_t), allocatable :: guide   !! not allocated: the guide is ideal
     type(elastic_rod_t), allocatable :: elastic_rod          !! not allocated: the rod is rigid
     type(elastic_crankshaft_t), allocatable :: crankshaft    !! not allocated: the crankshaft is rigid
@@ -126,14 +95,12 @@ module case_definition
     procedure :: has_contact
     procedure :: gas_revolutions
     procedure :: has_play
+    procedure :: loose_pins
+    procedure :: has_wear
     procedure :: has_loose_guide
     procedure :: has_clearance => has_clearance_anywhere
     procedure :: is_elastic
   end type case_t
-
-  !> Names of the places of joints in a case. A group &joint that names no place describes the first joint; a group of a law that
-  !> names no place applies to every joint with clearance that has no group of its own for that law.
-  character(len=*), parameter :: piston_pin_place = trim(pin_names(piston_pin)), crank_pin_place = trim(pin_names(crank_pin))
 
   interface
     !> Declare every group, key and law of a case to a visitor, in the order of the template and of the resolved case.
@@ -156,14 +123,32 @@ contains
   !> Whether a joint has a contact law, or the piston has clearance in its bore.
   pure logical function has_contact(self)
     class(case_t), intent(in) :: self
-    has_contact = self%joint%can_touch() .or. self%crank_pin%can_touch() .or. self%has_loose_guide()
+    has_contact = any(self%joints%can_touch()) .or. self%has_loose_guide()
   end function has_contact
 
   !> Whether at least one joint has clearance.
   pure logical function has_play(self)
     class(case_t), intent(in) :: self
-    has_play = self%joint%has_clearance() .or. self%crank_pin%has_clearance()
+    has_play = any(self%joints%has_clearance())
   end function has_play
+
+  !> Whether the wear of a joint is counted.
+  pure logical function has_wear(self)
+    class(case_t), intent(in) :: self
+    integer :: i
+    has_wear = any([(allocated(self%joints(i)%wear), i=1, n_places)])
+  end function has_wear
+
+  !> The pins of the chain at which joints have clearance.
+  pure function loose_pins(self) result(is_loose)
+    class(case_t), intent(in) :: self
+    logical :: is_loose(n_pins)
+    integer :: i
+    is_loose = .false.
+    do i = 1, n_places
+      is_loose(places(i)%pin) = is_loose(places(i)%pin) .or. self%joints(i)%has_clearance()
+    end do
+  end function loose_pins
 
   !> Whether the piston has clearance in its bore.
   pure logical function has_loose_guide(self)
@@ -183,26 +168,6 @@ contains
     class(case_t), intent(in) :: self
     is_elastic = allocated(self%elastic_rod) .or. allocated(self%crankshaft)
   end function is_elastic
-
-  !> Whether a contact law acts in the joint. It does not where the contact is with the walls of an elastic film.
-  pure logical function can_touch(self)
-    class(joint_case_t), intent(in) :: self
-    can_touch = allocated(self%contact) .and. .not. (allocated(self%film) .and. self%elastic%is_wanted)
-  end function can_touch
-
-  !> Whether the joint has clearance.
-  pure logical function has_clearance(self)
-    class(joint_case_t), intent(in) :: self
-    has_clearance = .false.
-    if (allocated(self%kind)) has_clearance = self%kind == 'clearance'
-  end function has_clearance
-
-  !> The bearing of the joint; `rod_length` [m] is the length of the rod that carries its pin.
-  pure type(bearing_t) function bearing_of(self, rod_length)
-    class(joint_case_t), intent(in) :: self
-    real(dp), intent(in) :: rod_length
-    bearing_of = bearing_t(self%bearing_radius, self%bearing_length, self%clearance, rod_length)
-  end function bearing_of
 
   subroutine mechanism_parameters(self, list)
     class(mechanism_case_t), intent(inout) :: self
@@ -250,35 +215,23 @@ contains
   subroutine initial_parameters(self, list)
     class(initial_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
+    character(len=:), allocatable :: name
+    integer :: i
     call list%add('crank_angle_deg', self%crank_angle_deg, 'crank angle from the cylinder axis', 'degrees', default='0.0')
     call list%add('crank_speed', self%crank_speed, &
       'crank speed; with drive kind constant_speed it is held', 'rad/s', example='250.0')
-    call list%add('eccentricity', self%eccentricity, &
-      'centre of the piston pin from the centre of its bearing (x, y); in contact if longer than the clearance', &
-      'm', default='0.0')
-    call list%add('eccentricity_rate', self%eccentricity_rate, 'rate of eccentricity', 'm/s', default='0.0')
-    call list%add('crank_pin_eccentricity', self%crank_pin_eccentricity, &
-      'centre of the crank pin from the centre of its bearing (x, y)', 'm', default='0.0')
-    call list%add('crank_pin_eccentricity_rate', self%crank_pin_eccentricity_rate, &
-      'rate of crank_pin_eccentricity', 'm/s', default='0.0')
+    do i = 1, n_places
+      name = name_prefix(in_order(i))//'eccentricity'
+      call list%add(name, self%eccentricity(:, in_order(i)), 'centre of the '//trim(places(in_order(i))%title)// &
+        ' from the centre of its bearing (x, y); in contact if longer than the clearance', 'm', default='0.0')
+      call list%add(name//'_rate', self%eccentricity_rate(:, in_order(i)), 'rate of '//name, 'm/s', default='0.0')
+    end do
     call list%add('piston_offset', self%piston_offset, &
       'centre of mass of the piston from the cylinder axis along y (guide with clearance)', 'm', default='0.0')
     call list%add('piston_offset_rate', self%piston_offset_rate, 'rate of piston_offset', 'm/s', default='0.0')
     call list%add('piston_tilt', self%piston_tilt, 'tilt of the piston in its bore, positive from x to y', 'rad', default='0.0')
     call list%add('piston_tilt_rate', self%piston_tilt_rate, 'rate of piston_tilt', 'rad/s', default='0.0')
   end subroutine initial_parameters
-
-  subroutine joint_parameters(self, list)
-    class(joint_case_t), intent(inout) :: self
-    class(parameter_list_t), intent(inout) :: list
-    call list%word('kind', self%kind, 'ideal, clearance', 'ideal', 'ideal: no clearance', example='clearance')
-    call list%add('clearance', self%clearance, 'radial clearance: bearing radius minus pin radius', 'm', '> 0', default='0.0', &
-      example='2.0e-5')
-    call list%add('bearing_radius', self%bearing_radius, 'radius of the bearing', 'm', '> 0', default='0.0', example='0.010')
-    call list%add('bearing_length', self%bearing_length, &
-      'width of the bearing; needed with a film and with contact geometries other than hertz_sphere', &
-      'm', '> 0', default='0.0', example='0.015')
-  end subroutine joint_parameters
 
   subroutine integrator_parameters(self, list)
     class(integrator_case_t), intent(inout) :: self

@@ -7,7 +7,6 @@ module crank_turns
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi, degree
   use ode_problem, only: event_continue, event_stop
-  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: crank_turns_t, new_crank_turns, wear_cycle_t, n_turn_events, all_made, turned_back, turn_patience_t
@@ -28,7 +27,6 @@ module crank_turns
     procedure :: made
     procedure :: events
     procedure :: pass
-    procedure :: exchange
   end type crank_turns_t
 
   !> Limit of the time that the crank may take for one turn.
@@ -40,7 +38,6 @@ module crank_turns
   contains
     procedure :: follow
     procedure :: limit_end
-    procedure :: exchange => exchange_patience
   end type turn_patience_t
 
   !> Turns of the crank in either sense after which something is due again.
@@ -106,13 +103,6 @@ contains
     end if
   end subroutine pass
 
-  !> Write the variables that change during a run to an archive, or read them from it.
-  subroutine exchange(self, archive)
-    class(crank_turns_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%sense)
-  end subroutine exchange
-
   !> Event function of the end of the turns, and its rate.
   pure subroutine event(self, crank_angle, crank_speed, g, g_rate)
     class(wear_cycle_t), intent(in) :: self
@@ -147,12 +137,4 @@ contains
     self%is_over = t_end - self%since > self%longest
     if (self%is_over) t_end = self%since + self%longest
   end subroutine limit_end
-
-  !> Write the variables that change during a run to an archive, or read them from it.
-  subroutine exchange_patience(self, archive)
-    class(turn_patience_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%made)
-    call archive%exchange(self%since)
-  end subroutine exchange_patience
 end module crank_turns

@@ -1,12 +1,12 @@
 !> Results of each revolution of the crank, and statistics over all revolutions.
 module cycle_statistics
   use gudgeon_kinds, only: dp
-  use chain_motion, only: n_pins
+  use joint_places, only: n_places
   implicit none
   private
   public :: cycle_t, cycle_statistics_t, skirt
 
-  integer, parameter :: skirt = n_pins + 1   !! the last place of contacts, after the pins: the skirt of a piston in its bore
+  integer, parameter :: skirt = n_places + 1   !! the last place of contacts, after the pins: the skirt of a piston in its bore
 
   !> Results of one revolution at one place. Those of contact and film are 0 at a pin without clearance; an ideal crank pin has no
   !> results. Those of the skirt are over all corners, without film and integral. Peaks are searched also between the accepted

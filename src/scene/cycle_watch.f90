@@ -7,7 +7,7 @@ module cycle_watch
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
   use ode_method, only: ode_method_t
-  use chain_motion, only: n_pins
+  use joint_places, only: n_places
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact
   use crank_passage, only: find_passage
   use step_peaks, only: n_peaks, of_pin_force, of_penetration
@@ -38,7 +38,7 @@ module cycle_watch
     real(dp), private :: start_angle = 0, strobe_offset = 0, initial_energy = 0
     real(dp), private :: t = 0                     !! time of the last point [s]
     real(dp), private :: cycle_start = 0           !! time at which the present revolution began [s]
-    real(dp), private :: force_integral(n_pins) = 0, loss = 0   !! at the start of the revolution
+    real(dp), private :: force_integral(n_places) = 0, loss = 0   !! at the start of the revolution
     logical, private :: has_strobe = .false.
     real(dp), allocatable :: y(:)                  !! state at the end of the present revolution, from `find_end`
   contains
@@ -237,12 +237,12 @@ contains
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
-    real(dp) :: force_integral(n_pins), loss
+    real(dp) :: force_integral(n_places), loss
     force_integral = scene%force_integrals(self%y)
     loss = scene%joint_loss(t, self%y)
     call self%take_point(scene, t)
     self%present%duration = t - self%cycle_start
-    self%present%pin(:n_pins)%force_integral = force_integral - self%force_integral
+    self%present%pin(:n_places)%force_integral = force_integral - self%force_integral
     self%present%dissipated_energy = loss - self%loss
     self%ended = self%ended + 1
     if (self%ended > self%uncounted) then

@@ -4,7 +4,6 @@
 !> evaluations of the scene.
 module elastic_record
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   use ode_method, only: ode_method_t
   use chain_motion, only: motion_t
   use gudgeon_scene, only: scene_t, evaluation_t
@@ -27,7 +26,6 @@ module elastic_record
     procedure, non_overridable :: begin
     procedure, non_overridable :: search
     procedure, non_overridable :: take_values
-    procedure :: exchange
   end type elastic_record_t
 
 contains
@@ -165,14 +163,4 @@ contains
       rates(of_twist) = motion%flywheel_speed - motion%crank_speed
     end if
   end subroutine find_values
-
-  !> Write the variables that change during a run to an archive, or read them from it.
-  subroutine exchange(self, archive)
-    class(elastic_record_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    if (.not. self%is_there) return
-    call archive%exchange(self%t)
-    call archive%exchange(self%last)
-    call archive%exchange(self%rate)
-  end subroutine exchange
 end module elastic_record

@@ -2,12 +2,10 @@
 !> are computed when it has ended.
 module film_snapshots
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   use film_law, only: film_motion_t
   use ode_method, only: ode_method_t
-  use gudgeon_scene, only: scene_t, evaluation_t
+  use gudgeon_scene, only: scene_t, evaluation_t, phase_film
   use inside_step, only: look_inside
-  use film_figures, only: acting_film
   implicit none
   private
   public :: film_snapshots_t, film_field_t
@@ -33,7 +31,6 @@ module film_snapshots
     procedure :: prepare
     procedure :: take
     procedure :: fields
-    procedure :: exchange
   end type film_snapshots_t
 
 contains
@@ -56,18 +53,20 @@ contains
     integer, intent(inout) :: evaluations   !! of the scene so far, increased by those made here
     type(evaluation_t) :: now
     type(film_motion_t) :: seen
-    real(dp) :: y(scene%n), share
+    real(dp) :: y(scene%n), rate(2), share, thickening
     logical :: inside
     integer :: i
     do while (self%next <= size(self%times))
       if (self%times(self%next) > t_to) exit
       call look_inside(scene, method, self%times(self%next), y, now, inside, evaluations)
       do i = 1, merge(scene%n_joints, 0, inside)
-        if (.not. allocated(scene%joints(i)%film)) cycle
-        if (.not. scene%joints(i)%film%gives_pressure()) cycle
-        call acting_film(scene%joints(i), now%relative(i), seen, share)
+        if (scene%joints(i)%acting(phase_film) == 0) cycle
+        associate (element => scene%joints(i)%slots(scene%joints(i)%acting(phase_film))%element)
+          if (.not. element%film%gives_pressure()) cycle
+          call element%see_film(now%joint(i), seen, rate, share, thickening)
+        end associate
         self%n = self%n + 1
-        self%kept(:, self%n) = [self%times(self%next), now%motion%crank_angle, real(i, dp), share, seen%eccentricity, &
+        self%kept(:, self%n) = [self%times(self%next), now%motion%crank_angle, real(i, dp), share*thickening, seen%eccentricity, &
           seen%eccentricity_rate, seen%pin_speed, seen%turning_speed]
       end do
       self%next = self%next + 1
@@ -92,22 +91,10 @@ contains
         field%distance = norm2(seen%eccentricity)
         field%direction = 0
         if (field%distance > 0) field%direction = atan2(kept(6), kept(5))
-        call joint%film%pressure_field(seen, field%angle, field%along, field%pressure)
+        call joint%slots(joint%acting(phase_film))%element%film%pressure_field(seen, field%angle, field%along, field%pressure)
         field%along = 0.5_dp*joint%bearing%length*field%along
         field%pressure = kept(4)*field%pressure
       end associate
     end do
   end function fields
-
-  !> Write the stored motions to an archive, or read them from it.
-  subroutine exchange(self, archive)
-    class(film_snapshots_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    integer :: i
-    call archive%exchange(self%next, self%n)
-    if (archive%failed .or. self%n > size(self%kept, 2)) return
-    do i = 1, self%n
-      call archive%exchange(self%kept(:, i))
-    end do
-  end subroutine exchange
 end module film_snapshots

@@ -30,7 +30,7 @@ contains
     logical, allocatable :: wanted(:)
     integer :: i
 
-    call assemble_scene(case, ideal_joint, scene)
+    call assemble_scene(case, ideal_joint, .false., scene)
     nothing = transfer([(0.0_dp, i=1, storage_size(nothing)/storage_size(0.0_dp) + 1)], nothing)
     call row%collect_names()
     call put_columns(scene, 0.0_dp, nothing, 0.0_dp, 0.0_dp, row)
@@ -125,7 +125,7 @@ contains
     call row%put('energy_residual[J]', energy - initial_energy - work, &
       'energy minus initial energy minus the work of all non-conservative forces and of the drive; 0 for an exact integration')
     do i = 1, scene%n_joints
-      call put_joint_columns(scene%joints(i), now%relative(i), now%joint(i), row)
+      call put_joint_columns(scene%joints(i), now%joint(i), row)
     end do
     if (allocated(scene%guide)) call put_guide_columns(scene%guide, now%motion, now%accelerations, now%guide, row)
     if (allocated(scene%chain%elastic)) call put_elastic_columns(scene%chain%elastic, now%motion, now%accelerations, row)

@@ -1,18 +1,18 @@
 !> The observer of a run. It records samples on a fixed grid of time or crank angle, the events of contact, the values for the
 !> summary and, on request, the results of each revolution.
 !>
-!> Results that belong to a pin are in its `pin_record`: one for the piston pin, and one for a crank pin with clearance. Peaks are
+!> Results that belong to a pin are in its `pin_record`: one for each of the scene's reported places. Peaks are
 !> searched also between accepted points, and no peak is below the largest value of a row. The energy is checked at accepted points.
 module gudgeon_recorder
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
   use ode_problem, only: ode_problem_t
-  use ode_method, only: ode_method_t, limit_stability
+  use ode_method, only: ode_method_t
   use gudgeon_solver, only: observer_t
-  use chain_motion, only: crank_pin, piston_pin, most_pins => n_pins
+  use joint_places, only: n_places
   use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide, of_wear, phase_contact
   use inside_step, only: look_inside
-  use joint_events, only: penetration_and_rate, may_lose_force, force_share
+  use joint_events, only: penetration_and_rate, may_lose_force, find_lost_force
   use gudgeon_columns, only: column_list_t, row_values
   use angle_grid, only: angle_grid_t
   use crank_passage, only: find_turning
@@ -27,7 +27,6 @@ module gudgeon_recorder
   use run_figures, only: run_figures_t
   use film_snapshots, only: film_snapshots_t
   use wear_record, only: wear_profile_t
-  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: recorder_t
@@ -45,7 +44,6 @@ module gudgeon_recorder
     real(dp) :: interval = 0          !! time between rows [s]
     type(angle_grid_t) :: angles      !! crank angles of the rows, if rows are spaced by crank angle
     real(dp) :: end_time = 0          !! latest end of the run [s]
-    real(dp) :: expected_end = 0      !! expected end of the run [s]
     logical :: every_step = .false.   !! write a row at every accepted step
     integer :: max_evaluations_per_revolution = 0  !! largest number of evaluations in one revolution, or in the time of the first
                                                    !! revolution; 0: no limit
@@ -53,11 +51,11 @@ module gudgeon_recorder
     logical :: over_budget = .false.                !! the run is to end because that number was exceeded
     logical :: has_left = .false.                   !! the run is to end because the state of a row is outside the model
     real(dp), private :: initial_energy = 0, start_angle = 0
-    integer, private :: next_row = 0, steps = 0
+    integer, private :: next_row = 0
     integer, private :: evaluations_then = 0        !! number of evaluations at the beginning of the present revolution
     real(dp), private :: time_then = 0, angle_then = 0   !! time [s] and crank angle [rad] at that beginning
-    integer, private :: n_pins = 1                 !! number of pins that have a record
-    type(pin_record_t), private :: pins(most_pins)
+    integer, private :: n_pins = 0                 !! number of pins that have a record
+    type(pin_record_t), private :: pins(n_places)
     type(guide_record_t), private :: guide         !! record of a piston with clearance in its bore
     type(elastic_record_t), private :: elastic     !! record of elastic members
     real(dp), allocatable, private :: y(:), values(:)
@@ -68,8 +66,7 @@ module gudgeon_recorder
     procedure :: event_taken
     procedure :: event_handled
     procedure :: finish
-    procedure :: exchange => exchange_recorder
-    procedure :: take_archive
+    procedure :: row
     procedure :: wear
   end type recorder_t
 
@@ -79,15 +76,14 @@ contains
   subroutine prepare(self, scene)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    call self%pins(1)%prepare(piston_pin, scene)
-    if (scene%joint_of_pin(crank_pin) > 0) then
-      self%n_pins = 2
-      call self%pins(2)%prepare(crank_pin, scene)
-    end if
+    integer :: i
+    self%n_pins = size(scene%reported)
+    do i = 1, self%n_pins
+      call self%pins(i)%prepare(scene%reported(i), scene)
+    end do
     call self%guide%prepare(scene)
     call self%elastic%prepare(scene, self%figures%elastic)
     allocate (self%y(scene%n), self%values(size(self%list%id)))
-    self%keeps_archives = self%sink%keeps_archives .and. .not. allocated(self%cycles)   ! the revolution counts cannot be archived
     if (self%periods%is_on) call self%periods%begin(scene)
     if (self%periods%keeps_one_more) self%first_sample = huge(self%first_sample)        ! no rows until the window begins
   end subroutine prepare
@@ -113,7 +109,7 @@ contains
     end if
     do i = 1, self%n_pins
       if (inside .and. self%pins(i)%is_touching(scene)) call take_contact(self, self%pins(i), event_contact_begins, 0.0_dp, now)
-      call self%pins(i)%begin(0.0_dp, now)
+      call self%pins(i)%begin(scene, 0.0_dp, now)
       if (inside) call self%pins(i)%take_values(scene, now, self%figures, self%cycles)
     end do
     if (inside .and. self%guide%is_there) then
@@ -134,7 +130,6 @@ contains
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t_to
-    integer, parameter :: steps_between_reports = 2000
     real(dp) :: t_end
 
     select type (problem)
@@ -150,18 +145,10 @@ contains
       else
         call take_end(self, method, problem, method%t, method%y)
       end if
-      self%steps = self%steps + 1
-      if (mod(self%steps, steps_between_reports) == 0) then
-        call tell_progress(self, problem, t_to)
-        if (method%statistics%time_limited_by(limit_stability) > 0.5_dp*t_to) call self%sink%take_cost(t_to, method%statistics)
-      end if
     end select
     call keep_budget(self, method%statistics%evaluations)
     call self%patience%follow(self%figures%time, abs(self%figures%crank_travel)/two_pi)
-    self%wants_to_stop = self%sink%wants_to_stop .or. self%over_budget .or. self%has_left .or. self%periods%has_ended .or. &
-      self%patience%is_over
-    self%wants_archive = self%sink%wants_archive
-    if (self%periods%has_ended) self%keeps_archives = .false.
+    self%wants_to_stop = self%over_budget .or. self%has_left .or. self%periods%has_ended .or. self%patience%is_over
   end subroutine step_taken
 
   !> Check whether the motion is periodic. If so, t_end may be moved to an earlier time, or the window of the output begins.
@@ -236,18 +223,6 @@ contains
     if (inside) call self%elastic%take_values(scene, now, self%figures%elastic)
     call take_row(self, scene, t, self%y, now, inside)
   end subroutine put_sample
-
-  !> Report the progress of the run to the sink. If the run ends after a number of turns, its end is estimated from the mean speed
-  !> so far.
-  subroutine tell_progress(self, scene, t)
-    class(recorder_t), intent(inout) :: self
-    type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t
-    self%sink%expected_end = self%expected_end
-    if (allocated(scene%turns) .and. abs(self%figures%crank_travel) > 0) self%sink%expected_end = &
-      min(self%end_time, t*scene%turns%wanted*two_pi/abs(self%figures%crank_travel))
-    call self%sink%take_progress(t)
-  end subroutine tell_progress
 
   !> Record the end of a step, or of its final part, after the ends of revolutions inside it.
   subroutine take_end(self, method, scene, t, y)
@@ -340,7 +315,7 @@ contains
         if (self%pins(i)%joint == 0) cycle
         associate (figures => f%pin(self%pins(i)%pin), joint => scene%joints(self%pins(i)%joint))
           if (self%pins(i)%is_touching(scene)) figures%contact_time = figures%contact_time + (t - f%time)
-          if (joint%has_friction_work()) figures%friction_work = joint%work_of_friction(y)
+          if (joint%integrates_friction) figures%friction_work = joint%work_of_friction(y)
         end associate
       end do
       call self%guide%take_time(scene, t - f%time, f)
@@ -385,7 +360,7 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     type(evaluation_t) :: now
-    real(dp) :: contact(2), share, share_rate
+    real(dp) :: contact(2)
     logical :: inside
     integer :: i, k, action
     select type (problem)
@@ -394,14 +369,13 @@ contains
       do i = 1, self%n_pins
         if (.not. allocated(self%pins(i)%wear)) cycle
         associate (joint => problem%joints(self%pins(i)%joint))
-          if (.not. allocated(joint%worn)) cycle
+          if (.not. joint%has_worn_bore()) cycle
           call self%pins(i)%wear%change_bore(joint)
           if (joint%phase /= phase_contact) cycle
           contact = penetration_and_rate(joint, y)
           if (contact(1) > 0 .and. may_lose_force(joint)) then
             call look_at(self, problem, t, y, now, inside)
-            if (inside) call force_share(joint, now%relative(self%pins(i)%joint), now%accelerations, share, share_rate)
-            if (inside) joint%force_is_lost = share < 0
+            if (inside) call find_lost_force(joint, now%joint(self%pins(i)%joint), joint%relative_rates(now%accelerations))
           end if
           if (contact(1) > 0) cycle
         end associate
@@ -462,7 +436,7 @@ contains
     if (allocated(scene%wear_cycle)) then
       do i = 1, self%n_pins
         if (.not. (allocated(self%pins(i)%wear) .and. scene%wear_cycle%is_over(scene%crank_angle(t, y)))) cycle
-        if (allocated(scene%joints(self%pins(i)%joint)%worn)) call self%pins(i)%wear%end_cycle(scene%joints(self%pins(i)%joint))
+        if (scene%joints(self%pins(i)%joint)%has_worn_bore()) call self%pins(i)%wear%end_cycle(scene%joints(self%pins(i)%joint))
       end do
     end if
     if (self%every_step) return
@@ -471,8 +445,6 @@ contains
     else if (abs(self%first_sample + self%next_row*self%interval - t) <= 1e-9_dp*self%interval) then
       call write_row(self, scene, t, y)
     end if
-    self%sink%expected_end = t
-    call self%sink%take_progress(t)
   end subroutine finish
 
   !> Write the row at the final crank angle, if rounding left it out.
@@ -489,35 +461,6 @@ contains
     if (scene%crank_moves) self%y(scene%crank%position) = crank_angle
     call write_row(self, scene, t, self%y)
   end subroutine put_last_angle
-
-  !> Write the results so far to an archive, or read them from it. Settings are not archived.
-  subroutine exchange_recorder(self, archive)
-    class(recorder_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    integer :: i
-    call self%figures%exchange(archive)
-    do i = 1, self%n_pins
-      call self%pins(i)%exchange(archive)
-    end do
-    call self%guide%exchange(archive)
-    call self%elastic%exchange(archive)
-    if (allocated(self%films)) call self%films%exchange(archive)
-    call archive%exchange(self%initial_energy, self%start_angle)
-    call archive%exchange(self%next_row)
-    call self%angles%exchange(archive)
-    call self%periods%exchange(archive)
-    call self%patience%exchange(archive)
-    call archive%exchange(self%first_sample)
-    call archive%exchange(self%steps, self%evaluations_then)
-    call archive%exchange(self%time_then, self%angle_then)
-  end subroutine exchange_recorder
-
-  !> Hand the state of the run to the sink.
-  subroutine take_archive(self, archive)
-    class(recorder_t), intent(inout) :: self
-    type(archive_t), intent(in) :: archive
-    call self%sink%take_archive(archive)
-  end subroutine take_archive
 
   !> The worn surfaces of the joints whose wear is counted.
   function wear(self, scene) result(worn)
@@ -567,10 +510,20 @@ contains
     real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t), intent(in) :: now
     if (size(self%values) == 0) return
-    call row_values(self%list, scene, t, now, scene%work(y), self%initial_energy, self%values)
+    call self%row(scene, t, y, now, self%values)
     associate (f => self%figures)
       f%row_energy_residual = max(f%row_energy_residual, abs(scene%chain%energy(now%motion) - self%initial_energy - scene%work(y)))
     end associate
     call self%sink%take_row(self%values)
   end subroutine put_row
+
+  !> The values of a row at (t, y), where the scene has been evaluated.
+  subroutine row(self, scene, t, y, now, values)
+    class(recorder_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(scene%n)
+    type(evaluation_t), intent(in) :: now
+    real(dp), intent(out) :: values(:)
+    call row_values(self%list, scene, t, now, scene%work(y), self%initial_energy, values)
+  end subroutine row
 end module gudgeon_recorder

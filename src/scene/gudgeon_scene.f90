@@ -1,16 +1,16 @@
 !> A scene: the chain of crank, rod and piston with the joints and the gas of a case, as a system of differential equations.
 module gudgeon_scene
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   use ode_problem, only: ode_problem_t, max_events
   use state_layout, only: layout_t, coordinates_t, slice_t
-  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, turn_crank, follow_rod, follow_piston
+  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
+  use joint_places, only: places, n_places, in_order
   use chain_loads, only: loads_t, force_size
   use gudgeon_chain, only: chain_t
   use crank_rod, only: accelerate_crank_rod
   use ideal_chain, only: accelerate_ideal_chain
-  use joint_motion, only: joint_motion_t
-  use clearance_joint, only: clearance_joint_t, joint_loads_t, most_joints, n_phases, phase_free, phase_film, phase_contact
+  use joint_evaluation, only: joint_evaluation_t, clear_loads
+  use clearance_joint, only: clearance_joint_t, most_joints, n_phases, phase_free, phase_film, phase_contact
   use joint_events, only: penetration_and_rate
   use sticking, only: hold_surfaces
   use piston_guide, only: piston_guide_t, guide_loads_t
@@ -31,8 +31,7 @@ module gudgeon_scene
     type(motion_t) :: motion
     type(accelerations_t) :: accelerations
     type(loads_t) :: loads
-    type(joint_motion_t) :: relative(most_joints)
-    type(joint_loads_t) :: joint(most_joints)
+    type(joint_evaluation_t) :: joint(most_joints)
     type(guide_loads_t) :: guide    !! of a guide that is not ideal
     real(dp) :: crank_moment        !! moment of the drive on the crank [N m]
     real(dp) :: cylinder_pressure   !! [Pa]
@@ -49,13 +48,14 @@ module gudgeon_scene
 
   !> A scene as an ode_problem. It claims the crank angle in the state vector, unless the crank speed is prescribed; the joints
   !> claim their eccentricities. Quadratures are the work of all non-conservative forces and the drive [J] and, on request, the
-  !> integrals of the magnitudes of the forces on the piston pin and on a crank pin with clearance [N s] and, if it does not follow
+  !> integrals of the magnitudes of the forces at the reported places [N s] and, if it does not follow
   !> from the work, the energy that the joints take from the bodies [J].
   type, extends(ode_problem_t) :: scene_t
     type(chain_t) :: chain
-    integer :: n_joints = 0         !! number of joints with clearance: 0, 1 or 2
+    integer :: n_joints = 0         !! number of joints with clearance
     type(clearance_joint_t), allocatable :: joints(:)
-    integer :: joint_of_pin(n_pins) = 0   !! index of the joint with clearance at each pin; 0: the pin is ideal
+    integer :: joint_at(n_places) = 0   !! index of the joint with clearance at each place; 0: an ideal pin, or none
+    integer, allocatable :: reported(:) !! places with results: the first one, and those with a joint
     type(piston_guide_t), allocatable :: guide   !! not allocated: the guide is ideal
     type(working_gas_t), allocatable :: gas
     type(crank_turns_t), allocatable :: turns   !! turns of a free crank that end the run
@@ -98,12 +98,12 @@ module gudgeon_scene
     procedure :: crank_speed
     procedure :: work
     procedure :: measure_joint
+    procedure :: pin_force
     procedure :: force_integrals
     procedure :: joint_loss
     procedure :: energy_scale
     procedure :: speed_scale
     procedure :: twist_frequency
-    procedure :: exchange
   end type scene_t
 
   interface
@@ -215,12 +215,13 @@ contains
       dydt)
     if (allocated(self%chain%elastic)) call self%chain%elastic%put_rates(now%motion, now%accelerations, dydt)
     do i = 1, self%n_joints
-      if (self%joints(i)%has_own_rates) call self%joints(i)%put_own_rates(now%relative(i), now%joint(i), dydt)
+      if (self%joints(i)%has_own_rates) call self%joints(i)%put_own_rates(now%joint(i), dydt)
     end do
     if (self%measures%last < self%measures%first) return
     if (self%measures_loss) dydt(self%measures%last) = -sum(now%joint(:self%n_joints)%power)
-    dydt(self%measures%first) = force_size(now%loads%force(:, piston_pin))
-    if (self%joint_of_pin(crank_pin) > 0) dydt(self%measures%first + 1) = force_size(now%loads%force(:, crank_pin))
+    do i = 1, size(self%reported)
+      dydt(self%measures%first + i - 1) = force_size(self%pin_force(now, self%reported(i)))
+    end do
   end subroutine derivatives
 
   !> Rates of the states of the joints.
@@ -231,11 +232,11 @@ contains
     real(dp), intent(inout) :: dydt(*)
     integer :: i
     do i = 1, n
-      associate (at => joints(i)%at, place => joints(i)%place)
-        dydt(at%position) = now%relative(i)%eccentricity_rate(1)
-        dydt(at%position + 1) = now%relative(i)%eccentricity_rate(2)
-        dydt(at%rate) = now%accelerations%pin(1, place)
-        dydt(at%rate + 1) = now%accelerations%pin(2, place)
+      associate (at => joints(i)%at, pin => joints(i)%site%pin)
+        dydt(at%position) = now%joint(i)%eccentricity_rate(1)
+        dydt(at%position + 1) = now%joint(i)%eccentricity_rate(2)
+        dydt(at%rate) = joints(i)%site%sense*now%accelerations%pin(1, pin)
+        dydt(at%rate + 1) = joints(i)%site%sense*now%accelerations%pin(2, pin)
       end associate
     end do
   end subroutine put_rates
@@ -253,10 +254,13 @@ contains
     evaluation%loads%moment = 0
     evaluation%motion%crank_pin = 0
     evaluation%motion%crank_pin_rate = 0
+    do i = 1, self%n_joints
+      call clear_loads(evaluation%joint(i))
+    end do
     call find_accelerations(self, self%n_joints, self%joints, t, y, evaluation, inside)
     if (inside) call self%chain%move_piston(evaluation%motion)
     do i = 1, self%n_joints
-      call self%joints(i)%complete(evaluation%motion, inside, evaluation%relative(i), evaluation%joint(i))
+      call self%joints(i)%complete(evaluation%motion, inside, y, evaluation%joint(i))
     end do
   end subroutine evaluate
 
@@ -284,14 +288,14 @@ contains
       call self%find_loads(n, joints, y, now)
       if (n == 0) then
         call accelerate_ideal_chain(bodies, drive, motion, now%loads, now%accelerations, now%crank_moment)
-      else if (self%joint_of_pin(crank_pin) == 0) then
+      else if (.not. self%chain%is_loose(crank_pin)) then
         call accelerate_crank_rod(bodies, drive, now%loads, motion, now%accelerations, now%crank_moment)
       else
         call self%chain%accelerate_rigid(drive, motion, now%loads, now%accelerations, now%crank_moment)
       end if
       if (self%may_stick) then
         now%accelerations%rod_end = -now%accelerations%rod
-        if (any(now%joint(:n)%sticks)) call hold_surfaces(self%chain, joints, motion, now%relative, now%joint, now%loads, &
+        if (any(now%joint(:n)%sticks)) call hold_surfaces(self%chain, joints, motion, now%joint, now%loads, &
           now%accelerations, now%crank_moment, now%power)
       end if
       now%power = (now%crank_moment - drive%damping*motion%crank_speed)*motion%crank_speed + now%power
@@ -322,21 +326,23 @@ contains
     real(dp), intent(in) :: y(self%n)
     type(evaluation_t), intent(inout) :: now
     logical, intent(out) :: inside
-    real(dp) :: offset(2), offset_rate(2)
+    real(dp) :: offset(2), offset_rate(2), shift(2), shift_rate(2)
     logical :: admitted
     integer :: i
     admitted = .true.
     offset = 0
     offset_rate = 0
     do i = 1, n
-      associate (joint => joints(i), relative => now%relative(i))
+      associate (joint => joints(i), relative => now%joint(i))
         call joint%read_state(y, relative)
-        admitted = admitted .and. joint%admits(relative)
-        offset = offset + relative%eccentricity
-        offset_rate = offset_rate + relative%eccentricity_rate
-        if (joint%place == piston_pin) cycle
-        now%motion%crank_pin = relative%eccentricity
-        now%motion%crank_pin_rate = relative%eccentricity_rate
+        admitted = admitted .and. joint%admits(y, relative)
+        shift = joint%site%sense*relative%eccentricity
+        shift_rate = joint%site%sense*relative%eccentricity_rate
+        offset = offset + shift
+        offset_rate = offset_rate + shift_rate
+        if (joint%site%pin == piston_pin) cycle
+        now%motion%crank_pin = shift
+        now%motion%crank_pin_rate = shift_rate
       end associate
     end do
     now%motion%offset = offset
@@ -354,7 +360,7 @@ contains
     integer :: i
     now%power = 0
     do i = 1, n
-      call joints(i)%loads(self%chain%bodies, now%motion, y, now%relative(i), now%joint(i), now%loads)
+      call joints(i)%loads(self%chain%bodies, now%motion, y, now%joint(i), now%loads)
       now%power = now%power + now%joint(i)%power
     end do
     now%loads%axial_force = 0
@@ -368,10 +374,11 @@ contains
     class(scene_t), intent(inout) :: self
     integer :: i
     self%n_joints = size(self%joints)
-    self%joint_of_pin = 0
+    self%joint_at = 0
     do i = 1, self%n_joints
-      self%joint_of_pin(self%joints(i)%place) = i
+      self%joint_at(self%joints(i)%place) = i
     end do
+    self%reported = pack(in_order, in_order == in_order(1) .or. self%joint_at(in_order) > 0)
     self%highest_mode = n_phases**self%n_joints - 1
     if (allocated(self%guide)) self%highest_mode = 2*(self%highest_mode + 1) - 1
     self%crank_moves = self%chain%drive%free_crank .or. self%chain%has_crankshaft()
@@ -413,8 +420,7 @@ contains
     class(scene_t), intent(inout) :: self
     integer :: n
     real(dp) :: scale
-    n = 1
-    if (self%joint_of_pin(crank_pin) > 0) n = 2
+    n = size(self%reported)
     scale = 0
     if (self%n_joints > 0) then
       self%measures_loss = .not. work_tells(self)
@@ -434,14 +440,26 @@ contains
       .or. allocated(self%chain%varying) .or. allocated(self%guide) .or. allocated(self%chain%elastic))
   end function work_tells
 
-  !> Integrals of the magnitudes of the forces on the pins so far [N s], in a scene that computes them; 0 for an ideal crank pin.
+  !> Force of the joint at a place on its journal [N]; at a place without joint that on the journal of its ideal pin.
+  pure function pin_force(self, now, place) result(force)
+    class(scene_t), intent(in) :: self
+    type(evaluation_t), intent(in) :: now
+    integer, intent(in) :: place
+    real(dp) :: force(2)
+    if (self%joint_at(place) > 0) then
+      force = now%joint(self%joint_at(place))%force
+    else
+      force = now%loads%force(:, places(place)%pin)
+    end if
+  end function pin_force
+
+  !> Integrals of the magnitudes of the forces on the pins so far [N s], in a scene that computes them; 0 at places without results.
   pure function force_integrals(self, y) result(integrals)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
-    real(dp) :: integrals(n_pins)
-    integrals(piston_pin) = y(self%measures%first)
-    integrals(crank_pin) = 0
-    if (self%joint_of_pin(crank_pin) > 0) integrals(crank_pin) = y(self%measures%first + 1)
+    real(dp) :: integrals(n_places)
+    integrals = 0
+    integrals(self%reported) = y(self%measures%first:self%measures%first + size(self%reported) - 1)
   end function force_integrals
 
   !> Energy that the joints have taken from the bodies so far [J], in a scene that computes it. If it is not integrated itself, it
@@ -548,20 +566,4 @@ contains
         energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%guide%own_speed(self%span)**2
     end associate
   end function energy_scale
-
-  !> Write the discrete state to an archive, or read it from it.
-  subroutine exchange(self, archive)
-    class(scene_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    integer :: i
-    call self%exchange_mode(archive)
-    call archive%exchange(self%entry_time)
-    do i = 1, self%n_joints
-      call self%joints(i)%exchange(archive)
-    end do
-    if (allocated(self%guide)) call self%guide%exchange(archive)
-    if (allocated(self%gas)) call self%gas%exchange(archive)
-    if (allocated(self%turns)) call self%turns%exchange(archive)
-    if (allocated(self%wear_cycle)) call archive%exchange(self%wear_cycle%begin)
-  end subroutine exchange
 end module gudgeon_scene

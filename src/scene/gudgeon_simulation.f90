@@ -1,30 +1,30 @@
-!> Runs one case: builds its scene, integrates it, and hands rows, events and results to a sink.
+!> A run of one case, which can pause: builds its scene, integrates it, hands rows and events to a sink, and reports its results.
 module gudgeon_simulation
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_integration
   use case_definition, only: case_t
   use ode_method, only: ode_method_t, step_statistics_t, limit_stability, left_domain
   use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_done, integration_stopped, integration_interrupted, &
-    step_limit_reached, evaluation_limit_reached, unreadable_archive
-  use gudgeon_scene, only: scene_t
+  use gudgeon_solver, only: integrate, integration_t, silent_observer_t, integration_done, integration_stopped, &
+    integration_interrupted, step_limit_reached, evaluation_limit_reached
+  use gudgeon_scene, only: scene_t, evaluation_t
+  use inside_step, only: look_inside
   use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, crank_creeps
   use scene_builder, only: build_scene, simulated_time, latest_end, longest_turn, sample_interval, settings_for
   use crank_turns, only: all_made, turned_back
   use gudgeon_columns, only: column_list_t
   use cycle_watch, only: cycle_watch_t
   use period_watch, only: period_watch_t
-  use lyapunov, only: exponent_t, measure_exponent
+  use lyapunov, only: exponent_t, measurement_t
   use gudgeon_recorder, only: recorder_t
   use run_figures, only: run_figures_t
   use film_snapshots, only: film_field_t
   use wear_record, only: wear_profile_t
   use trace_sink, only: trace_sink_t
   use gudgeon_constants, only: two_pi, degree
-  use gudgeon_archive, only: archive_t
   implicit none
   private
-  public :: simulate, try_auto, run_report_t, interrupted_text
+  public :: simulate, run_t, try_auto, run_report_t, interrupted_text
 
   !> The results of a run that are known when it has ended.
   type :: run_report_t
@@ -34,120 +34,235 @@ module gudgeon_simulation
     type(film_field_t), allocatable :: films(:)  !! pressure fields, if the case asks for them
     type(wear_profile_t), allocatable :: wear(:) !! worn surfaces, if the case asks for them
     real(dp), allocatable :: time_with(:, :)  !! method auto: time with Adams and with Radau, for each mode, (2, 0:highest mode) [s]
-    logical :: can_go_on = .false.  !! the run was stopped from outside or by a limit, and its state was given to the sink
+    logical :: can_go_on = .false.  !! the run was stopped from outside or by a limit
     logical :: energy_is_poor = .false.          !! the run is done, but the user must be told of its energy residual
     type(period_watch_t) :: periods              !! search for a periodic motion that ends the run
     type(exponent_t) :: exponent                 !! Lyapunov exponent, if it is requested
     real(dp) :: auto_saves = 0  !! > 0: evaluations of this run divided by those that method auto needs, as measured
   end type run_report_t
 
+  !> A run under way. Call `begin`, `advance` until `is_over` or as far as wanted, and `finish`. Copies continue independently of
+  !> each other once `recorder%sink` of each has been set to a sink of its own.
+  type :: run_t
+    type(scene_t), allocatable :: scene
+    class(ode_method_t), allocatable :: method
+    type(recorder_t) :: recorder
+    type(integration_t) :: integration
+    real(dp) :: t = 0                     !! time reached [s]
+    logical :: is_over = .false.          !! the run has ended
+    type(case_t), private :: case
+    logical, private :: ideal_joint = .false., has_cycles = .false.
+    logical, private :: has_ended = .false.   !! the integration has ended; perhaps the exponent is being measured
+    integer, private :: status = integration_done
+    type(run_report_t), private :: report
+    type(measurement_t), allocatable, private :: measurement   !! of the Lyapunov exponent, after the integration
+  contains
+    procedure :: begin
+    procedure :: advance
+    procedure :: look
+    procedure :: stop
+    procedure :: expected_end
+    procedure :: finish
+  end type run_t
+
 contains
 
-  !> Run a case, or its ideal twin. `cycles`, the count of the revolutions of the crank, is moved into the run and returned at the
-  !> end; if it is present, the impulse and the loss of the joint are integrated too. Errors: the scene cannot be built
-  !> (status_case_file); the integration failed (status_integration; `report` and the sink then hold the results up to that
-  !> instant). With an `archive` that an earlier run of the same case gave to its sink, that run is continued.
-  subroutine simulate(case, ideal_joint, list, sink, report, error, archive, cycles)
+  !> Run a case, or its ideal twin, from its start to its end. `cycles`, the count of the revolutions of the crank, is moved into
+  !> the run and returned at the end; if it is present, the impulse and the loss of the joint are integrated too. Errors: the scene
+  !> cannot be built (status_case_file); the integration failed (status_integration; `report` and the sink then hold the results up
+  !> to that instant).
+  subroutine simulate(case, ideal_joint, list, sink, report, error, cycles)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint
     type(column_list_t), intent(in) :: list
     class(trace_sink_t), target, intent(inout) :: sink
     type(run_report_t), intent(out) :: report
     type(error_t), allocatable, intent(out) :: error
-    type(archive_t), intent(inout), optional :: archive
     type(cycle_watch_t), allocatable, intent(inout), optional :: cycles
-    type(scene_t), allocatable :: scene
-    class(ode_method_t), allocatable :: method
-    type(recorder_t) :: recorder
-    real(dp), allocatable :: y(:)
-    real(dp) :: t
-    integer :: status
-    logical :: has_come_to_its_end
-
-    call build_scene(case, ideal_joint, scene, error)
-    if (.not. allocated(error)) call new_method(case%integrator%method, method, error)
+    type(run_t) :: run
+    call run%begin(case, ideal_joint, list, sink, error, cycles)
     if (allocated(error)) return
-    recorder%list = list
-    if (case%output%sampling == 'crank_angle') then
-      recorder%angles%per_revolution = case%output%samples_per_revolution
-      recorder%angles%origin = case%output%angle_origin_deg*degree
-    else
-      recorder%interval = sample_interval(case)
-    end if
-    recorder%first_sample = case%output%start_time
-    recorder%periods%is_on = case%run%is_until_periodic()
-    recorder%periods%longest = case%run%period_revolutions
-    recorder%periods%tolerance = case%run%periodic_tolerance
-    recorder%periods%most_revolutions = case%run%most_revolutions
-    recorder%periods%keeps_one_more = recorder%periods%is_on .and. case%output%window == 'last_period'
-    recorder%end_time = latest_end(case)
-    recorder%expected_end = simulated_time(case)
-    recorder%patience%longest = longest_turn(case)
-    recorder%every_step = case%output%every_step
-    recorder%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
-    recorder%revolution_time = two_pi/scene%speed_scale()
-    recorder%sink => sink
-    if (present(cycles)) then
-      call scene%measure_joint()
-      call move_alloc(cycles, recorder%cycles)
-    end if
-
-    method%settings = settings_for(case, scene)
-    y = scene%initial_state()
-    t = 0
-    call recorder%prepare(scene)
-    if (case%output%film_times /= '' .and. .not. ideal_joint) then
-      allocate (recorder%films)
-      call recorder%films%prepare(case%output%snapshot_times, scene)
-    end if
-    if (.not. present(archive)) call recorder%begin(scene, y)
-    call integrate(scene, method, t, y, recorder%end_time, case%integrator%max_steps, recorder, status, archive)
-    if (recorder%periods%has_ended) then
-      status = integration_done
-      t = recorder%periods%t
-      y = recorder%periods%y
-      call move_alloc(recorder%scene_at_end, scene)
-    else if (recorder%patience%is_over) then
-      status = crank_creeps
-      t = recorder%figures%time
-      call method%interpolate(t, y)
-    else
-      if (status == integration_interrupted .and. recorder%over_budget) status = revolution_budget_spent
-      call judge_turns(scene, t, y, status)
-    end if
-    if (status /= unreadable_archive) call recorder%finish(scene, t, y)
-    if (recorder%has_left) status = left_domain
-    report%periods = recorder%periods
-    has_come_to_its_end = status == integration_done
-    if (status == integration_done .and. case%run%lyapunov_revolutions > 0 .and. .not. ideal_joint) then
-      call measure_exponent(case, scene, t, y, report%periods%period, sink, report%exponent)
-      if (.not. report%exponent%is_known .and. sink%wants_to_stop) status = integration_interrupted
-    end if
-    if (present(cycles)) call move_alloc(recorder%cycles, cycles)
-    report%statistics = method%totals()
-    if (allocated(method%time_with)) report%time_with = method%time_with
-    report%figures = recorder%figures
-    report%wear = recorder%wear(scene)
-    if (allocated(recorder%films)) report%films = recorder%films%fields(scene)
-    report%can_go_on = any(status == [integration_interrupted, step_limit_reached, evaluation_limit_reached, &
-      revolution_budget_spent]) .and. .not. has_come_to_its_end
-    if (status == integration_done .and. case%integrator%method == 'adams' .and. .not. (ideal_joint .or. present(cycles))) &
-      call measure_auto(case, report)
-    !$omp critical (texts)
-    report%status = 'done'
-    if (status /= integration_done) then
-      report%status = reason(status, scene, method%settings, t, y)//' at '//place(scene, t, y)
-      call fail(error, report%status, status_integration)
-    else if (.not. report%figures%max_energy_residual <= report%figures%max_energy* &
-             energy_limit(case%integrator%relative_tolerance, report%figures%crank_travel)) then
-      report%status = 'energy not kept: the residual is beyond its limit, so the results are wrong; run to '//place(scene, t, y)
-      call fail(error, report%status, status_integration)
-    else
-      report%energy_is_poor = report%figures%max_energy_residual > report%figures%max_energy* &
-        remarkable_residual(case%integrator%relative_tolerance)
-    end if
-    !$omp end critical (texts)
+    call run%advance(huge(1.0_dp), 0)
+    call run%finish(report, error, cycles)
   end subroutine simulate
+
+  !> Begin a run: the arguments are those of `simulate`. Error: the scene cannot be built (status_case_file).
+  subroutine begin(self, case, ideal_joint, list, sink, error, cycles)
+    class(run_t), intent(inout) :: self
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint
+    type(column_list_t), intent(in) :: list
+    class(trace_sink_t), target, intent(inout) :: sink
+    type(error_t), allocatable, intent(out) :: error
+    type(cycle_watch_t), allocatable, intent(inout), optional :: cycles
+    real(dp), allocatable :: y(:)
+
+    self%case = case
+    self%ideal_joint = ideal_joint
+    call build_scene(case, ideal_joint, self%scene, error)
+    if (.not. allocated(error)) call new_method(case%integrator%method, self%method, error)
+    if (allocated(error)) return
+    associate (recorder => self%recorder, scene => self%scene)
+      recorder%list = list
+      if (case%output%sampling == 'crank_angle') then
+        recorder%angles%per_revolution = case%output%samples_per_revolution
+        recorder%angles%origin = case%output%angle_origin_deg*degree
+      else
+        recorder%interval = sample_interval(case)
+      end if
+      recorder%first_sample = case%output%start_time
+      recorder%periods%is_on = case%run%is_until_periodic()
+      recorder%periods%longest = case%run%period_revolutions
+      recorder%periods%tolerance = case%run%periodic_tolerance
+      recorder%periods%most_revolutions = case%run%most_revolutions
+      recorder%periods%keeps_one_more = recorder%periods%is_on .and. case%output%window == 'last_period'
+      recorder%end_time = latest_end(case)
+      recorder%patience%longest = longest_turn(case)
+      recorder%every_step = case%output%every_step
+      recorder%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
+      recorder%revolution_time = two_pi/scene%speed_scale()
+      recorder%sink => sink
+      if (present(cycles)) self%has_cycles = allocated(cycles)
+      if (self%has_cycles) then
+        call scene%measure_joint()
+        call move_alloc(cycles, recorder%cycles)
+      end if
+      self%method%settings = settings_for(case, scene)
+      y = scene%initial_state()
+      call recorder%prepare(scene)
+      if (case%output%film_times /= '' .and. .not. ideal_joint) then
+        allocate (recorder%films)
+        call recorder%films%prepare(case%output%snapshot_times, scene)
+      end if
+      call recorder%begin(scene, y)
+      call self%integration%begin(scene, self%method, 0.0_dp, y, recorder%end_time, case%integrator%max_steps)
+    end associate
+  end subroutine begin
+
+  !> Go on to time t [s], or through `most_steps` more steps (0: no limit), or to the end of the run if that comes first. Results
+  !> do not depend on where a run pauses. After the end of the motion, the exponent is measured, a revolution in each call that has
+  !> a limit of steps.
+  subroutine advance(self, t, most_steps)
+    class(run_t), intent(inout) :: self
+    real(dp), intent(in) :: t
+    integer, intent(in) :: most_steps
+    if (.not. (self%has_ended .or. self%is_over)) then
+      call self%integration%go_to(self%scene, self%method, self%recorder, t, most_steps)
+      self%t = self%integration%t
+      if (self%integration%is_kept) self%t = t
+      if (self%integration%is_over) call conclude(self)
+      if (most_steps > 0) return
+    end if
+    do while (self%has_ended .and. .not. self%is_over)
+      call self%measurement%advance()
+      self%is_over = self%measurement%is_over
+      if (most_steps > 0) return
+    end do
+  end subroutine advance
+
+  !> The values of a row at the time reached. If the state there is not `inside` the model, there are none.
+  subroutine look(self, values, inside)
+    class(run_t), intent(inout) :: self
+    real(dp), intent(out) :: values(:)   !! in the order of the list
+    logical, intent(out) :: inside
+    type(evaluation_t) :: now
+    real(dp) :: y(self%scene%n)
+    integer :: unused
+    unused = 0
+    if (self%integration%is_kept) then
+      call look_inside(self%scene, self%method, self%t, y, now, inside, unused)
+    else
+      y = self%integration%state(self%method)
+      call self%scene%evaluate(self%t, y, now, inside)
+    end if
+    if (inside) call self%recorder%row(self%scene, self%t, y, now, values)
+  end subroutine look
+
+  !> End the run here, as interrupted.
+  subroutine stop(self)
+    class(run_t), intent(inout) :: self
+    if (self%is_over) return
+    if (.not. self%has_ended) call conclude(self)
+    self%status = integration_interrupted
+    self%is_over = .true.
+  end subroutine stop
+
+  !> Expected end of the run [s]. If it ends after a number of turns, it is estimated from the mean speed so far.
+  real(dp) function expected_end(self)
+    class(run_t), intent(in) :: self
+    expected_end = simulated_time(self%case)
+    associate (travel => abs(self%recorder%figures%crank_travel))
+      if (allocated(self%scene%turns) .and. travel > 0) &
+        expected_end = min(self%recorder%end_time, self%t*self%scene%turns%wanted*two_pi/travel)
+    end associate
+  end function expected_end
+
+  !> The integration has ended: find out why, end the recording, and begin to measure the exponent if it is wanted.
+  subroutine conclude(self)
+    class(run_t), intent(inout) :: self
+    call self%integration%finish(self%method)
+    associate (recorder => self%recorder, t => self%integration%t, y => self%integration%y, status => self%status)
+      status = self%integration%status
+      if (.not. self%integration%is_over) status = integration_interrupted
+      if (recorder%periods%has_ended) then
+        status = integration_done
+        t = recorder%periods%t
+        y = recorder%periods%y
+        call move_alloc(recorder%scene_at_end, self%scene)
+      else if (recorder%patience%is_over) then
+        status = crank_creeps
+        t = recorder%figures%time
+        call self%method%interpolate(t, y)
+      else
+        if (status == integration_interrupted .and. recorder%over_budget) status = revolution_budget_spent
+        call judge_turns(self%scene, t, y, status)
+      end if
+      call recorder%finish(self%scene, t, y)
+      if (recorder%has_left) status = left_domain
+      self%t = t
+      self%has_ended = .true.
+      self%report%can_go_on = any(status == [integration_interrupted, step_limit_reached, evaluation_limit_reached, &
+        revolution_budget_spent])
+      self%is_over = status /= integration_done .or. self%case%run%lyapunov_revolutions == 0 .or. self%ideal_joint
+      if (self%is_over) return
+      allocate (self%measurement)
+      call self%measurement%begin(self%case, self%scene, t, y, recorder%periods%period)
+    end associate
+  end subroutine conclude
+
+  !> The results of a run that is over. Error: see `simulate`.
+  subroutine finish(self, report, error, cycles)
+    class(run_t), intent(inout) :: self
+    type(run_report_t), intent(out) :: report
+    type(error_t), allocatable, intent(out) :: error
+    type(cycle_watch_t), allocatable, intent(inout), optional :: cycles
+    call self%stop()   ! no effect if it is over
+    report = self%report
+    report%periods = self%recorder%periods
+    if (allocated(self%measurement)) report%exponent = self%measurement%exponent
+    if (present(cycles)) call move_alloc(self%recorder%cycles, cycles)
+    report%statistics = self%method%totals()
+    if (allocated(self%method%time_with)) report%time_with = self%method%time_with
+    report%figures = self%recorder%figures
+    report%wear = self%recorder%wear(self%scene)
+    if (allocated(self%recorder%films)) report%films = self%recorder%films%fields(self%scene)
+    associate (case => self%case, scene => self%scene, t => self%integration%t, y => self%integration%y)
+      if (self%status == integration_done .and. case%integrator%method == 'adams' .and. &
+          .not. (self%ideal_joint .or. self%has_cycles)) call measure_auto(case, report)
+      report%status = 'done'
+      if (self%status /= integration_done) then
+        report%status = reason(self%status, scene, self%method%settings, t, y)//' at '//place(scene, t, y)
+        call fail(error, report%status, status_integration)
+      else if (.not. report%figures%max_energy_residual <= report%figures%max_energy* &
+               energy_limit(case%integrator%relative_tolerance, report%figures%crank_travel)) then
+        report%status = 'energy not kept: the residual is beyond its limit, so the results are wrong; run to '//place(scene, t, y)
+        call fail(error, report%status, status_integration)
+      else
+        report%energy_is_poor = report%figures%max_energy_residual > report%figures%max_energy* &
+          remarkable_residual(case%integrator%relative_tolerance)
+      end if
+    end associate
+  end subroutine finish
 
   !> Energy residual, relative to the largest energy, from which the user of a completed run is told: 1e-3, which is visible in
   !> results, or a hundred tolerances, which at most 1 in 1000 extreme scenes reach. A residual up to 1e-10 may be rounding.

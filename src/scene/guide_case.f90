@@ -4,7 +4,6 @@ module guide_case
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
-  use hertz_sphere, only: hertz_sphere_t
   use piston_guide, only: piston_guide_t
   implicit none
   private
@@ -84,6 +83,5 @@ contains
     guide%radius = self%piston_radius
     guide%height = [self%skirt_top, -self%skirt_bottom] - self%piston_com(1)
     allocate (guide%contact, source=self%contact)
-    guide%contact%geometry = hertz_sphere_t(given_stiffness=self%stiffness, exponent=self%exponent)
   end subroutine build
 end module guide_case

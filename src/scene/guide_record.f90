@@ -4,9 +4,8 @@
 !> interpolant of the method, without evaluations of the scene.
 module guide_record
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   use ode_method, only: ode_method_t
-  use chain_motion, only: n_pins
+  use joint_places, only: n_places
   use piston_guide, only: corner_t, n_corners
   use gudgeon_scene, only: scene_t, evaluation_t, event_contact_begins
   use peak_search, only: sample_t, peak_search_t, may_peak
@@ -37,7 +36,6 @@ module guide_record
     procedure, non_overridable :: take_values
     procedure, non_overridable :: take_time
     procedure, non_overridable :: take_contact
-    procedure :: exchange
   end type guide_record_t
 
 contains
@@ -49,7 +47,7 @@ contains
     integer :: i
     if (allocated(scene%guide)) self%is_there = scene%guide%is_loose
     do i = 1, n_corners
-      self%contact(i)%pin = n_pins + i
+      self%contact(i)%pin = n_places + i
     end do
   end subroutine prepare
 
@@ -207,18 +205,4 @@ contains
     call self%contact(i)%change(kind, kind == event_contact_begins, t, now%motion%crank_angle, now%guide%corner(i)%depth_rate)
     event = self%contact(i)
   end subroutine take_contact
-
-  !> Write the results so far to an archive, or read them from it.
-  subroutine exchange(self, archive)
-    class(guide_record_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    integer :: i
-    if (.not. self%is_there) return
-    do i = 1, n_corners
-      call self%contact(i)%exchange(archive)
-    end do
-    call archive%exchange(self%t)
-    call archive%exchange(self%last)
-    call archive%exchange(self%rate)
-  end subroutine exchange
 end module guide_record

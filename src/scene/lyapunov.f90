@@ -20,20 +20,20 @@ module lyapunov
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
   use gudgeon_errors, only: error_t
-  use gudgeon_archive, only: archive_t
   use case_definition, only: case_t
   use ode_method, only: ode_method_t
   use ode_problem, only: ode_problem_t
   use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_interrupted
+  use gudgeon_solver, only: integrate, silent_observer_t, integration_interrupted, integration_done, &
+    integration_stopped
   use gudgeon_scene, only: scene_t
   use scene_builder, only: settings_for
   use crank_passage, only: find_passage
+  use stop_reason, only: reason, place
   use state_differences, only: differences_t, new_differences, most_directions, first_size
-  use trace_sink, only: trace_sink_t
   implicit none
   private
-  public :: exponent_t, measure_exponent
+  public :: exponent_t, measurement_t
 
   integer, parameter :: per_revolution = 4             !! measurements in one revolution
   real(dp), parameter :: tolerance = 1e-11_dp          !! relative, of all scenes
@@ -47,6 +47,7 @@ module lyapunov
     real(dp) :: mean = 0          !! per revolution
     real(dp) :: error = 0  !! standard error of the mean, from the scatter between periods or, without a period, between revolutions
     integer :: revolutions = 0    !! number of revolutions of which it is the mean
+    character(len=:), allocatable :: reason   !! why it is not known
   end type exponent_t
 
   !> One of the scenes.
@@ -57,70 +58,87 @@ module lyapunov
     real(dp), allocatable :: y(:)
     real(dp) :: target = 0, direction = 1    !! crank angle to which it runs [rad], and the sense of rotation
     logical :: is_there = .false.
-    type(archive_t) :: there                 !! its discrete state at that angle
+    character(len=:), allocatable :: reason  !! why it has not reached that angle
     type(scene_t), allocatable :: kept       !! the scene at that angle, before an event at the end of the last step
   contains
     procedure :: run_to
     procedure :: step_taken
   end type companion_t
 
+  !> A measurement under way.
+  type :: measurement_t
+    type(exponent_t) :: exponent
+    logical :: is_over = .false.             !! measured, or a scene could not continue
+    type(companion_t), private :: one, other(most_directions)
+    type(differences_t), private :: differences
+    integer, private :: i = 0                !! number of the present revolution; those that are not counted have numbers <= 0
+    integer, private :: block = 1            !! number of revolutions of a period
+    integer, private :: blocks = 1           !! number of periods that are counted
+    real(dp), private :: growth = 0, sum_of = 0, sum_of_squares = 0
+  contains
+    procedure :: begin
+    procedure :: advance
+  end type measurement_t
+
 contains
 
-  !> Measure the exponent over the given number of revolutions, extended to whole periods, after some revolutions in which the
-  !> difference finds its direction. `sink` is asked whether to continue.
-  subroutine measure_exponent(case, scene, t, y, period, sink, exponent)
+  !> Begin to measure the exponent over the given number of revolutions, extended to whole periods, after some revolutions in which
+  !> the difference finds its direction.
+  subroutine begin(self, case, scene, t, y, period)
+    class(measurement_t), intent(inout) :: self
     type(case_t), intent(in) :: case
     type(scene_t), intent(in) :: scene         !! at the end of the run
     real(dp), intent(in) :: t, y(:)            !! end of the run
     integer, intent(in) :: period              !! of the motion [revolutions]; 0: it is not periodic
-    class(trace_sink_t), intent(inout) :: sink
-    type(exponent_t), intent(out) :: exponent
-    type(companion_t) :: one, other(most_directions)
-    type(differences_t) :: differences
-    real(dp) :: factors(most_directions, most_directions), growth, sum_of, sum_of_squares
-    integer :: revolutions, block, blocks, skipped, i, k, d
-    logical :: is_there
-
-    block = max(1, period)
-    blocks = (case%run%lyapunov_revolutions - 1)/block + 1
-    revolutions = block*blocks
-    skipped = block*((max(2, min(20, revolutions/5)) - 1)/block + 1)
-    differences = new_differences(scene)
-    call prepare(case, scene, t, y, one)
-    do d = 1, size(differences%state, 2)
-      call prepare(case, scene, t, y, other(d))
+    integer :: revolutions, d
+    self%block = max(1, period)
+    self%blocks = (case%run%lyapunov_revolutions - 1)/self%block + 1
+    revolutions = self%block*self%blocks
+    self%i = 1 - self%block*((max(2, min(20, revolutions/5)) - 1)/self%block + 1)
+    self%differences = new_differences(scene)
+    self%differences%most_lasts = per_revolution*max(2, self%block)   ! no cycle of a gas is longer than two revolutions
+    call prepare(case, scene, t, y, self%one)
+    do d = 1, size(self%differences%state, 2)
+      call prepare(case, scene, t, y, self%other(d))
     end do
-    sum_of = 0
-    sum_of_squares = 0
-    growth = 0
-    do i = 1 - skipped, revolutions
-      if (i == 1 - block) call differences%begin_period()
+  end subroutine begin
+
+  !> Measure one revolution.
+  subroutine advance(self)
+    class(measurement_t), intent(inout) :: self
+    real(dp) :: factors(most_directions, most_directions)
+    integer :: k
+    associate (i => self%i, block => self%block, blocks => self%blocks, exponent => self%exponent)
+      if (i == 1 - block) call self%differences%begin_period()
       do k = 1, per_revolution
-        call follow(one, other, differences, is_there)
-        if (.not. is_there) return
-        call differences%straighten(factors)
-        growth = growth + log(max(factors(1, 1), smallest_growth))
+        call follow(self%one, self%other, self%differences, exponent%reason)
+        self%is_over = allocated(exponent%reason)
+        if (self%is_over) return
+        call self%differences%straighten(factors)
+        self%growth = self%growth + log(max(factors(1, 1), smallest_growth))
       end do
-      if (i == 0) call differences%choose_one()
-      call sink%take_progress(t)
-      if (sink%wants_to_stop) return
+      if (i == 0) call self%differences%choose_one()
       if (i >= 1 .and. mod(i, block) == 0) then
-        sum_of = sum_of + growth
-        sum_of_squares = sum_of_squares + growth**2
+        self%sum_of = self%sum_of + self%growth
+        self%sum_of_squares = self%sum_of_squares + self%growth**2
       end if
-      if (i < 1 .or. mod(i, block) == 0) growth = 0
-    end do
-    exponent%is_known = .true.
-    exponent%revolutions = revolutions
-    exponent%mean = sum_of/revolutions
-    if (blocks > 1) exponent%error = sqrt(max(0.0_dp, sum_of_squares/blocks - (sum_of/blocks)**2)/(blocks - 1))/block
-  end subroutine measure_exponent
+      if (i < 1 .or. mod(i, block) == 0) self%growth = 0
+      self%is_over = i == block*blocks
+      i = i + 1
+      if (.not. self%is_over) return
+      exponent%is_known = .true.
+      exponent%revolutions = block*blocks
+      exponent%mean = self%sum_of/exponent%revolutions
+      if (blocks > 1) exponent%error = &
+        sqrt(max(0.0_dp, self%sum_of_squares/blocks - (self%sum_of/blocks)**2)/(blocks - 1))/block
+    end associate
+  end subroutine advance
 
-  !> Let all scenes run for a quarter of a revolution and measure the differences at its end; `is_there`: all have reached it.
-  subroutine follow(one, other, differences, is_there)
+  !> Let all scenes run for a quarter of a revolution and measure the differences at its end, or say why one has not reached it.
+  subroutine follow(one, other, differences, reason)
     type(companion_t), intent(inout) :: one, other(:)
     type(differences_t), intent(inout) :: differences
-    logical, intent(out) :: is_there
+    character(len=:), allocatable, intent(out) :: reason
     real(dp) :: angle
     integer :: d
     do d = 1, size(differences%state, 2)
@@ -128,11 +146,12 @@ contains
     end do
     angle = one%scene%crank_angle(one%t, one%y) + one%direction*two_pi/per_revolution
     call one%run_to(angle)
-    is_there = one%is_there
+    if (.not. one%is_there) reason = one%reason
     do d = 1, size(differences%state, 2)
-      if (is_there) call other(d)%run_to(angle)
-      is_there = is_there .and. other(d)%is_there
-      if (is_there) call differences%take(d, one%scene, one%y, other(d)%scene, other(d)%y)
+      if (allocated(reason)) exit
+      call other(d)%run_to(angle)
+      if (.not. other(d)%is_there) reason = other(d)%reason
+      if (other(d)%is_there) call differences%take(d, one%scene, one%y, other(d)%scene, other(d)%y)
     end do
   end subroutine follow
 
@@ -157,19 +176,13 @@ contains
     companion%direction = sign(1.0_dp, companion%scene%crank_speed(t, y))
   end subroutine prepare
 
-  !> Set the state of another scene to that of the first plus a difference; its discrete state is copied, and the impact speeds of
-  !> its contacts differ as given.
+  !> Set another scene to the first one; its state differs by a difference, and the impact speeds of its contacts as given.
   subroutine put_beside(one, other, at, difference, impact_speed)
     type(companion_t), intent(inout) :: one, other
     integer, intent(in) :: at(:)
     real(dp), intent(in) :: difference(:), impact_speed(:)   !! of the state, of the speeds [m/s]
     integer :: i
-    character(len=:), allocatable :: bytes
-    call one%there%begin_writing()
-    call one%scene%exchange(one%there)
-    call one%there%contents(bytes)
-    call other%there%begin_reading(bytes)
-    call other%scene%exchange(other%there)
+    other%scene = one%scene
     other%t = one%t
     other%y = one%y
     other%y(at) = one%y(at) + difference
@@ -196,6 +209,11 @@ contains
     y = self%y
     call integrate(scene, method, t, y, self%t + patience*two_pi/scene%speed_scale(), 0, self, status)
     if (status /= integration_interrupted) self%is_there = .false.
+    if (.not. self%is_there) then
+      self%reason = 'the crank stops, turns back or takes too long for a quarter of a revolution'
+      if (all(status /= [integration_done, integration_stopped])) self%reason = reason(status, scene, method%settings, t, y)
+      self%reason = self%reason//' at '//place(scene, t, y)
+    end if
     call move_alloc(scene, self%scene)
     call move_alloc(method, self%method)
     if (allocated(self%kept)) call move_alloc(self%kept, self%scene)

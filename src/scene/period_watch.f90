@@ -10,7 +10,6 @@
 module period_watch
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
-  use gudgeon_archive, only: archive_t
   use ode_method, only: ode_method_t
   use gudgeon_scene, only: scene_t
   use crank_passage, only: find_passage
@@ -54,7 +53,6 @@ module period_watch
     procedure :: begin
     procedure :: take_point
     procedure :: follow
-    procedure :: exchange
   end type period_watch_t
 
 contains
@@ -181,20 +179,4 @@ contains
       end do
     end function largest
   end subroutine look_for_period
-
-  !> Write the results so far to an archive, or read them from it.
-  subroutine exchange(self, archive)
-    class(period_watch_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    if (.not. self%is_on) return
-    call archive%exchange(self%period, self%found_after)
-    call archive%exchange(self%difference, self%duration)
-    call archive%exchange(self%window_after)
-    call archive%exchange(self%window_start, self%t)
-    call archive%exchange(self%made)
-    call archive%exchange(self%states)
-    call archive%exchange(self%low)
-    call archive%exchange(self%high)
-    call archive%exchange(self%times)
-  end subroutine exchange
 end module period_watch

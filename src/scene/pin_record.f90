@@ -1,15 +1,15 @@
 !> Records what happens at one pin: its contacts, and the peaks of its force, penetration, film thickness and normal force.
 module pin_record
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   use ode_method, only: ode_method_t
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins
+  use joint_events, only: may_touch
   use inside_step, only: look_inside
   use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks
   use cycle_watch, only: cycle_watch_t
   use wear_record, only: wear_record_t
   use trace_sink, only: trace_event_t
-  use film_figures, only: film_figures_t, film_figures_of
+  use film_figures, only: film_figures_t
   use run_figures, only: run_figures_t
   implicit none
   private
@@ -28,7 +28,6 @@ module pin_record
     procedure, non_overridable :: take_values
     procedure, non_overridable :: take_contact
     procedure, non_overridable :: is_touching
-    procedure :: exchange
   end type pin_record_t
 
 contains
@@ -36,10 +35,10 @@ contains
   !> Prepare the record of a pin of a scene.
   subroutine prepare(self, pin, scene)
     class(pin_record_t), intent(out) :: self
-    integer, intent(in) :: pin
+    integer, intent(in) :: pin   !! index in `places`
     type(scene_t), intent(in) :: scene
     self%pin = pin
-    self%joint = scene%joint_of_pin(pin)
+    self%joint = scene%joint_at(pin)
     self%contact%pin = pin
     if (self%joint == 0) return
     self%reports_film = scene%joints(self%joint)%reports_film
@@ -47,10 +46,10 @@ contains
       allocate (self%wear)
       call self%wear%prepare(self%joint, scene)
     end if
-    if (.not. allocated(scene%joints(self%joint)%contact)) return
-    associate (geometry => scene%joints(self%joint)%contact%geometry)
-      self%validity_limit = geometry%fastest_impact()
-      self%deepest = geometry%deepest
+    if (.not. may_touch(scene%joints(self%joint))) return
+    associate (joint => scene%joints(self%joint))
+      self%validity_limit = joint%slots(joint%acting(phase_contact))%element%fastest_impact
+      self%deepest = joint%slots(joint%acting(phase_contact))%element%deepest
     end associate
   end subroutine prepare
 
@@ -116,13 +115,13 @@ contains
       do i = 1, merge(3, 0, span > 0)
         call look_inside(scene, method, self%film_time + place(i)*span, y, halfway, inside, figures%evaluations)
         if (.not. inside) cycle
-        film = film_figures_of(joint, halfway%relative(k), halfway%joint(k))
+        film = joint%film_figures(halfway%joint(k))
         f%film_energy_lost = f%film_energy_lost + weight(i)*span*film%power
         f%neglected_shear_loss = f%neglected_shear_loss + weight(i)*span*film%neglected_power
         f%film_volume = f%film_volume + weight(i)*span*film%side_flow
         f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
       end do
-      film = film_figures_of(joint, now%relative(k), now%joint(k))
+      film = joint%film_figures(now%joint(k))
       f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
     end associate
     self%film_time = t
@@ -136,9 +135,9 @@ contains
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
     type(film_figures_t) :: film
-    call put_values(self, self%is_touching(scene), self%values(now), figures, cycles)
+    call put_values(self, self%is_touching(scene), self%values(scene, now), figures, cycles)
     if (.not. self%reports_film) return
-    film = film_figures_of(scene%joints(self%joint), now%relative(self%joint), now%joint(self%joint))
+    film = scene%joints(self%joint)%film_figures(now%joint(self%joint))
     figures%pin(self%pin)%max_film_pressure = max(figures%pin(self%pin)%max_film_pressure, film%max_pressure)
   end subroutine take_values
 
@@ -172,7 +171,7 @@ contains
     type(trace_event_t), intent(out) :: event
     type(cycle_watch_t), intent(inout), optional :: cycles
 
-    associate (f => figures%pin(self%pin), relative => now%relative(self%joint))
+    associate (f => figures%pin(self%pin), relative => now%joint(self%joint))
       if (kind == event_contact_begins) then
         f%contacts = f%contacts + 1
         if (present(cycles)) call cycles%take_impact(self%pin)
@@ -183,14 +182,4 @@ contains
       event = self%contact
     end associate
   end subroutine take_contact
-
-  !> Write the results so far to an archive, or read them from it. The place of the pin is not archived.
-  subroutine exchange(self, archive)
-    class(pin_record_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call self%contact%exchange(archive)
-    call self%peak_watch_t%exchange(archive)
-    call archive%exchange(self%film_time)
-    if (allocated(self%wear)) call self%wear%exchange(archive)
-  end subroutine exchange
 end module pin_record

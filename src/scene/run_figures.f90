@@ -1,8 +1,7 @@
 !> The results of a run that are single numbers, most of them for its summary.
 module run_figures
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
-  use chain_motion, only: n_pins
+  use joint_places, only: n_places
   use piston_guide, only: n_corners
   implicit none
   private
@@ -25,7 +24,6 @@ module run_figures
     real(dp) :: max_film_pressure = 0         !! [Pa]
     real(dp) :: friction_work = huge(1.0_dp)  !! work of the friction forces on the bodies so far [J]; huge: not integrated
   contains
-    procedure :: exchange => exchange_pin
   end type pin_figures_t
 
   !> Results of the elastic members.
@@ -40,7 +38,7 @@ module run_figures
   end type elastic_figures_t
 
   type :: run_figures_t
-    type(pin_figures_t) :: pin(n_pins)        !! crank_pin, piston_pin
+    type(pin_figures_t) :: pin(n_places)        !! by place
     type(pin_figures_t) :: corner(n_corners)
     type(elastic_figures_t) :: elastic
     integer :: evaluations = 0                !! number of evaluations of the scene for rows, events and these results
@@ -50,38 +48,5 @@ module run_figures
     real(dp) :: row_energy_residual = 0       !! the same in the rows of the trace, also inside the steps [J]
     real(dp) :: crank_travel = 0              !! crank angle turned through, signed [rad]
     real(dp) :: time = 0                      !! time simulated [s]
-  contains
-    procedure :: exchange => exchange_figures
   end type run_figures_t
-
-contains
-
-  !> Write the results to an archive, or read them from it.
-  subroutine exchange_figures(self, archive)
-    class(run_figures_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    integer :: pin, i
-    do pin = 1, n_pins
-      call self%pin(pin)%exchange(archive)
-    end do
-    do i = 1, n_corners
-      call archive%exchange(self%corner(i)%contacts)
-      call archive%exchange(self%corner(i)%contact_time, self%corner(i)%max_penetration, self%corner(i)%max_force)
-    end do
-    associate (e => self%elastic)   ! the frequencies are known at the beginning
-      call archive%exchange(e%mid_deflection, e%stretch, e%strain_energy, e%twist)
-    end associate
-    call archive%exchange(self%evaluations, self%peak_evaluations)
-    call archive%exchange(self%max_energy, self%max_energy_residual, self%row_energy_residual, self%crank_travel, self%time)
-  end subroutine exchange_figures
-
-  !> Write the results at a pin to an archive, or read them from it.
-  subroutine exchange_pin(self, archive)
-    class(pin_figures_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%contacts, self%impacts_beyond_validity, self%contacts_beyond_validity)
-    call archive%exchange(self%contact_time, self%max_penetration, self%max_entry_penetration, self%max_force, &
-      self%min_film_thickness, self%friction_work)
-    call archive%exchange(self%film_energy_lost, self%neglected_shear_loss, self%film_volume, self%max_film_pressure)
-  end subroutine exchange_pin
 end module run_figures

@@ -18,7 +18,7 @@ contains
     if (solvable) call add_guide_friction(self, joints, now, solvable)
     inside = solvable
     if (.not. inside) return
-    if (self%may_stick) call hold_surfaces(self%chain, joints, now%motion, now%relative, now%joint, now%loads, now%accelerations, &
+    if (self%may_stick) call hold_surfaces(self%chain, joints, now%motion, now%joint, now%loads, now%accelerations, &
       now%crank_moment, now%power)
     call add_power(self, now)
   end procedure find_general_accelerations
@@ -37,7 +37,7 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     type(evaluation_t), intent(inout) :: now
     logical, intent(out) :: inside
-    if (self%joint_of_pin(crank_pin) == 0) then   ! not every closed form reads it
+    if (.not. self%chain%is_loose(crank_pin)) then   ! not every closed form reads it
       now%motion%crank_pin = 0
       now%motion%crank_pin_rate = 0
     end if
@@ -117,7 +117,7 @@ contains
     type(evaluation_t) :: trial
     trial = now
     call add_friction(scene, friction, change, moment, trial)
-    if (scene%may_stick) call hold_surfaces(scene%chain, joints, trial%motion, trial%relative, trial%joint, trial%loads, &
+    if (scene%may_stick) call hold_surfaces(scene%chain, joints, trial%motion, trial%joint, trial%loads, &
       trial%accelerations, trial%crank_moment, trial%power)
     normal = normal_force(scene, trial)
   end function normal_with

@@ -3,11 +3,13 @@ module scene_builder
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi, degree
   use gudgeon_errors, only: error_t
-  use case_definition, only: case_t, joint_case_t
+  use case_definition, only: case_t
   use ode_method, only: ode_settings_t
-  use chain_motion, only: piston_pin, crank_pin
+  use chain_motion, only: body_piston
+  use joint_places, only: n_places, in_order
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
-  use joint_events, only: may_pass_static
+  use joint_events, only: may_touch, may_pass_static
+  use load_elements, only: add_elements
   use clearance_joint, only: clearance_joint_t
   use gudgeon_scene, only: scene_t
   use monotone_cubic, only: new_monotone_cubic
@@ -54,10 +56,11 @@ contains
     logical :: makes_tables
     integer :: i
 
-    call assemble_scene(case, ideal_joint, scene)
     makes_tables = .true.
     if (present(without_tables)) makes_tables = .not. without_tables
-    call prepare_joints(case, makes_tables, scene)
+    call assemble_scene(case, ideal_joint, makes_tables, scene)
+    if (allocated(scene%guide)) call scene%guide%prepare()
+    call choose_entry(case, scene)
     associate (m => case%mechanism)
       piston = piston_t(m%piston_mass)
       if (case%has_loose_guide() .and. .not. ideal_joint) &
@@ -83,7 +86,7 @@ contains
       allocate (scene%turns, source=new_crank_turns(case%integrator%crank_revolutions, scene%start_angle, scene%start_speed))
     end if
     do i = 1, scene%n_joints
-      if (.not. allocated(scene%joints(i)%worn)) cycle
+      if (.not. scene%joints(i)%has_worn_bore()) cycle
       allocate (scene%wear_cycle)
       scene%wear_cycle%turns = scene%joints(i)%wear%cycles_per_update
       scene%wear_cycle%begin = scene%start_angle
@@ -91,32 +94,36 @@ contains
     call scene%prepare_start()
   end subroutine build_scene
 
-  !> Assemble the parts of a scene from the case: joints with clearance, their laws, and the gas. Nothing is prepared for a run.
-  subroutine assemble_scene(case, ideal_joint, scene)
+  !> Assemble the parts of a scene from the case: joints with clearance, with their laws prepared, guide, elastic members and gas.
+  !> With `makes_tables` missing tables of films are computed.
+  subroutine assemble_scene(case, ideal_joint, makes_tables, scene)
     type(case_t), intent(in) :: case
-    logical, intent(in) :: ideal_joint
+    logical, intent(in) :: ideal_joint, makes_tables
     type(scene_t), allocatable, intent(out) :: scene
-    logical :: is_loose(2)
-    integer :: n
-
+    integer :: i, n
     allocate (scene)
-    is_loose = [case%joint%has_clearance(), case%crank_pin%has_clearance()] .and. .not. ideal_joint
-    allocate (scene%joints(count(is_loose)))
-    scene%n_joints = size(scene%joints)
-    associate (initial => case%initial)
-      if (is_loose(1)) call build_joint(case, case%joint, piston_pin, initial%eccentricity, initial%eccentricity_rate, &
-        scene%joints(1))
-      if (is_loose(2)) call build_joint(case, case%crank_pin, crank_pin, initial%crank_pin_eccentricity, &
-        initial%crank_pin_eccentricity_rate, scene%joints(scene%n_joints))
-    end associate
-    scene%chain%is_loose([piston_pin, crank_pin]) = is_loose
+    if (ideal_joint) then
+      allocate (scene%joints(0))
+    else
+      allocate (scene%joints(count(case%joints%has_clearance())))
+    end if
+    n = 0
+    do i = 1, merge(n_places, 0, size(scene%joints) > 0)
+      associate (place => in_order(i))
+        if (.not. case%joints(place)%has_clearance()) cycle
+        n = n + 1
+        call build_joint(case, place, makes_tables, scene%joints(n))
+      end associate
+    end do
+    scene%n_joints = n
+    if (n > 0) scene%chain%is_loose = case%loose_pins()
     if (allocated(case%guide) .and. .not. (ideal_joint .and. case%has_loose_guide())) then
       allocate (scene%guide)
       call case%guide%build(scene%guide)
       scene%guide%start = [case%initial%piston_offset, case%initial%piston_tilt]
       scene%guide%start_rate = [case%initial%piston_offset_rate, case%initial%piston_tilt_rate]
       do n = 1, scene%n_joints
-        scene%joints(n)%bearing_turns = scene%guide%is_loose
+        if (scene%joints(n)%site%bearing == body_piston) scene%joints(n)%bearing_turns = scene%guide%is_loose
       end do
     end if
     if (case%is_elastic() .and. .not. ideal_joint) then
@@ -160,73 +167,43 @@ contains
         call case%combustion%prepare(m%crank_length, m%rod_length, tolerance, scene%gas, error)
       end if
     end associate
-    if (.not. allocated(error)) &
-      call scene%gas%start(scene%start_angle, merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
+    if (allocated(error)) return
+    scene%gas%sense = sign(1.0_dp, scene%start_speed)   ! an engine that turns backwards is the mirror image of the other
+    call scene%gas%start(scene%start_angle, merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
   end subroutine prepare_gas
 
-  !> Prepare the laws of the joints for their bearings, and compute missing tables of films.
-  subroutine prepare_joints(case, makes_tables, scene)
+  !> How contacts begin, and which steps may be refused.
+  subroutine choose_entry(case, scene)
     type(case_t), intent(in) :: case
-    logical, intent(in) :: makes_tables
     type(scene_t), intent(inout) :: scene
     integer :: i
-    if (allocated(scene%guide)) call scene%guide%prepare()
     scene%enters_at_step_end = .false.
     scene%refuses_steps = .false.
     do i = 1, size(scene%joints)
       associate (joint => scene%joints(i))
         joint%max_penetration = case%integrator%max_penetration
-        if (allocated(joint%contact)) call joint%contact%prepare(joint%bearing)
-        if (allocated(joint%worn)) &
-          call joint%worn%prepare(joint%wear%bins, joint%bearing%clearance, joint%contact%geometry%foundation())
-        if (allocated(joint%friction)) call joint%friction%prepare()
-        if (allocated(joint%film)) call joint%film%prepare(joint%bearing, case%integrator%relative_tolerance)
-        if (allocated(joint%transition)) call joint%transition%prepare(joint%bearing, joint%film%least_film_ratio)
-        if (allocated(joint%elastic)) call joint%elastic%prepare(joint%bearing)
-        if (allocated(joint%asperities)) call joint%asperities%prepare(joint%bearing)
-        if (allocated(joint%contact) .and. case%integrator%contact_entry == 'step_rejection') scene%enters_at_step_end = .true.
+        if (may_touch(joint) .and. case%integrator%contact_entry == 'step_rejection') scene%enters_at_step_end = .true.
         scene%refuses_steps = scene%refuses_steps .or. scene%enters_at_step_end .or. may_pass_static(joint)
-        if (makes_tables .and. allocated(joint%film)) &
-          call joint%film%make_table(joint%bearing, case%integrator%relative_tolerance)
       end associate
     end do
-  end subroutine prepare_joints
+  end subroutine choose_entry
 
-  !> Build a joint with the laws that the case names.
-  subroutine build_joint(case, wanted, place, eccentricity, rate, joint)
+  !> Build a joint with the elements for the laws that the case names.
+  subroutine build_joint(case, place, makes_tables, joint)
     type(case_t), intent(in) :: case
-    type(joint_case_t), intent(in) :: wanted
-    integer, intent(in) :: place   !! place of the pin in the chain
-    real(dp), intent(in) :: eccentricity(2), rate(2)   !! initial values [m], [m/s]
+    integer, intent(in) :: place   !! index in `places`
+    logical, intent(in) :: makes_tables
     type(clearance_joint_t), intent(out) :: joint
-
-    joint%start_eccentricity = eccentricity
-    joint%start_rate = rate
-    joint%place = place
-    joint%bearing = wanted%bearing(case%mechanism%rod_length)
-    joint%pin_radius = joint%bearing%pin_radius()
-    if (wanted%can_touch()) allocate (joint%contact, source=wanted%contact)
-    if (allocated(wanted%friction)) allocate (joint%friction, source=wanted%friction)
-    if (allocated(wanted%film)) then
-      allocate (joint%film, source=wanted%film)
-      if (wanted%oil%is_known()) then
-        joint%film%viscosity = wanted%oil%dynamic_viscosity()
-        joint%film%kinematic_viscosity = wanted%oil%kinematic_viscosity()
-      end if
-    end if
-    if (allocated(wanted%film) .and. allocated(wanted%contact) .and. wanted%elastic%is_wanted) then
-      allocate (joint%elastic, source=wanted%elastic)
-      allocate (joint%elastic%walls, source=wanted%contact%geometry)
-    end if
-    if (allocated(wanted%film) .and. wanted%can_touch() .and. wanted%transition%is_weighted()) &
-      allocate (joint%transition, source=wanted%transition)
-    if (allocated(wanted%asperities)) allocate (joint%asperities, source=wanted%asperities)
-    if (allocated(wanted%wear)) then
-      allocate (joint%wear, source=wanted%wear)
-      if (joint%wear%bore == 'worn') allocate (joint%worn)
-    end if
-    joint%reports_friction_work = wanted%reports_friction_work .or. allocated(wanted%wear)
-    joint%reports_film = wanted%reports_film .and. allocated(wanted%film)
+    joint%start_eccentricity = case%initial%eccentricity(:, place)
+    joint%start_rate = case%initial%eccentricity_rate(:, place)
+    call joint%put_at(place)
+    associate (wanted => case%joints(place))
+      joint%bearing = wanted%bearing(case%mechanism%rod_length)
+      joint%pin_radius = joint%bearing%pin_radius()
+      call add_elements(wanted, case%integrator%relative_tolerance, makes_tables, joint)
+      if (allocated(wanted%wear)) allocate (joint%wear, source=wanted%wear)
+      joint%reports_film = wanted%reports_film .and. allocated(wanted%film)
+    end associate
   end subroutine build_joint
 
   !> Duration of the simulation [s] as far as it follows from the case: revolutions are counted at the starting speed; for turns of

@@ -1,10 +1,11 @@
 !> The events of a scene. Each event belongs to a joint, to the gas, to the guide or to the turns of the crank.
 submodule (gudgeon_scene) scene_events
   use ode_problem, only: step_admitted, event_continue
-  use joint_events, only: n_events, may_stick, may_lose_force, contact_changes, sliding_changes, film_held_changes, &
-    film_gone_changes, force_changes, contact_event, sliding_event, force_event, force_share, transition_events, &
-    judge_entry, judge_reversal, rough_end, begin_contact, end_contact, pass_kink, choose_sliding
-  use joint_motion, only: outward_acceleration
+  use joint_events, only: contact_changes, find_joint_events, find_joint_force_events, has_force_events, &
+    pass_joint_event, choose_sliding, may_touch, static_speed, judge_entry, judge_reversal, rough_end, may_lose_force, &
+    find_lost_force
+  use elastic_film, only: wall_load, wall_deflection
+  use joint_evaluation, only: outward_acceleration
   use guide_events, only: n_guide_events, corner_events, corner_force_events, corner_share, change_contact, &
     begin_corner_contact, contact_is_rough, rough_corner_end, inward_acceleration
   use piston_guide, only: corner_t, n_corners
@@ -22,8 +23,9 @@ contains
     scene%n_events = 0
     scene%may_stick = .false.
     do i = 1, size(scene%joints)
-      scene%may_stick = scene%may_stick .or. may_stick(scene%joints(i))
-      call number(i, n_events(scene%joints(i)))
+      if (may_touch(scene%joints(i))) &
+        scene%may_stick = scene%may_stick .or. scene%joints(i)%slots(scene%joints(i)%acting(phase_contact))%element%may_stick
+      call number(i, scene%joints(i)%n_events)
     end do
     if (allocated(scene%gas)) call number(of_gas, scene%gas%n_events)
     if (allocated(scene%turns)) call number(of_turns, n_turn_events)
@@ -49,16 +51,9 @@ contains
     needs_forces = .false.
     k = 0
     do i = 1, self%n_joints
-      n = n_events(self%joints(i))
-      if (n >= contact_changes) call contact_event(self%joints(i), y, g(k + contact_changes), g_rate(k + contact_changes))
-      if (n >= sliding_changes) then
-        g(k + sliding_changes:k + n) = -1
-        g_rate(k + sliding_changes:k + n) = 0
-        if (self%joints(i)%phase == phase_contact) needs_forces = may_stick(self%joints(i)) .or. may_lose_force(self%joints(i)) &
-          .or. needs_forces
-      end if
-      if (allocated(self%joints(i)%transition)) call transition_events(self%joints(i), y, &
-        g(k + film_held_changes:k + film_gone_changes), g_rate(k + film_held_changes:k + film_gone_changes))
+      n = self%joints(i)%n_events
+      if (n > 0) call find_joint_events(self%joints(i), y, g(k + 1:k + n), g_rate(k + 1:k + n))
+      needs_forces = needs_forces .or. has_force_events(self%joints(i))
       k = k + n
     end do
     if (allocated(self%gas)) then
@@ -97,12 +92,10 @@ contains
     if (.not. inside) return
     k = 0
     do i = 1, scene%n_joints
-      associate (joint => scene%joints(i), sliding => k + sliding_changes, force => k + force_changes)
-        if (joint%phase == phase_contact .and. may_stick(joint)) &
-          call sliding_event(joint, now%relative(i), now%joint(i), now%accelerations, g(sliding), g_rate(sliding))
-        if (joint%phase == phase_contact .and. may_lose_force(joint)) &
-          call force_event(joint, now%relative(i), now%accelerations, g(force), g_rate(force))
-        k = k + n_events(joint)
+      associate (joint => scene%joints(i), n => scene%joints(i)%n_events)
+        if (has_force_events(joint)) call find_joint_force_events(joint, now%joint(i), &
+          joint%relative_rates(now%accelerations), g(k + 1:k + n), g_rate(k + 1:k + n))
+        k = k + n
       end associate
     end do
     if (.not. allocated(scene%guide)) return
@@ -119,6 +112,7 @@ contains
 
   module procedure handle_event
     real(dp) :: contact(2)
+    logical :: slides
     action = event_continue
     associate (i => self%event_of(index)%joint, event => self%event_of(index)%event)
       if (i == of_gas) then
@@ -132,25 +126,18 @@ contains
       else if (i == of_guide) then
         if (contact_is_rough(self%guide) .and. .not. self%guide%touches(event)) self%entry_time = t
         call change_contact(self%guide, event, y)
+      else if (event > contact_changes) then
+        call pass_joint_event(self%joints(i), event, slides)
+        if (slides) call find_sliding_direction(self, i, t, y, .false.)
+      else if (self%joints(i)%phase == phase_contact) then
+        call self%joints(i)%reset_states(y)
+        call self%joints(i)%end_contact()
       else
-        select case (event)
-        case (contact_changes)
-          call self%joints(i)%reset_friction(y)
-          if (self%joints(i)%phase == phase_contact) then
-            call end_contact(self%joints(i))
-          else
-            contact = penetration_and_rate(self%joints(i), y)
-            call begin_contact(self%joints(i), contact(2))
-            self%entry_time = t
-            call find_sliding_direction(self, i, t, y, .true.)
-          end if
-        case (sliding_changes)
-          call find_sliding_direction(self, i, t, y, .false.)
-        case (film_held_changes, film_gone_changes)
-          call pass_kink(self%joints(i), event)
-        case (force_changes)
-          self%joints(i)%force_is_lost = .not. self%joints(i)%force_is_lost
-        end select
+        call self%joints(i)%reset_states(y)
+        contact = penetration_and_rate(self%joints(i), y)
+        call self%joints(i)%begin_contact(contact(2))
+        self%entry_time = t
+        call find_sliding_direction(self, i, t, y, .true.)
       end if
     end associate
     self%smooth_in_root = .not. t > self%entry_time   ! the penetration varies as t, the force as its power 1.5
@@ -177,11 +164,13 @@ contains
     logical, intent(in) :: may_slide
     type(evaluation_t) :: now
     logical :: inside, was_sliding
-    if (.not. may_stick(scene%joints(i))) return
-    was_sliding = scene%joints(i)%sliding /= 0
-    scene%joints(i)%sliding = 0
-    call scene%evaluate(t, y, now, inside)
-    if (inside) call choose_sliding(scene%joints(i), now%relative(i), now%joint(i), was_sliding, may_slide)
+    associate (element => scene%joints(i)%slots(scene%joints(i)%acting(phase_contact))%element)
+      if (.not. element%may_stick) return
+      was_sliding = element%sliding /= 0
+      element%sliding = 0
+      call scene%evaluate(t, y, now, inside)
+      if (inside) call choose_sliding(element, now%joint(i), was_sliding, may_slide)
+    end associate
   end subroutine find_sliding_direction
 
   module procedure reported_event
@@ -209,11 +198,11 @@ contains
       verdict = max(verdict, judged)
       fraction = min(fraction, part)
     end do
-    if (verdict /= step_admitted .or. .not. any(self%joints%static_speed() > 0)) return
+    if (verdict /= step_admitted .or. .not. any(static_speed(self%joints) > 0)) return
     call move_bodies(self, self%joints, t, y, now, inside)
     do i = 1, merge(self%n_joints, 0, inside)
-      if (.not. self%joints(i)%static_speed() > 0) cycle
-      call judge_reversal(self%joints(i), now%motion, y_old, now%relative(i), judged, part)
+      if (.not. static_speed(self%joints(i)) > 0) cycle
+      call judge_reversal(self%joints(i), now%motion, y_old, now%joint(i), judged, part)
       verdict = max(verdict, judged)
       fraction = min(fraction, part)
     end do
@@ -243,15 +232,14 @@ contains
     do i = 1, self%n_joints
       self%joints(i)%phase = self%joints(i)%phase_apart()
       contact = penetration_and_rate(self%joints(i), y)
-      if (allocated(self%joints(i)%transition)) &
-        call self%joints(i)%transition%begin(contact(1) + self%joints(i)%bearing%clearance, contact(2))
-      if (.not. allocated(self%joints(i)%contact)) cycle
-      if (contact(1) >= -rounding*self%joints(i)%bearing%clearance) call begin_contact(self%joints(i), contact(2))
+      call self%joints(i)%begin_at(contact(1) + self%joints(i)%bearing%clearance, contact(2))
+      if (.not. may_touch(self%joints(i))) cycle
+      if (contact(1) >= -rounding*self%joints(i)%bearing%clearance) call self%joints(i)%begin_contact(contact(2))
     end do
     if (allocated(self%guide)) call prepare_corners(self, y)
     do i = 1, self%n_joints
       if (self%joints(i)%phase == phase_contact) call decide_at_wall(self, i, y)
-      if (allocated(self%joints(i)%transition)) call decide_at_kink(self, i, y)
+      call decide_at_kink(self, i, y)
     end do
     call find_lost_forces(self, y)
     self%smooth_in_root = .not. self%entry_time < 0
@@ -267,20 +255,16 @@ contains
     real(dp), intent(in) :: y(:)
     type(evaluation_t) :: now
     real(dp) :: share, share_rate
-    logical :: inside, has_corners, touches(most_joints)
+    logical :: inside, has_corners
     integer :: i
     has_corners = .false.
     if (allocated(scene%guide)) has_corners = n_guide_events(scene%guide) > n_corners
-    do i = 1, scene%n_joints
-      touches(i) = may_lose_force(scene%joints(i)) .and. scene%joints(i)%phase == phase_contact
-    end do
-    if (.not. (has_corners .or. any(touches(:scene%n_joints)))) return
+    if (.not. (has_corners .or. any(may_lose_force(scene%joints)))) return
     call scene%evaluate(0.0_dp, y, now, inside)
     if (.not. inside) return
     do i = 1, scene%n_joints
-      if (.not. touches(i)) cycle
-      call force_share(scene%joints(i), now%relative(i), now%accelerations, share, share_rate)
-      scene%joints(i)%force_is_lost = share < 0
+      if (may_lose_force(scene%joints(i))) call &
+        find_lost_force(scene%joints(i), now%joint(i), scene%joints(i)%relative_rates(now%accelerations))
     end do
     if (.not. has_corners) return
     do i = 1, n_corners
@@ -301,7 +285,7 @@ contains
       contact = penetration_and_rate(joint, y)
       if (contact(1) > rounding*joint%bearing%clearance) return
       onwards = motion_outward(scene, i, y)
-      if (onwards < 0) call end_contact(joint)
+      if (onwards < 0) call joint%end_contact()
       if (contact(2) > 0) scene%entry_time = 0
       joint%start_eccentricity = joint%start_eccentricity*(1 + sign(rounding, onwards))
     end associate
@@ -317,13 +301,26 @@ contains
     real(dp) :: distance, onwards, moved
     associate (joint => scene%joints(i))
       distance = norm2(y(joint%at%position:joint%at%position + 1))
-      if (all(abs(distance - [joint%transition%film_reach, joint%transition%contact_reach]) > rounding*distance)) return
+      if (.not. is_at_kink(joint, distance, rounding*distance)) return
       onwards = motion_outward(scene, i, y)
       moved = 1 + sign(4*rounding, onwards)
       joint%start_eccentricity = joint%start_eccentricity*moved
-      call joint%transition%begin(distance*moved, onwards)
+      call joint%begin_at(distance*moved, onwards)
     end associate
   end subroutine decide_at_kink
+
+  !> Whether an eccentricity [m] is at a kink of an element's loads, within a margin.
+  pure logical function is_at_kink(joint, distance, margin)
+    type(clearance_joint_t), intent(in) :: joint
+    real(dp), intent(in) :: distance, margin
+    integer :: k
+    is_at_kink = .false.
+    do k = 1, joint%n_elements
+      associate (kinks => joint%slots(k)%element%kinks)
+        is_at_kink = is_at_kink .or. any(kinks > 0 .and. abs(distance - kinks) <= margin)
+      end associate
+    end do
+  end function is_at_kink
 
   !> Rate of a pin's eccentricity at t = 0 [m/s] or, where it is only rounding, its acceleration [m/s^2].
   real(dp) function motion_outward(scene, i, y)
@@ -338,7 +335,8 @@ contains
       motion_outward = contact(2)
       if (abs(motion_outward) > rounding*norm2(y(joint%at%rate:joint%at%rate + 1))) return
       call scene%evaluate(0.0_dp, y, now, inside)
-      if (inside) motion_outward = outward_acceleration(joint%place, now%relative(i), now%accelerations)
+      if (inside) motion_outward = &
+        outward_acceleration(now%joint(i), joint%relative_rates(now%accelerations))
     end associate
   end function motion_outward
 
@@ -375,28 +373,30 @@ contains
     integer :: i, k
     logical :: inside
     do i = 1, scene%n_joints
-      if (.not. allocated(scene%joints(i)%elastic)) cycle
-      along = 0
-      associate (joint => scene%joints(i))
-        joint%start_deflection = 0
+      if (scene%joints(i)%acting(phase_film) == 0) cycle
+      associate (element => scene%joints(i)%slots(scene%joints(i)%acting(phase_film))%element, start => &
+                 scene%joints(i)%start_eccentricity, clearance => scene%joints(i)%bearing%clearance)
+        if (.not. allocated(element%walls)) cycle
+        along = 0
+        element%start = start
         call pin_acceleration(scene, i, at_rest, inside)
         do k = 1, 2
-          joint%start_deflection = 0
-          joint%start_deflection(k) = trial
+          d = 0
+          d(k) = trial
+          element%start = start - d
           if (inside) call pin_acceleration(scene, i, along, inside)
-          by_load(:, k) = (along - at_rest)/norm2(joint%elastic%load(joint%start_deflection))
+          by_load(:, k) = (along - at_rest)/norm2(wall_load(element%walls, d))
         end do
-        joint%start_deflection = 0
+        element%start = start
         if (.not. inside) cycle
         load = -[by_load(2, 2)*at_rest(1) - by_load(1, 2)*at_rest(2), by_load(1, 1)*at_rest(2) - by_load(2, 1)*at_rest(1)] &
           /(by_load(1, 1)*by_load(2, 2) - by_load(1, 2)*by_load(2, 1))
-        d = joint%elastic%deflection(load)
-        do while (norm2(joint%start_eccentricity - d) >= max(closest*joint%bearing%clearance, norm2(joint%start_eccentricity)) &
-                  .and. norm2(d) > 0)
+        d = wall_deflection(element%walls, load)
+        do while (norm2(start - d) >= max(closest*clearance, norm2(start)) .and. norm2(d) > 0)
           d = 0.5_dp*d
           if (norm2(d) < trial) d = 0
         end do
-        joint%start_deflection = d
+        element%start = start - d
       end associate
     end do
   end subroutine load_walls
@@ -411,6 +411,6 @@ contains
     scene%joints(i)%phase = scene%joints(i)%phase_apart()
     call scene%evaluate(0.0_dp, scene%initial_state(), now, inside)
     acceleration = 0
-    if (inside) acceleration = now%accelerations%pin(:, scene%joints(i)%place)
+    if (inside) acceleration = now%accelerations%pin(:, scene%joints(i)%site%pin)
   end subroutine pin_acceleration
 end submodule scene_events

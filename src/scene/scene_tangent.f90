@@ -2,7 +2,8 @@
 submodule (gudgeon_scene) scene_tangent
   use ode_problem, only: difference_jacobian
   use chain_bodies, only: drive_t
-  use joint_motion, only: most_joint_states
+  use load_element, only: n_motions, by_journal_speed
+  use clearance_joint, only: most_joint_states, n_joint_slopes
   use crank_rod_tangent, only: rod_slopes, acceleration_slopes
   implicit none
 
@@ -11,15 +12,16 @@ contains
   module procedure jacobian
     type(evaluation_t) :: now
     type(drive_t) :: drive
-    real(dp) :: force(3, 5), by_motion(3, 4), by_loads(3, 3), rod_angle(2), rod_speed(2)
-    real(dp) :: by_states(3, most_joint_states), of_rates(most_joint_states, 5 + most_joint_states)
+    real(dp), parameter :: by_nothing(most_joint_states, 4) = 0
+    real(dp) :: by_motion(3, 4), by_loads(3, 3), rod_angle(2), rod_speed(2)
+    real(dp) :: of_loads(3, n_joint_slopes), of_rates(most_joint_states, n_joint_slopes)
     real(dp) :: slope(3 + most_joint_states, 6 + most_joint_states)   !! of all rates, with respect to q, e, q', e' and the states
     logical :: has_closed_form
     integer :: skip, n
 
     has_closed_form = self%chain%is_loose(piston_pin) .and. .not. (self%chain%is_loose(crank_pin) .or. allocated(self%guide) &
       .or. allocated(self%chain%elastic))
-    if (has_closed_form) has_closed_form = .not. allocated(self%joints(1)%worn)
+    if (has_closed_form) has_closed_form = self%joints(1)%place == piston_pin .and. self%joints(1)%has_slopes
     if (has_closed_form) then
       call self%evaluate(t, y, now, has_closed_form)
       if (has_closed_form) has_closed_form = .not. now%joint(1)%sticks
@@ -28,21 +30,19 @@ contains
       call difference_jacobian(self, t, y, a_p, a_v)
       return
     end if
-    call self%joints(1)%slopes(self%chain%bodies, now%motion, now%relative(1), now%joint(1), force)
+    n = self%joints(1)%n_states
+    call self%joints(1)%slopes(now%joint(1), of_loads, of_rates)
     drive = self%chain%drive
     if (allocated(self%chain%varying)) drive%damping = drive%damping - self%chain%varying%torque_slope(now%motion%crank_speed)
     call rod_slopes(self%chain%bodies, now%motion, rod_angle, rod_speed)
     call acceleration_slopes(self%chain%bodies, drive, now%loads, now%motion, now%accelerations, by_motion, by_loads)
-    call follow_state(3, matmul(by_loads, force), by_motion, rod_angle, rod_speed, slope(:3, :6))
+    call follow_state(3, matmul(by_loads, of_loads(:, :by_journal_speed)), by_motion, rod_angle, rod_speed, slope(:3, :6))
     if (allocated(self%gas)) &
       slope(2, 1) = slope(2, 1) + self%chain%bodies%per_piston_mass*self%gas%force_slope(now%motion%crank_angle)
-    n = self%joints(1)%n_states()
     if (n > 0) then
-      call self%joints(1)%state_slopes(self%chain%bodies, now%motion, now%relative(1), now%joint(1), by_states, of_rates)
-      slope(:3, 7:6 + n) = matmul(by_loads, by_states(:, :n))
-      by_motion = 0
-      call follow_state(n, of_rates(:n, :5), by_motion, rod_angle, rod_speed, slope(4:3 + n, :6))
-      slope(4:3 + n, 7:6 + n) = of_rates(:n, 6:5 + n)
+      slope(:3, 7:6 + n) = matmul(by_loads, of_loads(:, n_motions + 1:n_motions + n))
+      call follow_state(n, of_rates(:, :by_journal_speed), by_nothing, rod_angle, rod_speed, slope(4:3 + n, :6))
+      slope(4:3 + n, 7:6 + n) = of_rates(:n, n_motions + 1:n_motions + n)
     end if
     skip = merge(0, 1, self%chain%drive%free_crank)   ! a prescribed crank angle is not an unknown
     a_p = slope(1 + skip:3 + n, 1 + skip:3)
@@ -53,7 +53,7 @@ contains
   !> to q, A, q' and A' otherwise.
   pure subroutine follow_state(n, by_joint, by_motion, rod_angle, rod_speed, total)
     integer, intent(in) :: n
-    real(dp), intent(in) :: by_joint(:, :), by_motion(3, 4), rod_angle(2), rod_speed(2)
+    real(dp), intent(in) :: by_joint(:, :), by_motion(:, :), rod_angle(2), rod_speed(2)
     real(dp), intent(out) :: total(:, :)
     real(dp) :: by_rod_speed
     integer :: i

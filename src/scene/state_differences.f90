@@ -16,6 +16,9 @@ module state_differences
     real(dp), allocatable :: scale(:)                 !! their natural sizes
     real(dp), allocatable :: state(:, :)              !! (component, direction)
     real(dp), allocatable :: impact_speed(:, :)       !! of contacts that both scenes have (joint, direction) [m/s]
+    real(dp) :: last_speed(most_joints) = -1          !! impact speeds of the first scene at the last measurement [m/s]
+    integer :: lasts(most_joints) = 0                 !! measurements since they have changed
+    integer :: most_lasts = huge(0)                   !! number of them after which a contact has come to stay
     real(dp), allocatable :: before(:, :)             !! `state` at the beginning of the period
     real(dp) :: made(most_directions, most_directions) = 0   !! by the period from `before`: `state` times this matrix
   contains
@@ -55,7 +58,8 @@ contains
     direction = [(modulo((i + n*(which - 1))*0.6180339887498949_dp, 1.0_dp) - 0.45_dp, i=1, n)]
   end function first_direction
 
-  !> Measure the difference of a scene from the first one, relative to `first_size`.
+  !> Measure the difference of a scene from the first one, relative to `first_size`. The impact speed of a contact that has come to
+  !> stay is a constant of the motion: its difference, which would never shrink, is left out.
   subroutine take(self, direction, scene, y, other_scene, other_y)
     class(differences_t), intent(inout) :: self
     integer, intent(in) :: direction
@@ -65,7 +69,12 @@ contains
     self%state(:, direction) = (other_y(self%at) - y(self%at))/first_size
     self%impact_speed(:, direction) = 0
     do i = 1, scene%n_joints
-      if (other_scene%joints(i)%phase /= scene%joints(i)%phase) cycle
+      if (direction == 1) then
+        self%lasts(i) = self%lasts(i) + 1
+        if (abs(scene%joints(i)%impact_speed - self%last_speed(i)) > 0) self%lasts(i) = 0
+        self%last_speed(i) = scene%joints(i)%impact_speed
+      end if
+      if (other_scene%joints(i)%phase /= scene%joints(i)%phase .or. self%lasts(i) >= self%most_lasts) cycle
       self%impact_speed(i, direction) = (other_scene%joints(i)%impact_speed - scene%joints(i)%impact_speed)/first_size
     end do
   end subroutine take

@@ -6,11 +6,9 @@
 !> and then falls.
 module step_peaks
   use gudgeon_kinds, only: dp
-  use gudgeon_archive, only: archive_t
   use ode_method, only: ode_method_t
-  use chain_motion, only: piston_pin
   use chain_loads, only: force_size
-  use joint_motion, only: joint_motion_t
+  use joint_evaluation, only: joint_evaluation_t
   use gudgeon_scene, only: scene_t, evaluation_t, phase_free, phase_contact
   use inside_step, only: look_inside
   use peak_search, only: sample_t, peak_search_t, may_peak
@@ -30,7 +28,7 @@ module step_peaks
   !> Follows one pin through a run, interval by interval. An interval is a step, or a part of it that ends at an event or at the end
   !> of a revolution.
   type :: peak_watch_t
-    integer :: pin = piston_pin                   !! place of the pin in the chain
+    integer :: pin = 0                            !! index in `places`
     integer :: joint = 0  !! index of the scene's joint at this pin; 0: the pin is ideal, and only its force is searched
     integer :: evaluations = 0                    !! number of evaluations of the scene so far
     logical, private :: fresh = .true.            !! an event has changed the phase of a joint: the next interval begins there
@@ -44,19 +42,19 @@ module step_peaks
     procedure, non_overridable :: change_phase
     procedure, non_overridable :: search_interval
     procedure, non_overridable :: values
-    procedure :: exchange
   end type peak_watch_t
 
 contains
 
   !> Begin a run at t, where the scene has been evaluated.
-  pure subroutine begin(self, t, now)
+  pure subroutine begin(self, scene, t, now)
     class(peak_watch_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     self%fresh = .false.
     self%has_before = .false.
-    call stand_at(self, t, self%values(now), rate_of(self, now))
+    call stand_at(self, t, self%values(scene, now), rate_of(self, now))
   end subroutine begin
 
   !> Let the next interval begin at t.
@@ -76,30 +74,17 @@ contains
     self%slope_time = -huge(1.0_dp)
   end subroutine change_phase
 
-  !> Write the variables that change during a run to an archive, or read them from it. The place of the pin is not archived.
-  subroutine exchange(self, archive)
-    class(peak_watch_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%evaluations)
-    call archive%exchange(self%fresh)
-    call archive%exchange(self%has_before)
-    call archive%exchange(self%t_before, self%t)
-    call archive%exchange(self%before)
-    call archive%exchange(self%last)
-    call archive%exchange(self%slope)
-    call archive%exchange(self%slope_time)
-  end subroutine exchange
-
   !> The values of the quantities in one evaluation.
-  pure function values(self, now)
+  pure function values(self, scene, now)
     class(peak_watch_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
     type(evaluation_t), intent(in) :: now
     real(dp) :: values(n_peaks)
-    values(of_pin_force) = force_size(now%loads%force(:, self%pin))
+    values(of_pin_force) = force_size(scene%pin_force(now, self%pin))
     values(of_penetration) = 0
     values(of_normal_force) = 0
     if (self%joint == 0) return
-    values(of_penetration) = now%relative(self%joint)%penetration
+    values(of_penetration) = now%joint(self%joint)%penetration
     values(of_normal_force) = now%joint(self%joint)%normal_force
   end function values
 
@@ -108,7 +93,7 @@ contains
     class(peak_watch_t), intent(in) :: self
     type(evaluation_t), intent(in) :: now
     rate = 0
-    if (self%joint > 0) rate = now%relative(self%joint)%penetration_rate
+    if (self%joint > 0) rate = now%joint(self%joint)%penetration_rate
   end function rate_of
 
   !> Search the last step of the method, from the end of the last interval or from the beginning of the step to t_to, for values
@@ -124,7 +109,7 @@ contains
     real(dp), intent(out) :: largest(n_peaks)
     real(dp) :: ends(n_peaks), rate
 
-    ends = self%values(now)
+    ends = self%values(scene, now)
     rate = rate_of(self, now)
     largest = ends
     if (self%fresh) then
@@ -162,7 +147,7 @@ contains
     real(dp), intent(in) :: later_force   !! normal force at the end of the interval [N]
     real(dp), parameter :: next_to_none = 1e-9_dp
     type(evaluation_t) :: now
-    type(joint_motion_t) :: motion
+    type(joint_evaluation_t) :: motion
     real(dp) :: normal_force
     logical :: inside
 
@@ -176,7 +161,7 @@ contains
     end if
     self%evaluations = self%evaluations + 1
     call scene%evaluate(method%t_old, method%y_old, now, inside)
-    if (inside) call stand_at(self, method%t_old, self%values(now), rate_of(self, now))
+    if (inside) call stand_at(self, method%t_old, self%values(scene, now), rate_of(self, now))
   end subroutine meet_beginning
 
   !> Whether a force whose slopes are not known may exceed the known maximum inside the interval that ends at t. It cannot if it is
@@ -241,10 +226,21 @@ contains
     type(sample_t), intent(in) :: left, right
     real(dp), intent(in) :: known
     real(dp), intent(inout) :: largest
+    if (may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, known)) &
+      call search_peak(self, method, scene, quantity, left, right, largest)
+  end subroutine search_between
+
+  !> Search the peak between two samples.
+  subroutine search_peak(self, method, scene, quantity, left, right, largest)
+    class(peak_watch_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: quantity
+    type(sample_t), intent(in) :: left, right
+    real(dp), intent(inout) :: largest
     type(peak_search_t) :: peak
     real(dp) :: t
     logical :: is_done
-    if (.not. may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, known)) return
     call peak%begin(left, right)
     do
       call peak%next_time(t, is_done)
@@ -252,7 +248,7 @@ contains
       call peak%take(t, value_inside(self, method, scene, quantity, t))
     end do
     largest = max(largest, peak%value(1))
-  end subroutine search_between
+  end subroutine search_peak
 
   !> The value of a quantity at a time inside the step; `no_peak` for a pin force where the scene is not defined.
   real(dp) function value_inside(self, method, scene, quantity, t) result(value)
@@ -262,13 +258,13 @@ contains
     integer, intent(in) :: quantity
     real(dp), intent(in) :: t
     type(evaluation_t) :: now
-    type(joint_motion_t) :: motion
+    type(joint_evaluation_t) :: motion
     real(dp) :: normal_force, y(size(method%y))
     logical :: inside
     if (quantity == of_pin_force) then
       call look_inside(scene, method, t, y, now, inside, self%evaluations)
       value = no_peak
-      if (inside) value = force_size(now%loads%force(:, self%pin))
+      if (inside) value = force_size(scene%pin_force(now, self%pin))
     else
       call method%interpolate(t, y)
       call scene%joints(self%joint)%look(y, motion, normal_force)

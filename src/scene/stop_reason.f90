@@ -3,9 +3,9 @@ module stop_reason
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree
   use ode_method, only: ode_settings_t, step_too_small, tolerance_too_small, start_outside, left_domain
-  use gudgeon_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached, unreadable_archive
+  use gudgeon_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached
   use gudgeon_scene, only: scene_t, evaluation_t, phase_free
-  use chain_motion, only: crank_pin, piston_pin
+  use joint_places, only: in_order
   implicit none
   private
   public :: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, &
@@ -54,8 +54,6 @@ contains
       text = 'the crank creeps: one revolution takes longer than 100 at its starting speed, after '//turns_text(scene, t, y)
     case (integration_interrupted)
       text = interrupted_text
-    case (unreadable_archive)
-      text = 'the state of the checkpoint does not belong to this case'
     case (chattering)
       text = 'contact events without progress in time (chatter)'
     case default
@@ -112,17 +110,17 @@ contains
     largest = -1
     do i = 1, scene%n_joints
       associate (at => scene%joints(i)%at%position)
-        part = norm2(y(at:at + 1))/scene%joints(i)%reach()
+        part = norm2(y(at:at + 1))/scene%joints(i)%reach(scene%joints(i)%phase)
       end associate
       if (part > largest) text = 'the '//joint_name(scene, i)
       largest = max(largest, part)
     end do
   end function leaving_pin
 
-  !> Whether the piston pin has the only joint with clearance, so that texts need not name it.
+  !> Whether no place but the first has a joint with clearance, so that texts need not name it.
   pure logical function has_plain_names(scene)
     type(scene_t), intent(in) :: scene
-    has_plain_names = scene%joint_of_pin(crank_pin) == 0
+    has_plain_names = all(scene%joint_at(in_order(2:)) == 0)
   end function has_plain_names
 
   !> The name of the pin of a joint, for messages.
@@ -130,8 +128,7 @@ contains
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: i
     character(len=:), allocatable :: text
-    text = merge('piston pin', 'crank pin ', scene%joints(i)%place == piston_pin)
-    text = trim(text)
+    text = trim(scene%joints(i)%site%title)
   end function joint_name
 
   !> Text that says why no step size was small enough.

@@ -2,11 +2,9 @@
 module wear_record
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
-  use gudgeon_archive, only: archive_t
   use ode_method, only: ode_method_t
-  use chain_motion, only: crank_pin, piston_pin
   use archard_wear, only: worn_surface_t, of_pin, of_bore
-  use contact_arc, only: contact_arc_t, arc_of, sliding_load
+  use contact_arc, only: contact_arc_t
   use clearance_joint, only: clearance_joint_t, phase_contact
   use gudgeon_scene, only: scene_t, evaluation_t
   implicit none
@@ -55,7 +53,6 @@ module wear_record
     procedure :: change_bore
     procedure :: end_cycle
     procedure :: profile
-    procedure :: exchange
   end type wear_record_t
 
 contains
@@ -92,7 +89,7 @@ contains
     class(wear_record_t), intent(inout) :: self
     type(clearance_joint_t), intent(inout) :: joint
     call self%end_cycle(joint)
-    joint%worn%depth = depth_by_load(self, joint)*self%earlier(of_bore)%load_path
+    call joint%slots(joint%acting(phase_contact))%element%wear_bore(depth_by_load(self, joint)*self%earlier(of_bore)%load_path)
   end subroutine change_bore
 
   !> Depth of wear in a bin of the bore over its load path [1/N].
@@ -139,7 +136,7 @@ contains
     real(dp) :: done, part, span, sums(2), turn, widest
     logical :: is_rough
     span = t - self%time
-    if (may_touch(self, scene) .and. span > 0) then
+    if (scene%joints(self%joint)%rubs() .and. span > 0) then
       done = 0
       part = 1
       do while (done < 1)
@@ -177,9 +174,9 @@ contains
     type(contact_arc_t) :: arc
     real(dp) :: total, middle
     associate (joint => scene%joints(self%joint), width => self%surface(of_bore)%width())
-      widest = merge(1, 2, allocated(joint%worn))*width
+      widest = merge(1, 2, joint%has_worn_bore())*width
       if (turn <= widest) return
-      call arc_of(joint, samples%now(in_middle)%relative(self%joint), width, arc)
+      call joint%slots(joint%acting(joint%phase))%element%spread(samples%now(in_middle)%joint(self%joint), width=width, arc=arc)
     end associate
     if (arc%n == 0) return
     associate (at => 0.5_dp*(arc%ends(1, :arc%n) + arc%ends(2, :arc%n)), load => arc%loads(:arc%n))
@@ -189,15 +186,6 @@ contains
       widest = max(widest, 0.5_dp*sqrt(sum(load*(at - middle)**2)/total))
     end associate
   end function widest_turn
-
-  !> Whether the surfaces may touch in the present phase.
-  pure logical function may_touch(self, scene)
-    type(wear_record_t), intent(in) :: self
-    type(scene_t), intent(in) :: scene
-    associate (joint => scene%joints(self%joint))
-      may_touch = joint%phase == phase_contact .or. allocated(joint%asperities)
-    end associate
-  end function may_touch
 
   !> Evaluate the scene at the nodes of an interval.
   subroutine take_samples(self, method, scene, t, span, samples)
@@ -220,9 +208,9 @@ contains
       if (i > 1) samples%angle(i, :) = samples%angle(i - 1, :)
       if (.not. inside) cycle
       associate (now => samples%now(i), before => samples%angle(i, :))
-        samples%load(i) = sliding_load(scene%joints(k), now%relative(k), now%joint(k))
+        samples%load(i) = scene%joints(k)%sliding_load(now%joint(k))
         if (samples%load(i) < negligible) samples%load(i) = 0
-        samples%angle(i, :) = before + modulo(atan2(now%relative(k)%normal(2), now%relative(k)%normal(1)) &
+        samples%angle(i, :) = before + modulo(atan2(now%joint(k)%normal(2), now%joint(k)%normal(1)) &
           - turned(scene, k, now) - before + pi, 2*pi) - pi
       end associate
     end do
@@ -235,14 +223,11 @@ contains
     integer, intent(in) :: joint
     type(evaluation_t), intent(in) :: now
     real(dp) :: angles(2)
-    if (scene%joints(joint)%place == crank_pin) then
-      angles(of_pin) = now%motion%crank_angle
-      angles(of_bore) = scene%chain%rod_end_angle(now%motion, crank_pin)
-    else
-      angles(of_pin) = scene%chain%rod_end_angle(now%motion, piston_pin)
+    associate (site => scene%joints(joint)%site)
+      angles(of_pin) = scene%chain%body_angle(now%motion, site%journal)
       angles(of_bore) = 0
-      if (scene%joints(joint)%bearing_turns) angles(of_bore) = now%motion%tilting%tilt
-    end if
+      if (scene%joints(joint)%bearing_turns) angles(of_bore) = scene%chain%body_angle(now%motion, site%bearing)
+    end associate
   end function turned
 
   !> Largest angle that the line of centres passes over on a surface [rad].
@@ -267,8 +252,10 @@ contains
     on_line = 0
     do i = 1, n_nodes
       if (.not. shares(i) > 0) cycle
-      self%depth_sum = self%depth_sum + shares(i)*samples%now(i)%relative(self%joint)%penetration
-      call arc_of(scene%joints(self%joint), samples%now(i)%relative(self%joint), self%surface(of_bore)%width(), arc)
+      self%depth_sum = self%depth_sum + shares(i)*samples%now(i)%joint(self%joint)%penetration
+      associate (joint => scene%joints(self%joint), now => samples%now(i)%joint(self%joint))
+        call joint%slots(joint%acting(joint%phase))%element%spread(now, width=self%surface(of_bore)%width(), arc=arc)
+      end associate
       if (arc%n == 0) on_line = on_line + shares(i)
       if (arc%n > 0) arc%loads(:arc%n) = shares(i)/sum(arc%loads(:arc%n))*arc%loads(:arc%n)
       do k = 1, size(self%surface)
@@ -293,7 +280,7 @@ contains
     integer :: k
     associate (joint => scene%joints(self%joint), n => size(self%surface(1)%load_path))
       worn%place = joint%place
-      worn%bore_changes = allocated(joint%worn)
+      worn%bore_changes = joint%has_worn_bore()
       worn%turns = self%turns
       worn%step_ratios = self%step_ratios
       allocate (worn%depth(n, 2), worn%volume(n, 2))
@@ -304,18 +291,4 @@ contains
       end do
     end associate
   end function profile
-
-  !> Write the wear so far to an archive, or read it from it.
-  subroutine exchange(self, archive)
-    class(wear_record_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    integer :: k
-    call archive%exchange(self%evaluations)
-    call archive%exchange(self%time, self%total, self%depth_sum, self%turns)
-    call archive%exchange(self%step_ratios)
-    do k = 1, size(self%surface)
-      call self%surface(k)%exchange(archive)
-      call self%earlier(k)%exchange(archive)
-    end do
-  end subroutine exchange
 end module wear_record

@@ -87,9 +87,7 @@ contains
       call self%convert(i, trim(texts(i)), error)
       if (allocated(error)) return
     end do
-    !$omp critical (texts)
     call load_case(self%values, self%case, self%wrong, self%groups)
-    !$omp end critical (texts)
   end subroutine put
 
   !> Convert the value of parameter i, which `put` sets in the case. Error: a text that is not a value of its key; the message does
@@ -108,9 +106,7 @@ contains
         self%values%values(place)%written(1) = text
         if (allocated(wanted)) call fail(error, wanted, status_case_file)
       else
-        !$omp critical (texts)
         call self%values%assign_text(place, text, .true., '', error)
-        !$omp end critical (texts)
       end if
     end associate
   end subroutine convert
@@ -120,13 +116,11 @@ contains
     class(study_case_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
     integer :: i
-    !$omp critical (texts)
     do i = 1, size(self%places)
       if (self%values%is_used(self%places(i)) .and. .not. allocated(error)) call self%values%check_range(self%places(i), error)
     end do
     if (self%varies_words .and. .not. allocated(error)) call self%values%check(error)
     if (.not. allocated(error) .and. allocated(self%wrong)) error = self%wrong
     if (.not. allocated(error)) call check_rules(self%case, self%values, error)
-    !$omp end critical (texts)
   end subroutine check
 end module study_case

@@ -29,9 +29,7 @@ module study_definition
     character(len=:), allocatable :: name, file     !! NAME of its results; path as given by the user
     character(len=:), allocatable :: title
     character(len=:), allocatable :: case           !! path of the base case
-    character(len=:), allocatable :: table          !! path of a table of runs; empty: a design over parameters
-    character(len=:), allocatable :: design
-    integer :: runs = 0, seed = 0                   !! for a sampled design
+    character(len=:), allocatable :: table          !! path of a table of runs; empty: a grid over parameters
     integer :: settle_cycles = 0                    !! number of revolutions at the start that are left out of the statistics
     character(len=:), allocatable :: traces
     logical :: cycles = .false.                     !! write the statistics of every revolution too
@@ -56,7 +54,8 @@ contains
     call schema%begin()
     call schema%group('study', 'A base case that is run many times. The case itself must be correct', .true.)
     call study%parameters(schema)
-    call schema%group('parameter', 'One key that is varied. Give one group for each key', .true.)
+    call schema%group('parameter', &
+      'One key that is varied. Give one group for each key; the runs are a grid, in which the last one changes fastest', .true.)
     call parameter%parameters(schema)
     call schema%take(table)
   end subroutine study_schema_of
@@ -68,10 +67,6 @@ contains
     call list%text('case', self%case, 'base case, path relative to the study file', example='sim_I.nml')
     call list%text('table', self%table, &
       'CSV file with a column for each key and a row for each run, instead of &parameter; path relative to the study file', '')
-    call list%word('design', self%design, 'grid, latin_hypercube, sobol', 'grid', &
-      'how runs fill the ranges; in a grid the last parameter changes fastest')
-    call list%add('runs', self%runs, 'number of runs of a latin_hypercube or sobol design', '> 0 and <= 10000000', '0')
-    call list%add('seed', self%seed, 'seed of a latin_hypercube or sobol design; sobol with 0: unshifted points', '>= 0', '0')
     call list%add('settle_cycles', self%settle_cycles, &
       'crank revolutions at the start that are left out of the statistics', '>= 0', '0')
     call list%word('traces', self%traces, 'none, all, failed', 'none', 'runs whose trace is written to NAME/RUN.csv')
@@ -95,7 +90,7 @@ contains
     call list%text('key', self%key, 'GROUP.KEY that is varied', example='joint.clearance')
     call list%add('from', self%from, 'first value of the range', default='0.0', example='1.0e-5')
     call list%add('to', self%to, 'last value of the range', default='0.0', example='5.0e-5')
-    call list%add('count', self%count, 'number of values in a grid', '>= 2 and <= 10000000', '0', '5')
+    call list%add('count', self%count, 'number of values', '>= 2 and <= 10000000', '0', '5')
     call list%word('scale', self%scale, 'linear, log', 'linear', 'scale in which the values are equidistant')
     call list%text('values', self%values, 'list of values separated by commas, instead of from, to and count', '', .true.)
   end subroutine parameters_of_parameter

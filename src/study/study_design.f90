@@ -8,8 +8,6 @@ module study_design
   use number_text, only: number_writer_t, longest_number
   use study_definition, only: study_t, parameter_t
   use study_table, only: study_table_t, read_table
-  use random_numbers, only: random_numbers_t
-  use sobol_points, only: sobol_points_t, most_dimensions
   implicit none
   private
   public :: study_design_t, new_design
@@ -21,10 +19,8 @@ module study_design
     integer :: text_length = 1                          !! length of the longest value
     character(len=:), allocatable :: keys(:)            !! GROUP.KEY of each parameter
     logical, allocatable :: is_whole(:)  !! parameters whose ranges are of whole numbers; must be set before `get_values` is called
-    type(study_table_t) :: table                        !! without rows for a design over parameters
+    type(study_table_t) :: table                        !! without rows for a grid
     type(parameter_t), allocatable, private :: axes(:)
-    real(dp), allocatable, private :: fraction(:, :)    !! relative position in the range, (parameters, runs), for a Latin hypercube
-    type(sobol_points_t), private :: sobol              !! prepared for a design of Sobol's points
     type(number_writer_t), private :: numbers
   contains
     procedure :: get_values
@@ -67,63 +63,13 @@ contains
         end do
       end associate
     end do
-    if (study%design /= 'grid') runs = study%runs
     if (runs > most_runs) then
       call fail(error, printable(study%file, 200)//': the grid has more than '//integer_text(most_runs)//' runs', &
                 status_case_file)
       return
     end if
     design%runs = int(runs)
-    if (study%design == 'latin_hypercube') call fill_hypercube(design, study%seed)
-    if (study%design == 'sobol') call begin_sobol(study, design, error)
   end subroutine new_design
-
-  !> Latin hypercube (McKay, Beckman and Conover 1979): each range is divided into as many equal parts as there are runs. Every part
-  !> contains one run, at a random position; for each parameter a random permutation assigns the parts to the runs.
-  subroutine fill_hypercube(design, seed)
-    type(study_design_t), intent(inout) :: design
-    integer, intent(in) :: seed
-    type(random_numbers_t) :: random
-    integer :: permutation(design%runs), i, k, other, kept
-    real(dp) :: u
-    call random%begin(seed)
-    allocate (design%fraction(size(design%axes), design%runs))
-    do i = 1, size(design%axes)
-      permutation = [(k, k=0, design%runs - 1)]
-      do k = design%runs, 2, -1
-        call random%below(k, other)
-        kept = permutation(k)
-        permutation(k) = permutation(other + 1)
-        permutation(other + 1) = kept
-      end do
-      do k = 1, design%runs
-        call random%uniform(u)
-        design%fraction(i, k) = (permutation(k) + u)/design%runs
-      end do
-    end do
-  end subroutine fill_hypercube
-
-  !> Sobol's points 0, 1, ...; a seed other than 0 adds a random digital shift in every dimension.
-  subroutine begin_sobol(study, design, error)
-    type(study_t), intent(in) :: study
-    type(study_design_t), intent(inout) :: design
-    type(error_t), allocatable, intent(out) :: error
-    type(random_numbers_t) :: random
-    real(dp) :: u
-    integer :: i
-    if (size(design%axes) > most_dimensions) then
-      call fail(error, printable(study%file, 200)//': design = ''sobol'' takes up to '//integer_text(most_dimensions)// &
-                ' parameters', status_case_file)
-      return
-    end if
-    call design%sobol%prepare(size(design%axes))
-    if (study%seed == 0) return
-    call random%begin(study%seed)
-    do i = 1, size(design%axes)
-      call random%uniform(u)
-      design%sobol%shift(i) = int(u*2.0_dp**32, int64)
-    end do
-  end subroutine begin_sobol
 
   !> The run of a grid in which parameter i has its last value and all others have their first value.
   pure integer function outermost(self, i)
@@ -143,7 +89,6 @@ contains
     integer, intent(in) :: run
     character(len=*), intent(out) :: values(:)   !! (parameters), of length text_length
     integer :: i, rest, level
-    real(dp) :: fraction
     if (self%table%rows > 0) then
       do i = 1, size(values)
         values(i) = self%table%field(i, run)
@@ -153,21 +98,12 @@ contains
     rest = run - 1
     do i = size(self%axes), 1, -1
       associate (axis => self%axes(i))
-        if (allocated(self%fraction)) then
-          fraction = self%fraction(i, run)
-          level = int(fraction*axis%levels())
-        else if (allocated(self%sobol%direction)) then
-          fraction = self%sobol%coordinate(run - 1, i)
-          level = int(fraction*axis%levels())
-        else
-          level = mod(rest, axis%levels())
-          rest = rest/axis%levels()
-          fraction = real(level, dp)/max(1, axis%levels() - 1)
-        end if
+        level = mod(rest, axis%levels())
+        rest = rest/axis%levels()
         if (size(axis%list) > 0) then
           values(i) = axis%list(level + 1)%text
         else
-          call put_number(self%numbers, axis, self%is_whole(i), fraction, values(i))
+          call put_number(self%numbers, axis, self%is_whole(i), real(level, dp)/max(1, axis%levels() - 1), values(i))
         end if
       end associate
     end do

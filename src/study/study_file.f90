@@ -144,10 +144,6 @@ contains
     call forbid(study%case == '', 'case', 'must name a case file')
     call forbid(study%table /= '' .and. n_parameters > 0, 'table', 'must not be given together with &parameter')
     call forbid(study%table == '' .and. n_parameters == 0, 'table', 'this or &parameter is required')
-    call forbid(study%table /= '' .and. values%is_given('study', 'design'), 'design', 'must not be given together with table')
-    call forbid(study%design == 'grid' .and. study%runs > 0, 'runs', &
-      'is for design = ''latin_hypercube'' or ''sobol''; a grid has the count of each parameter')
-    call forbid(study%design /= 'grid' .and. study%runs == 0, 'runs', 'required with design = '''//trim(study%design)//'''')
 
   contains
 
@@ -171,7 +167,7 @@ contains
         p%key = lowercase(p%key)
         call split(p%values, p%list)
       end associate
-      call check_parameter(groups(i), study, study%varied(i), error)
+      call check_parameter(groups(i), study%varied(i), error)
       if (allocated(error)) return
       do k = 1, i - 1
         if (study%varied(k)%key /= study%varied(i)%key) cycle
@@ -184,9 +180,8 @@ contains
   end subroutine take_parameters
 
   !> Check that a parameter has either a range or a list.
-  subroutine check_parameter(values, study, p, error)
+  subroutine check_parameter(values, p, error)
     type(case_values_t), intent(in) :: values
-    type(study_t), intent(in) :: study
     type(parameter_t), intent(in) :: p
     type(error_t), allocatable, intent(out) :: error
     logical :: has_from, has_to
@@ -199,8 +194,7 @@ contains
     call forbid(.not. has_from, 'from', 'from and to, or values, are required')
     call forbid(.not. has_to, 'to', 'required with from')
     call forbid(p%scale == 'log' .and. .not. (p%from > 0 .and. p%to > 0), 'scale', 'from and to must be > 0 for scale = ''log''')
-    call forbid(study%design == 'grid' .and. p%count == 0, 'count', 'required on a grid, with from and to')
-    call forbid(study%design /= 'grid' .and. p%count > 0, 'count', 'is for a grid; a sampled design has runs')
+    call forbid(p%count == 0, 'count', 'required with from and to')
 
   contains
 

@@ -3,8 +3,8 @@
 module study_rows
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
-  use chain_motion, only: crank_pin, piston_pin
-  use case_definition, only: case_t, crank_pin_place
+  use joint_places, only: places, n_places, in_order, name_prefix
+  use case_definition, only: case_t
   use gudgeon_columns, only: column_list_t, column_name
   use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt
   use cycle_watch, only: cycle_watch_t
@@ -18,13 +18,11 @@ module study_rows
   public :: study_row_t, run_header, cycle_header, strobe_header
   public :: put_run, put_cycles, put_strobes
 
-  character(len=*), parameter :: crank_pin_prefix = crank_pin_place//'_'
-
   !> One or more rows.
   type, extends(row_text_t) :: study_row_t
     logical :: is_header = .false.       !! names of columns are put instead of values
     logical :: has_strobes = .false.     !! the study has strobes
-    logical :: has_crank_pin = .false.   !! the study has columns of the crank pin
+    logical :: has_place(n_places) = .false.   !! the study has columns of the pin at each place
     logical :: has_guide = .false.       !! the study has columns of the piston in its bore
     logical :: has_wear = .false.        !! the study has columns of wear
     logical :: has_motion = .false.      !! the study has columns of the period or the Lyapunov exponent
@@ -70,10 +68,15 @@ contains
     character(len=*), intent(in) :: keys(:)   !! keys of the parameters
     type(case_t), intent(in) :: base
     logical, intent(in) :: has_strobes
+    integer :: i
     self%has_strobes = has_strobes
-    self%has_crank_pin = base%crank_pin%has_clearance() .or. any(index(keys, crank_pin_place//'.') == 1)
+    self%has_place = base%joints%has_clearance()
+    self%has_place(in_order(1)) = .true.
     self%has_guide = base%has_loose_guide() .or. any(keys == 'guide.kind')
-    self%has_wear = allocated(base%joint%wear) .or. allocated(base%crank_pin%wear) .or. any(index(keys, 'wear.') > 0)
+    self%has_wear = base%has_wear() .or. any(index(keys, 'wear.') > 0)
+    do i = 1, n_places
+      self%has_place(i) = self%has_place(i) .or. any(index(keys, trim(places(i)%name)//'.') == 1)
+    end do
     self%has_motion = base%run%is_until_periodic() .or. base%run%lyapunov_revolutions > 0 .or. &
       any(keys == 'run.until') .or. any(keys == 'run.lyapunov_revolutions')
   end subroutine choose
@@ -120,7 +123,7 @@ contains
   end function strobe_header
 
   !> Append the row of a run: its outcome if it began, and its statistics if it is done and has at least one revolution. The columns
-  !> of all studies are followed by the number of strobes, if the study has any, and by those of the crank pin.
+  !> of all studies are followed by the number of strobes, if the study has any, and by those of further pins.
   subroutine put_run(row, run, values, outcome, has_begun, watch, report, case)
     class(study_row_t), intent(inout) :: row
     integer, intent(in) :: run
@@ -155,8 +158,9 @@ contains
       call row%put('lyapunov_exponent[1/revolution]', report%exponent%mean, is_done .and. report%exponent%is_known)
       call row%put('lyapunov_exponent_error[1/revolution]', report%exponent%error, is_done .and. report%exponent%is_known)
     end if
-    if (row%has_wear) call put_wear(row, report, piston_pin, '', is_done)
-    if (row%has_wear .and. row%has_crank_pin) call put_wear(row, report, crank_pin, crank_pin_prefix, is_done)
+    do i = 1, n_places
+      if (row%has_wear .and. row%has_place(in_order(i))) call put_wear(row, report, in_order(i), name_prefix(in_order(i)), is_done)
+    end do
     call row%end_row()
   end subroutine put_run
 
@@ -217,27 +221,32 @@ contains
     call row%end_row()
   end subroutine put_cycle
 
-  !> Append the columns of the piston pin and the motion that all studies have.
+  !> Append the columns of the first pin and the motion that all studies have.
   subroutine put_motion(row, s, direction, case, is_there, with_means)
     class(study_row_t), intent(inout) :: row
     type(cycle_statistics_t), intent(in) :: s   !! of all revolutions of a run, or of one
     real(dp), intent(in) :: direction           !! sense in which the crank turns: 1 or -1
     type(case_t), intent(in) :: case
     logical, intent(in) :: is_there, with_means   !! the revolutions were made; means over several revolutions are wanted
-    call put_pin(row, s, '', piston_pin, is_there .and. case%joint%has_clearance(), is_there, with_means)
+    associate (first => in_order(1))
+      call put_pin(row, s, first, is_there .and. case%joints(first)%has_clearance(), is_there, with_means)
+    end associate
     call row%put('mean_crank_speed[rad/s]', direction*two_pi*s%cycles/s%total%duration, is_there)
     call row%put('dissipated_energy[J]', s%total%dissipated_energy/s%cycles, is_there .and. case%has_play())
   end subroutine put_motion
 
-  !> Append the columns of the crank pin and the piston in its bore, if the study has them.
+  !> Append the columns of further pins and of the piston in its bore, if the study has them.
   subroutine put_further_joints(row, s, case, is_there, with_means)
     class(study_row_t), intent(inout) :: row
     type(cycle_statistics_t), intent(in) :: s
     type(case_t), intent(in) :: case
     logical, intent(in) :: is_there, with_means   !! see `put_motion`
     logical :: is_loose
-    is_loose = is_there .and. case%crank_pin%has_clearance()
-    if (row%has_crank_pin) call put_pin(row, s, crank_pin_prefix, crank_pin, is_loose, is_loose, with_means)
+    integer :: i
+    do i = 2, n_places
+      is_loose = is_there .and. case%joints(in_order(i))%has_clearance()
+      if (row%has_place(in_order(i))) call put_pin(row, s, in_order(i), is_loose, is_loose, with_means)
+    end do
     if (.not. row%has_guide) return
     is_loose = is_there .and. case%has_loose_guide()
     associate (total => s%total%pin(skirt))
@@ -249,12 +258,13 @@ contains
     end associate
   end subroutine put_further_joints
 
-  subroutine put_pin(row, s, prefix, pin, has_clearance, has_force, with_means)
+  subroutine put_pin(row, s, pin, has_clearance, has_force, with_means)
     class(study_row_t), intent(inout) :: row
     type(cycle_statistics_t), intent(in) :: s
-    character(len=*), intent(in) :: prefix
-    integer, intent(in) :: pin
+    integer, intent(in) :: pin   !! index in `places`
     logical, intent(in) :: has_clearance, has_force, with_means
+    character(len=:), allocatable :: prefix
+    prefix = name_prefix(pin)
     associate (total => s%total%pin(pin), duration => s%total%duration)
       call row%put(prefix//'min_film_thickness[m]', total%min_film_thickness, has_clearance)
       if (with_means) call row%put(prefix//'min_film_thickness_mean[m]', s%film_sum(pin)/s%cycles, has_clearance)

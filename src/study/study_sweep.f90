@@ -1,4 +1,4 @@
-!> A study that has been read and checked, with the data shared by its threads while it runs.
+!> A study that has been read and checked.
 module study_sweep
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_command_line, status_case_file, status_integration
@@ -12,42 +12,26 @@ module study_sweep
   use case_values, only: case_values_t
   use accuracy_presets, only: with_preset
   use command_line, only: command_line_t
-  use gudgeon_progress, only: progress_t
   use study_definition, only: study_t
   use study_file, only: read_study
   use study_design, only: study_design_t, new_design
   use study_case, only: study_case_t
-  use random_numbers, only: random_numbers_t
-  use row_file, only: row_file_t
-  use case_lock, only: case_lock_t
   use gudgeon_posix, only: absolute_path
   implicit none
   private
-  public :: sweep_t, read_sweep, check_rows, study_checksum, file_cycles, file_strobes, file_runs
+  public :: sweep_t, read_sweep, check_rows, study_checksum
 
-  integer, parameter :: file_cycles = 1, file_strobes = 2, file_runs = 3  !! indices of the files of a sweep; the first two are
-                                                                          !! optional
   integer, parameter :: most_checked = 100000   !! largest number of runs of a design that a check tests
 
-  !> A running study, shared by its threads.
+  !> A study with its design and its base case.
   type :: sweep_t
     type(study_t) :: study
     type(study_design_t) :: design
     type(study_case_t) :: base
     type(column_list_t) :: strobe_list
     character(len=:), allocatable :: path          !! of the results, without suffix
-    integer :: first = 1, last = 0                 !! range of runs
-    logical :: is_drawn = .false.                  !! in a check, the design is a smaller one that represents that of the study
-    type(row_file_t) :: files(3)                   !! in the order in which they are written to the disk; indices file_...
-    type(progress_t) :: progress
-    type(case_lock_t) :: lock
+    integer :: first = 1, last = 0                 !! range of runs that are to be carried out
     logical :: has_strobes = .false.
-    integer :: began = 0, done = 0, failed = 0     !! number of rows at the start and now, and number of failed runs
-    integer :: incomplete = 0                      !! number of runs with a row but incomplete other results
-    integer :: next = 1                            !! next run that no thread has taken
-    real(dp) :: next_write = 0                     !! time of the next write [s]
-    logical :: is_over = .false.                   !! interrupted, or writing has failed
-    type(error_t), allocatable :: error
   end type sweep_t
 
 contains
@@ -72,9 +56,6 @@ contains
     end if
     sweep%path = options%out//'/'//sweep%study%name
     associate (study => sweep%study, design => sweep%design)
-      sweep%last = study%runs
-      sweep%is_drawn = options%check .and. study%design == 'latin_hypercube' .and. study%runs > most_checked
-      if (sweep%is_drawn) study%runs = most_checked
       call new_design(study, values%values(values%place_of('output', 'digits'))%whole, design, error)
       if (allocated(error)) return
       call refuse_varied(with_preset(options%accuracy, options%overrides), options, values, design%keys, error)
@@ -95,7 +76,7 @@ contains
       end do
       call check_values(sweep, error)
       if (allocated(error)) return
-      if (.not. sweep%is_drawn) sweep%last = design%runs
+      sweep%last = design%runs
       if (options%last_row > sweep%last) then
         call fail(error, at//'--rows '//integer_text(options%first_row)//':'//integer_text(options%last_row)// &
                   ': the study has '//integer_text(sweep%last)//' runs', status_case_file)
@@ -103,7 +84,6 @@ contains
       else if (options%last_row > 0) then
         sweep%first = options%first_row
         sweep%last = options%last_row
-        sweep%path = sweep%path//'.'//integer_text(sweep%first)//'-'//integer_text(sweep%last)
       end if
       if (study%strobe_columns == '') then
         allocate (sweep%strobe_list%id(0))
@@ -219,34 +199,30 @@ contains
     end associate
   end subroutine check_values
 
-  !> Check whether the runs are possible, as far as their values tell: all runs of a table and of a design of moderate size. From a
-  !> larger design runs are drawn at random; for a grid the runs with the last value of each parameter are added; a large Latin
-  !> hypercube is replaced by a smaller one over the same ranges. `line` says how many runs there are. The error names the first run
-  !> that would fail, and has the status of a sweep with failed runs.
+  !> Check whether the runs are possible, as far as their values tell: all runs of a table and of a grid of moderate size. Of a
+  !> larger grid, runs spread over it are checked, and those with the last value of each parameter. `line` says how many runs there
+  !> are. The error names the first run that would fail, and has the status of a sweep with failed runs.
   subroutine check_rows(sweep, line, error)
     type(sweep_t), intent(inout) :: sweep
     character(len=:), allocatable, intent(out) :: line
     type(error_t), allocatable, intent(out) :: error
-    type(random_numbers_t) :: random
-    integer :: i, drawn, total, failed
+    real(dp), parameter :: golden = 0.61803398874989485_dp   !! its multiples are spread evenly, and follow no period of a grid
+    integer :: i, total, failed
     total = sweep%last - sweep%first + 1
     failed = 0
     line = printable(sweep%study%file, 200)//': '
-    if (sweep%is_drawn .or. total <= most_checked .or. sweep%study%table /= '') then
-      do i = merge(1, sweep%first, sweep%is_drawn), merge(sweep%design%runs, sweep%last, sweep%is_drawn)
+    if (total <= most_checked .or. sweep%study%table /= '') then
+      do i = sweep%first, sweep%last
         call check_run(i)
       end do
     else
       do i = 1, size(sweep%design%keys)
-        if (sweep%study%design == 'grid') &
-          call check_run(min(sweep%last, max(sweep%first, sweep%design%outermost(i))))
+        call check_run(min(sweep%last, max(sweep%first, sweep%design%outermost(i))))
       end do
       call check_run(sweep%first)
       call check_run(sweep%last)
-      call random%begin(0)
       do i = 1, most_checked
-        call random%below(total, drawn)
-        call check_run(sweep%first + drawn)
+        call check_run(sweep%first + int(total*modulo(golden*i, 1.0_dp)))
       end do
     end if
     if (.not. allocated(error)) line = line//'correct, '
@@ -260,7 +236,6 @@ contains
     subroutine check_run(run)
       integer, intent(in) :: run
       character(len=sweep%design%text_length) :: values(size(sweep%design%keys))
-      character(len=:), allocatable :: which
       type(error_t), allocatable :: problem
       call sweep%design%get_values(run, values)
       call sweep%base%put(values, problem)
@@ -268,9 +243,7 @@ contains
       if (.not. allocated(problem)) return
       failed = failed + 1
       if (allocated(error)) return
-      which = 'run '//integer_text(run)
-      if (sweep%is_drawn) which = 'some runs'
-      call fail(error, printable(sweep%study%file, 200)//': '//which//': '//problem%message, status_integration)
+      call fail(error, printable(sweep%study%file, 200)//': run '//integer_text(run)//': '//problem%message, status_integration)
     end subroutine check_run
   end subroutine check_rows
 

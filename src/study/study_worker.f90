@@ -1,4 +1,4 @@
-!> The data of one thread that carries out runs of a study one after the other. Everything is allocated once; a run allocates only
+!> The data of one process that carries out runs of a study one after the other. Everything is allocated once; a run allocates only
 !> what the simulation itself needs.
 module study_worker
   use gudgeon_errors, only: error_t
@@ -6,8 +6,9 @@ module study_worker
   use gudgeon_columns, only: column_list_t, choose_columns
   use cycle_watch, only: cycle_watch_t
   use film_files, only: provide_tables
-  use gudgeon_simulation, only: simulate, run_report_t, interrupted_text
-  use row_store, only: patient_sink_t
+  use gudgeon_simulation, only: run_t, run_report_t
+  use patient_run, only: go_to_end
+  use trace_sink, only: trace_sink_t
   use trace_files, only: trace_files_t
   use study_definition, only: study_t
   use study_design, only: study_design_t
@@ -68,11 +69,12 @@ contains
     integer, intent(in) :: number
     type(run_report_t) :: report
     type(error_t), allocatable :: error
-    type(patient_sink_t) :: sink
+    type(trace_sink_t) :: nowhere
     character(len=:), allocatable :: outcome
     logical :: has_begun
 
     self%is_done = .false.
+    self%was_interrupted = .false.
     has_begun = .false.
     call design%get_values(number, self%values)
     call self%base%put(self%values, error)
@@ -85,8 +87,7 @@ contains
       if (self%traces_all) then
         call run_with_trace(self, number, report, error)
       else
-        call simulate(self%base%case, .false., self%no_columns, sink, report, error, cycles=self%watch)
-        self%was_interrupted = sink%wants_to_stop
+        call carry_out(self, self%no_columns, nowhere, report, error)
         if (allocated(error) .and. self%traces_failed .and. .not. self%was_interrupted) &
           call run_with_trace(self, number, report, error)
       end if
@@ -107,6 +108,20 @@ contains
     call put_strobes(self%strobe_rows, number, self%watch)
   end subroutine run
 
+  !> Carry out the run whose values have been set. If the user interrupts it, it is abandoned.
+  subroutine carry_out(self, list, sink, report, error)
+    class(study_worker_t), intent(inout) :: self
+    type(column_list_t), intent(in) :: list
+    class(trace_sink_t), target, intent(inout) :: sink
+    type(run_report_t), intent(out) :: report
+    type(error_t), allocatable, intent(out) :: error
+    type(run_t) :: run
+    call run%begin(self%base%case, .false., list, sink, error, self%watch)
+    if (allocated(error)) return
+    call go_to_end(run, self%was_interrupted)
+    call run%finish(report, error, self%watch)
+  end subroutine carry_out
+
   !> Carry out the run whose values have been set, with a trace NAME/RUN.csv and its events.
   subroutine run_with_trace(self, number, report, error)
     class(study_worker_t), intent(inout) :: self
@@ -117,18 +132,13 @@ contains
     type(column_list_t) :: list
     character(len=12) :: name
     write (name, '(i0)') number
-    !$omp critical (texts)
     call choose_columns(self%base%case, .false., list, error)
     if (.not. allocated(error)) call files%open(self%trace_folder//'/'//trim(name), list, self%base%case%output%digits, &
       self%base%case%has_contact(), self%output_error)
-    !$omp end critical (texts)
     if (allocated(error) .or. allocated(self%output_error)) return
-    call simulate(self%base%case, .false., list, files, report, error, cycles=self%watch)
+    call carry_out(self, list, files, report, error)
     call files%file%synchronise()   ! before the row that reports the run as done
-    !$omp critical (texts)
     call files%close(self%output_error)
-    !$omp end critical (texts)
-    if (allocated(error)) self%was_interrupted = index(error%message, interrupted_text) == 1
   end subroutine run_with_trace
 
   !> A message without the file name before its group.

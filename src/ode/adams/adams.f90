@@ -25,7 +25,6 @@ module adams
   use ode_method, only: ode_method_t, highest_order, step_done, step_too_small, tolerance_too_small, left_domain, limit_start
   use adams_coefficients, only: adams_coefficients_t
   use adams_differences, only: extrapolate, correct
-  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: adams_t
@@ -80,7 +79,6 @@ module adams
     procedure :: step
     procedure :: interpolate
     procedure :: start_with_history
-    procedure :: exchange
   end type adams_t
 
   interface
@@ -106,13 +104,6 @@ module adams
       class(adams_t), intent(inout) :: self
       class(ode_problem_t), intent(in) :: problem
     end subroutine prepare
-
-    !> Write all components except those set by `prepare` and the work arrays of a step to an archive, or read them from it.
-    module subroutine exchange(self, problem, archive)
-      class(adams_t), intent(inout) :: self
-      class(ode_problem_t), intent(in) :: problem
-      type(archive_t), intent(inout) :: archive
-    end subroutine exchange
 
     !> Weights of the error norm for the present state, and the norm of its rounding error.
     pure module subroutine weigh(self)

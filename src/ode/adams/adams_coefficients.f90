@@ -2,7 +2,6 @@
 module adams_coefficients
   use gudgeon_kinds, only: dp
   use ode_method, only: highest_order
-  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: adams_coefficients_t, moulton_constants, interpolation_weights, stability_limit
@@ -30,7 +29,6 @@ module adams_coefficients
     procedure :: reset
     procedure :: update
     procedure :: take_back
-    procedure :: exchange
   end type adams_coefficients_t
 
 contains
@@ -149,21 +147,6 @@ contains
     self%psi(k) = self%psi_before
     self%ns = 0
   end subroutine take_back
-
-  !> Write the coefficients to an archive, or read them from it.
-  subroutine exchange(self, archive)
-    class(adams_coefficients_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%psi)
-    call archive%exchange(self%alpha)
-    call archive%exchange(self%beta)
-    call archive%exchange(self%sigma)
-    call archive%exchange(self%g)
-    call archive%exchange(self%v)
-    call archive%exchange(self%beta_next)
-    call archive%exchange(self%sigma_next)
-    call archive%exchange(self%ns)
-  end subroutine exchange
 
   !> Newton basis polynomials integrated from t_n+1 to t_n+1 + s (-h <= s <= 0) and divided by s. With them y(t_n+1 + s) = y_n+1 + s
   !> sum_i weights(i) phi_i, i = 1..k+2. The last basis polynomial vanishes at all k+1 points t_n+1..t_n+1-k, so that its

@@ -72,32 +72,6 @@ contains
       self%carry(n), self%carry_new(n), self%y(n), self%y_old(n))
   end procedure prepare
 
-  module procedure exchange
-    if (archive%is_reading) call prepare(self, problem)
-    call self%exchange_solution(problem, archive)
-    call self%coefficients%exchange(archive)
-    call archive%exchange(self%k)
-    call archive%exchange(self%k_old)
-    call archive%exchange(self%closed)
-    call archive%exchange(self%rooted)
-    call archive%exchange(self%t_origin)
-    call archive%exchange(self%x)
-    call archive%exchange(self%x_old)
-    call archive%exchange(self%h)
-    call archive%exchange(self%h_old)
-    call archive%exchange(self%limit)
-    call archive%exchange(self%bound)
-    call archive%exchange(self%higher_known)
-    call archive%exchange(self%rounding_square)
-    call archive%exchange(self%opening)
-    call archive%exchange(self%phi)
-    call archive%exchange(self%owed)
-    call archive%exchange(self%f)
-    call archive%exchange(self%inverse_weight)
-    call archive%exchange(self%carry)
-    call archive%exchange(self%closing)
-  end procedure exchange
-
   !> Choose the first step so that the error of order 1, h^2 |y''|/2, is a quarter of the tolerance. y'' is estimated by an Euler
   !> step that is short, but not shorter than the time resolves (Hairer, Norsett & Wanner 1993, II.4).
   subroutine choose_first_step(self, problem)

@@ -12,7 +12,6 @@ module collocation
   use ode_problem, only: ode_problem_t
   use radau_coefficients, only: radau_formula_t, radau_formula, most_stages
   use small_lu, only: solve
-  use gudgeon_archive, only: archive_t
   implicit none
   private
   public :: collocation_t, most_iterations, n_formulas
@@ -74,7 +73,6 @@ module collocation
     procedure :: polynomial
     procedure :: improve
     procedure :: fastest_rate
-    procedure :: exchange
   end type collocation_t
 
   interface
@@ -190,27 +188,6 @@ contains
     self%w = 0    ! columns beyond the stages in use are included in halvings
     self%dw = 0
   end subroutine prepare
-
-  !> Write the data kept between two steps to an archive, or read them from it, after `prepare`.
-  subroutine exchange(self, archive)
-    class(collocation_t), intent(inout) :: self
-    type(archive_t), intent(inout) :: archive
-    call archive%exchange(self%level)
-    call archive%exchange(self%t)
-    call archive%exchange(self%h)
-    call archive%exchange(self%goal)
-    call archive%exchange(self%rounding)
-    call archive%exchange(self%base)
-    call archive%exchange(self%inverse_weight)
-    call archive%exchange(self%evaluations)
-    call archive%exchange(self%contraction)
-    call archive%exchange(self%iterations)
-    call archive%exchange(self%stages_done)
-    call archive%exchange(self%h_done)
-    call archive%exchange(self%z)
-    call archive%exchange(self%a_p)
-    call archive%exchange(self%a_v)
-  end subroutine exchange
 
   !> Number of stages of the formula in use.
   pure integer function stages(self)

@@ -6,7 +6,6 @@ module radau
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, step_admitted, step_too_far
   use ode_method, only: ode_method_t, step_done, step_too_small, tolerance_too_small, left_domain
-  use gudgeon_archive, only: archive_t
   use collocation, only: collocation_t, n_formulas, newton_converged, newton_diverged, newton_outside, guess_ahead
   implicit none
   private
@@ -51,7 +50,6 @@ module radau
     procedure :: improve
     procedure :: land_on
     procedure :: withdraw
-    procedure :: exchange
   end type radau_t
 
   interface
@@ -68,13 +66,6 @@ module radau
       class(radau_t), intent(inout) :: self
       class(ode_problem_t), intent(in) :: problem
     end subroutine prepare
-
-    !> Write all components except those set by `prepare` and the work arrays of a step to an archive, or read them from it.
-    module subroutine exchange(self, problem, archive)
-      class(radau_t), intent(inout) :: self
-      class(ode_problem_t), intent(in) :: problem
-      type(archive_t), intent(inout) :: archive
-    end subroutine exchange
 
     !> Repeat the last step with the size that ends at t. `landed` is false if Newton's method does not converge, also with other
     !> Jacobians, or if the error estimate is above the tolerance; y is then the interpolant.

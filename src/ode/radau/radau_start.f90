@@ -43,21 +43,6 @@ contains
     allocate (self%y_try(n), self%y_new(n), self%f_new(n), self%error(n), self%y(n), self%y_old(n), self%f(n), self%f_old(n))
   end procedure prepare
 
-  module procedure exchange
-    if (archive%is_reading) call prepare(self, problem)
-    call self%exchange_solution(problem, archive)
-    call archive%exchange(self%f)
-    call self%stages%exchange(archive)
-    call archive%exchange(self%h)
-    call archive%exchange(self%h_last)
-    call archive%exchange(self%error_done)
-    call archive%exchange(self%since_change)
-    call archive%exchange(self%fresh_jacobian)
-    call archive%exchange(self%failed)
-    call archive%exchange(self%cautious)
-    call archive%exchange(self%first)
-  end procedure exchange
-
   module procedure first_level
     real(dp) :: tolerance
     tolerance = working_tolerance(self)

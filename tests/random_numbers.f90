@@ -15,7 +15,6 @@ module random_numbers
   contains
     procedure :: begin
     procedure :: uniform
-    procedure :: below
   end type random_numbers_t
 
 contains
@@ -48,14 +47,4 @@ contains
     if (p1 == 0) p1 = m1
     u = p1*(1/real(m1 + 1, dp))
   end subroutine uniform
-
-  !> The next whole number from 0 to n - 1.
-  subroutine below(self, n, number)
-    class(random_numbers_t), intent(inout) :: self
-    integer, intent(in) :: n
-    integer, intent(out) :: number
-    real(dp) :: u
-    call self%uniform(u)
-    number = min(n - 1, int(u*n))
-  end subroutine below
 end module random_numbers

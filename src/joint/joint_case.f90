@@ -1,0 +1,168 @@
+!> A joint as a case describes it: its kind and its bearing, and the laws that act in it. An ideal joint has no laws.
+!>
+!> The list of its groups is in the submodule `joint_groups`, so that a change of a law does not require the modules that use a case
+!> to be compiled again.
+module joint_case
+  use gudgeon_kinds, only: dp
+  use gudgeon_parameters, only: has_parameters_t, parameter_list_t, law_t
+  use gudgeon_bearing, only: bearing_t
+  use contact_law, only: contact_law_t
+  use friction_law, only: friction_law_t
+  use film_law, only: film_law_t
+  use film_transition, only: film_transition_t
+  use oil_viscosity, only: oil_t
+  use asperities, only: asperities_t
+  use archard_wear, only: wear_law_t
+  implicit none
+  private
+  public :: joint_case_t, visit_joint, drop_laws, select_contact, select_friction
+
+  !> Elastic walls in series with the film: see `elastic_film`.
+  type, extends(has_parameters_t) :: elastic_walls_t
+    logical :: is_wanted = .false.
+    real(dp) :: pressure_viscosity = 0     !! alpha [1/Pa]
+  contains
+    procedure :: parameters => wall_parameters
+  end type elastic_walls_t
+
+  type, extends(has_parameters_t) :: joint_case_t
+    character(len=:), allocatable :: kind
+    real(dp) :: clearance = 0, bearing_radius = 0, bearing_length = 0
+    class(contact_law_t), allocatable :: contact
+    class(friction_law_t), allocatable :: friction
+    logical :: reports_friction_work = .false.
+    class(film_law_t), allocatable :: film
+    type(film_transition_t) :: transition
+    logical :: reports_film = .false.
+    type(oil_t) :: oil
+    type(elastic_walls_t) :: elastic
+    type(asperities_t), allocatable :: asperities
+    type(wear_law_t), allocatable :: wear
+  contains
+    procedure :: parameters => joint_parameters
+    procedure :: has_clearance
+    procedure :: can_touch
+    procedure :: has_elastic_film
+    procedure :: has_weighted_film
+    procedure :: has_worn_bore
+    procedure :: make_film
+    procedure :: bearing => bearing_of
+  end type joint_case_t
+
+  interface
+    !> Declare the groups of a joint and of its laws to a visitor. If another joint has clearance, the laws of an ideal joint are
+    !> not set.
+    module subroutine visit_joint(joint, place, another_has_clearance, list)
+      type(joint_case_t), intent(inout) :: joint
+      character(len=*), intent(in) :: place
+      logical, intent(in) :: another_has_clearance
+      class(parameter_list_t), intent(inout) :: list
+    end subroutine visit_joint
+  end interface
+
+contains
+
+  !> Whether a contact law acts in the joint. It does not where the contact is with the walls of an elastic film.
+  elemental logical function can_touch(self)
+    class(joint_case_t), intent(in) :: self
+    can_touch = allocated(self%contact) .and. .not. self%has_elastic_film()
+  end function can_touch
+
+  !> Whether the joint has a film between elastic walls.
+  elemental logical function has_elastic_film(self)
+    class(joint_case_t), intent(in) :: self
+    has_elastic_film = allocated(self%contact) .and. allocated(self%film) .and. self%elastic%is_wanted
+  end function has_elastic_film
+
+  !> Whether film and contact share the load over a range of penetrations.
+  pure logical function has_weighted_film(self)
+    class(joint_case_t), intent(in) :: self
+    has_weighted_film = allocated(self%film) .and. self%can_touch() .and. self%transition%is_weighted()
+  end function has_weighted_film
+
+  !> Whether the worn shape of the bore acts in the contact.
+  pure logical function has_worn_bore(self)
+    class(joint_case_t), intent(in) :: self
+    has_worn_bore = .false.
+    if (allocated(self%wear)) has_worn_bore = self%wear%bore == 'worn'
+  end function has_worn_bore
+
+  !> The law of the film with the viscosity of its oil.
+  subroutine make_film(self, film)
+    class(joint_case_t), intent(in) :: self
+    class(film_law_t), allocatable, intent(out) :: film
+    allocate (film, source=self%film)
+    if (.not. self%oil%is_known()) return
+    film%viscosity = self%oil%dynamic_viscosity()
+    film%kinematic_viscosity = self%oil%kinematic_viscosity()
+  end subroutine make_film
+
+  !> Whether the joint has clearance.
+  elemental logical function has_clearance(self)
+    class(joint_case_t), intent(in) :: self
+    has_clearance = .false.
+    if (allocated(self%kind)) has_clearance = self%kind == 'clearance'
+  end function has_clearance
+
+  !> The bearing of the joint; `rod_length` [m] is the length of the rod that carries its pin.
+  pure type(bearing_t) function bearing_of(self, rod_length)
+    class(joint_case_t), intent(in) :: self
+    real(dp), intent(in) :: rod_length
+    bearing_of = bearing_t(self%bearing_radius, self%bearing_length, self%clearance, rod_length)
+  end function bearing_of
+
+  subroutine joint_parameters(self, list)
+    class(joint_case_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%word('kind', self%kind, 'ideal, clearance', 'ideal', 'ideal: no clearance', example='clearance')
+    call list%add('clearance', self%clearance, 'radial clearance: bearing radius minus pin radius', 'm', '> 0', default='0.0', &
+      example='2.0e-5')
+    call list%add('bearing_radius', self%bearing_radius, 'radius of the bearing', 'm', '> 0', default='0.0', example='0.010')
+    call list%add('bearing_length', self%bearing_length, &
+      'width of the bearing; needed with a film and with contact geometries other than hertz_sphere', &
+      'm', '> 0', default='0.0', example='0.015')
+  end subroutine joint_parameters
+
+  subroutine wall_parameters(self, list)
+    class(elastic_walls_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('elastic_film', self%is_wanted, &
+      'elastic walls in series with the film; &contact with law = ''hertz'' gives their stiffness', '.false.')
+    call list%add('pressure_viscosity', self%pressure_viscosity, &
+      'elastic_film: exponential growth of the viscosity with the mean pressure (Barus)', &
+      '1/Pa', '>= 0 and <= 1e-6', default='0.0')
+  end subroutine wall_parameters
+
+  !> Remove laws that were given for all joints from an ideal joint.
+  subroutine drop_laws(joint)
+    type(joint_case_t), intent(inout) :: joint
+    if (joint%has_clearance()) return
+    if (allocated(joint%contact)) deallocate (joint%contact)
+    if (allocated(joint%friction)) deallocate (joint%friction)
+    if (allocated(joint%film)) deallocate (joint%film)
+    if (allocated(joint%asperities)) deallocate (joint%asperities)
+    if (allocated(joint%wear)) deallocate (joint%wear)
+  end subroutine drop_laws
+
+  !> Select the contact law that a case names, if it names one.
+  subroutine select_contact(chosen, law)
+    class(law_t), allocatable, intent(in) :: chosen
+    class(contact_law_t), allocatable, intent(out) :: law
+    if (.not. allocated(chosen)) return
+    select type (chosen)
+    class is (contact_law_t)
+      allocate (law, source=chosen)
+    end select
+  end subroutine select_contact
+
+  !> Select the friction law that a case names, if it names one.
+  subroutine select_friction(chosen, law)
+    class(law_t), allocatable, intent(in) :: chosen
+    class(friction_law_t), allocatable, intent(out) :: law
+    if (.not. allocated(chosen)) return
+    select type (chosen)
+    class is (friction_law_t)
+      allocate (law, source=chosen)
+    end select
+  end subroutine select_friction
+end module joint_case

@@ -1,0 +1,92 @@
+!> The groups of a joint and of its laws, in the order of the template.
+submodule (joint_case) joint_groups
+  use contact_geometry, only: contact_geometry_t
+  use contact_laws, only: offer_contact_laws, offer_contact_geometries
+  use friction_laws, only: offer_friction_laws
+  use films, only: offer_film_laws
+  implicit none
+
+contains
+
+  module procedure visit_joint
+    type(asperities_t) :: asperities
+    type(wear_law_t) :: wear
+    call list%group('joint', 'Joint of rod and piston (piston pin)', .false., place)
+    call joint%parameters(list)
+    if (list%sets .and. another_has_clearance .and. .not. joint%has_clearance()) return
+    call visit_contact(joint%contact, place, list)
+    call visit_friction(joint%friction, joint%reports_friction_work, place, list)
+    call visit_film(joint%film, joint%transition, joint%oil, joint%elastic, joint%reports_film, place, list)
+    call list%group('asperities', 'Contact of rough surfaces through the film. Without this group surfaces are smooth', .true., &
+      place, instead_of='contact')
+    call asperities%parameters(list)
+    if (list%sets) joint%asperities = asperities
+    if (list%is_absent()) deallocate (joint%asperities)
+    call list%group('wear', &
+      'Wear of pin and bore, with a file NAME.wear.csv. Without this group wear is not counted', .true., place)
+    call wear%parameters(list)
+    if (list%sets) joint%wear = wear
+    if (list%is_absent()) deallocate (joint%wear)
+  end procedure visit_joint
+
+  subroutine visit_contact(law, place, list)
+    class(contact_law_t), allocatable, intent(inout) :: law
+    character(len=*), intent(in) :: place
+    class(parameter_list_t), intent(inout) :: list
+    call list%group('contact', 'Contact of pin and bearing. Without this group there is no contact', .true., place)
+    call list%choice('law', 'lankarani_nikravesh', 'energy loss of an impact; hertz: no loss')
+    call offer_contact_laws(list)
+    if (list%sets) call select_contact(list%chosen, law)
+    call list%choice('geometry', 'hertz_sphere', 'elastic force of the contact')
+    call offer_contact_geometries(list)
+    if (.not. list%sets .or. .not. allocated(list%chosen)) return
+    select type (chosen => list%chosen)
+    class is (contact_geometry_t)
+      allocate (law%geometry, source=chosen)
+    end select
+  end subroutine visit_contact
+
+  subroutine visit_friction(law, reports_work, place, list)
+    class(friction_law_t), allocatable, intent(inout) :: law
+    logical, intent(inout) :: reports_work
+    character(len=*), intent(in) :: place
+    class(parameter_list_t), intent(inout) :: list
+    call list%group('friction', 'Dry friction of the contact. Without this group there is no friction', .true., place)
+    call list%choice('law', 'ambrosio', &
+      'friction law; coulomb, lugre, dahl and elasto_plastic hold a load at rest, the others let it creep')
+    call list%add('report_work', reports_work, &
+      'write the work of friction into the summary (laws with bristles always do)', '.false.')
+    call offer_friction_laws(list)
+    if (list%sets) call select_friction(list%chosen, law)
+  end subroutine visit_friction
+
+  subroutine visit_film(law, transition, oil, elastic, reports, place, list)
+    class(film_law_t), allocatable, intent(inout) :: law
+    type(film_transition_t), intent(inout) :: transition
+    type(oil_t), intent(inout) :: oil
+    type(elastic_walls_t), intent(inout) :: elastic
+    logical, intent(inout) :: reports
+    character(len=*), intent(in) :: place
+    class(parameter_list_t), intent(inout) :: list
+    call list%group('lubrication', 'Oil film in the clearance. Without this group the joint is dry', .true., place)
+    call list%choice('law', 'pinkus_sternlicht', 'film theory: long journal bearing, oscillating film, or bearing of finite length')
+    call oil%parameters(list)
+    call transition%parameters(list)
+    call elastic%parameters(list)
+    call list%add('report', reports, &
+      'write energy loss, largest pressure and mean side flow of the film into the summary', '.false.')
+    call offer_film_laws(list)
+    if (list%sets) call select_film(list%chosen, law)
+  end subroutine visit_film
+
+  !> Select the film law that a case names, if it names one.
+  subroutine select_film(chosen, law)
+    class(law_t), allocatable, intent(in) :: chosen
+    class(film_law_t), allocatable, intent(out) :: law
+    if (.not. allocated(chosen)) return
+    select type (chosen)
+    class is (film_law_t)
+      allocate (law, source=chosen)
+    end select
+  end subroutine select_film
+end submodule joint_groups
