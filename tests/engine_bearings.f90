@@ -8,12 +8,15 @@ module engine_bearings
   use ring_compliance, only: new_ring
   implicit none
   private
-  public :: read_bearing, read_duty, read_table, words_of, result_names, results_of
+  public :: word_length, read_bearing, read_duty, read_table, words_of, result_names, results_of
+
+  integer, parameter :: word_length = 40
 
   character(len=*), parameter :: folder = 'data/film/engine/'
 
   !> The columns of results that all bearings have.
-  character(len=24), parameter :: result_names(11) = [character(len=24) :: 'time[s]', 'eccentricity_x[m]', 'eccentricity_y[m]', &
+  character(len=word_length), parameter :: result_names(11) = [character(len=word_length) :: 'time[s]', &
+    'eccentricity_x[m]', 'eccentricity_y[m]', &
     'film_force_x[N]', 'film_force_y[N]', 'min_film_thickness[m]', 'max_film_pressure[Pa]', 'film_fill[-]', 'supply_flow[m3/s]', &
     'side_flow[m3/s]', 'film_moment[N.m]']
 
@@ -68,7 +71,7 @@ contains
   subroutine read_duty(name, duty)
     character(len=*), intent(in) :: name
     type(film_duty_t), intent(out) :: duty
-    character(len=24), allocatable :: heads(:)
+    character(len=word_length), allocatable :: heads(:)
     real(dp), allocatable :: values(:, :)
     call read_table(name//'.table.csv', heads, values)
     duty%time = values(:, 1)
@@ -82,7 +85,7 @@ contains
   !> A table of numbers (rows, columns) and its heads.
   subroutine read_table(file, heads, values)
     character(len=*), intent(in) :: file
-    character(len=24), allocatable, intent(out) :: heads(:)
+    character(len=word_length), allocatable, intent(out) :: heads(:)
     real(dp), allocatable, intent(out) :: values(:, :)
     character(len=400) :: line
     integer :: unit, status, rows, i
@@ -107,18 +110,14 @@ contains
   !> The texts between the commas of a line. (To read them as a list would end at the slash of a unit.)
   pure function words_of(line) result(words)
     character(len=*), intent(in) :: line
-    character(len=24) :: words(count([(line(i:i) == ',', i=1, len(line))]) + 1)
-    integer :: first, i, k
-    words = ''
+    character(len=word_length), allocatable :: words(:)
+    integer :: first, last, k
+    allocate (words(count(transfer(line, ['a'], len(line)) == ',') + 1))
     first = 1
-    k = 1
-    do i = 1, len_trim(line)
-      if (line(i:i) == ',') then
-        k = k + 1
-        first = i + 1
-      else
-        words(k) (i - first + 1:i - first + 1) = line(i:i)
-      end if
+    do k = 1, size(words)
+      last = first + index(line(first:)//',', ',') - 2
+      words(k) = line(first:last)
+      first = last + 2
     end do
   end function words_of
 

@@ -8,7 +8,7 @@ module test_engine_films
   use film_cells, only: supply_t, supply_grooves
   use film_history, only: film_history_t, film_duty_t
   use film_results, only: film_row_t, film_field_t
-  use engine_bearings, only: read_bearing, read_duty, read_table, words_of, result_names, results_of
+  use engine_bearings, only: read_bearing, read_duty, read_table, word_length, words_of, result_names, results_of
   implicit none
   private
   public :: run_test_engine_films
@@ -97,7 +97,7 @@ contains
     type(film_history_t) :: history
     type(film_duty_t) :: duty
     type(error_t), allocatable :: error
-    character(len=24), allocatable :: heads(:)
+    character(len=word_length), allocatable :: heads(:)
     integer :: n
     call read_bearing(name, history)
     call read_duty(name, duty)
@@ -136,7 +136,7 @@ contains
     character(len=*), intent(in) :: name
     real(dp), intent(out) :: value(:), tolerance(:)
     character(len=200) :: line
-    character(len=24) :: words(5)
+    character(len=word_length) :: words(5)
     integer :: unit, status, k
     value = 0
     tolerance = 0
@@ -163,7 +163,7 @@ contains
     type(film_history_t) :: history
     type(film_duty_t) :: duty
     type(error_t), allocatable :: error
-    character(len=24), allocatable :: heads(:)
+    character(len=word_length), allocatable :: heads(:)
     real(dp), allocatable :: map(:, :)
     real(dp) :: length, force_unit, pressure_unit, allowed
     integer :: i
