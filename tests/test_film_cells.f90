@@ -10,7 +10,7 @@ module test_film_cells
     ruptured, filled, supplied
   use film_balance, only: film_conditions_t, film_state_t, film_balance_t, new_state, find_gap, find_balance, find_matrix, &
     find_columns, find_excess
-  use film_step, only: film_solver_t, new_film_solver, step_solved
+  use film_step, only: step_solver_t, new_step_solver, step_solved
   use ring_compliance, only: elastic_bore_t, new_ring
   implicit none
   private
@@ -145,7 +145,7 @@ contains
     logical, intent(in) :: is_land
     integer, parameter :: n = 25, m = 3, band = 2*m
     real(dp), parameter :: step = 1e-4_dp
-    type(film_solver_t) :: solver
+    type(step_solver_t) :: solver
     type(film_conditions_t) :: conditions
     type(film_state_t) :: state
     type(supply_t) :: supply
@@ -160,7 +160,7 @@ contains
     supply%length = 0.02_dp
     if (is_land) supply = supply_t(supply_circumferential, groove_width=0.006_dp)
     call new_film_cells(bearing(), supply, n, m, cells, error)
-    call new_film_solver(cells, new_ring(0.02483_dp, 0.04_dp, 207e9_dp, 0.3_dp, 3), 0.012_dp, 1e-8_dp, .true., solver)
+    call new_step_solver(cells, new_ring(0.02483_dp, 0.04_dp, 207e9_dp, 0.3_dp, 3), 0.012_dp, 1e-8_dp, .true., solver)
     conditions = film_conditions_t(rate=2e3_dp, speed=speed, supply=40.0_dp, ends=3.0_dp)
     allocate (conditions%content(m, n), source=0.8_dp)
     state = new_state(solver%cells, 7)
@@ -273,7 +273,7 @@ contains
   subroutine solve_slider(number, found)
     integer, intent(in) :: number
     real(dp), intent(out) :: found(2)
-    type(film_solver_t) :: solver
+    type(step_solver_t) :: solver
     type(film_conditions_t) :: conditions
     type(film_state_t) :: state
     type(film_cells_t) :: cells
@@ -294,7 +294,7 @@ contains
       if (x > 2e-3_dp - 1e-9_dp .and. x < 5e-3_dp + 1e-9_dp) cells%face_bore(i) = cells%face_bore(i) + 1
       if (min(abs(x - 2e-3_dp), abs(x - 5e-3_dp)) < 1e-9_dp) cells%face_bore(i) = cells%face_bore(i) - 0.5_dp
     end do
-    call new_film_solver(cells, rigid, 0.01_dp, 0.0_dp, .false., solver)
+    call new_step_solver(cells, rigid, 0.01_dp, 0.0_dp, .false., solver)
     conditions%speed = 1/radius
     conditions%rate = 1e-10_dp*conditions%speed
     conditions%supply = 1e5_dp/solver%pressure_unit
@@ -315,7 +315,7 @@ contains
   !> Two lands without motion, full of oil: Q = pi R c^3 p (1 + 1.5 eps^2)/(3 mu l), l the length of a land.
   subroutine two_lands(check)
     class(checks_t), intent(inout) :: check
-    type(film_solver_t) :: solver
+    type(step_solver_t) :: solver
     type(film_conditions_t) :: conditions
     type(film_state_t) :: state
     type(film_cells_t) :: cells
@@ -324,7 +324,7 @@ contains
     real(dp) :: exact, volume
     integer :: k, outcome
     call new_film_cells(bearing(), supply_t(supply_circumferential, groove_width=0.006_dp), 24, 4, cells, error)
-    call new_film_solver(cells, rigid, 0.012_dp, 0.0_dp, .false., solver)
+    call new_step_solver(cells, rigid, 0.012_dp, 0.0_dp, .false., solver)
     do k = 0, 9, 3
       state = new_state(cells, 2)
       conditions%rate = 1e-9_dp

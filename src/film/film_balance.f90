@@ -5,6 +5,9 @@
 !> (f: film fraction, q: reduced pressure of `film_oil`; Jakobsson, Floberg and Olsson's conditions as a complementarity), by finite
 !> volumes and an implicit Euler step. Film thicknesses are over the clearance c, lengths over the pin's radius R, pressures over
 !> 12 mu_0 R^2/c^2, so that pressures and balances are rates [1/s].
+!>
+!> Without memory (Reynolds' condition) the film is full everywhere; a ruptured cell, where q = 0, lacks oil in its balance. The
+!> unknown f of such a cell is then 1 less this lack over a rate.
 module film_balance
   use gudgeon_kinds, only: dp
   use film_cells, only: film_cells_t, ruptured, filled, supplied
@@ -15,6 +18,7 @@ module film_balance
 
   !> What is given in a step.
   type :: film_conditions_t
+    logical :: has_memory = .true.           !! .false.: Reynolds' condition
     real(dp) :: rate = 0                     !! reciprocal of the step in time [1/s]
     real(dp) :: speed = 0                    !! omega, of the pin relative to the bearing, x towards y [rad/s]
     real(dp) :: supply = 0, ends = 0         !! reduced pressures in the supply and at the ends of the bearing
@@ -107,7 +111,8 @@ contains
           balance%face_slope(j, i) = 0
           if (kind(j, i) == supplied .and. kind(j, e) == supplied) cycle
           fall = conductance(kind(j, i), kind(j, e), cubed)*(q(j, i) - q(j, e))
-          flow = drag*merge(f(j, i), f(j, e), conditions%speed > 0)
+          flow = drag
+          if (conditions%has_memory) flow = drag*merge(f(j, i), f(j, e), conditions%speed > 0)
           balance%face_slope(j, i) = flow + 3*fall/gap%at_faces(i)
           flow = flow*gap%at_faces(i) + fall
           out(j, i) = out(j, i) + flow
@@ -160,8 +165,8 @@ contains
         k = (cells%place(i) - 1)*m + j
         other = (cells%place(e) - 1)*m + j
         call connect(band, matrix, kind(j, i), kind(j, e), k, other, conductance(kind(j, i), kind(j, e), cubed))
-        if (conditions%speed > 0) call carry(band, matrix, kind(j, i), kind(j, e), k, other, drag)
-        if (conditions%speed < 0) call carry(band, matrix, kind(j, e), kind(j, i), other, k, -drag)
+        if (conditions%has_memory .and. conditions%speed > 0) call carry(band, matrix, kind(j, i), kind(j, e), k, other, drag)
+        if (conditions%has_memory .and. conditions%speed < 0) call carry(band, matrix, kind(j, e), kind(j, i), other, k, -drag)
         if (j < m) call connect(band, matrix, kind(j, i), kind(j + 1, i), k, k + 1, &
           conductance(kind(j, i), kind(j + 1, i), along_axis))
         select case (kind(j, i))
@@ -169,7 +174,7 @@ contains
           if (j == m) matrix(0, k) = matrix(0, k) + 2*along_axis
           if (j == 1 .and. cells%is_land) matrix(0, k) = matrix(0, k) + 2*along_axis
         case (ruptured)
-          matrix(0, k) = matrix(0, k) + conditions%rate*gap%at_cells(i)
+          matrix(0, k) = matrix(0, k) + merge(conditions%rate*gap%at_cells(i), lack_rate(conditions), conditions%has_memory)
         case default
           matrix(0, k) = 1
         end select
@@ -212,7 +217,7 @@ contains
     type(film_balance_t), intent(in) :: balance
     type(film_shapes_t), intent(in) :: shapes
     real(dp), intent(inout) :: columns(:, :, :)   !! (along, around, number of the first shapes that are wanted, or more)
-    real(dp) :: own, east, west
+    real(dp) :: own, east, west, stored
     integer :: i, j, l, before
     do l = 1, min(size(columns, 3), size(shapes%at_cells, 2))
       do i = 1, cells%around
@@ -222,14 +227,21 @@ contains
           east = shapes%at_faces(i, l)
           west = shapes%at_faces(before, l)
           do j = 1, cells%along
-            columns(j, p, l) = own*(conditions%rate*state%fraction(j, i) + balance%cell_slope(j, i)) &
-              + east*balance%face_slope(j, i) - west*balance%face_slope(j, before)
+            stored = merge(state%fraction(j, i), 1.0_dp, conditions%has_memory)
+            columns(j, p, l) = own*(conditions%rate*stored + balance%cell_slope(j, i)) + east*balance%face_slope(j, i) &
+              - west*balance%face_slope(j, before)
             if (state%kind(j, i) == supplied) columns(j, p, l) = 0
           end do
         end associate
       end do
     end do
   end subroutine find_columns
+
+  !> The rate over which the lack of oil in a film without memory is measured.
+  pure real(dp) function lack_rate(conditions)
+    type(film_conditions_t), intent(in) :: conditions
+    lack_rate = conditions%rate + abs(conditions%speed)
+  end function lack_rate
 
   !> The balances with the opposite sign, (content - f h)*rate - outflow, in the same order; 0 in the supply.
   pure subroutine find_excess(cells, conditions, state, gap, balance, excess)
@@ -242,7 +254,12 @@ contains
     integer :: i
     do i = 1, cells%around
       associate (p => cells%place(i))
-        excess(:, p) = conditions%rate*(conditions%content(:, i) - state%fraction(:, i)*gap%at_cells(i)) - balance%outflow(:, i)
+        if (conditions%has_memory) then
+          excess(:, p) = conditions%rate*(conditions%content(:, i) - state%fraction(:, i)*gap%at_cells(i)) - balance%outflow(:, i)
+        else
+          excess(:, p) = conditions%rate*(conditions%content(:, i) - gap%at_cells(i)) - balance%outflow(:, i) &
+            + lack_rate(conditions)*(1 - state%fraction(:, i))
+        end if
         where (state%kind(:, i) == supplied) excess(:, p) = 0
       end associate
     end do

@@ -1,7 +1,8 @@
 !> A film with memory over a cycle: marched with implicit Euler steps from row to row of a duty, until the oil in it repeats.
 !>
-!> The film begins full at the eccentricity of the first row. A duty of one row is a steady state: it is marched with steps that
-!> become longer until the content of the cells does not act any more.
+!> The film begins full at the eccentricity of the first row (at 0.9 c, if that is c or more). A duty of one row is a steady state:
+!> it is marched with steps that become longer until the content of the cells does not act any more. The memory may be left out
+!> (Reynolds' condition), for comparison.
 module film_history
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
@@ -9,7 +10,7 @@ module film_history
   use gudgeon_bearing, only: bearing_t
   use film_cells, only: film_cells_t, supply_t, new_film_cells, supply_none, filled, supplied
   use film_balance, only: film_conditions_t, film_state_t, new_state, find_gap
-  use film_step, only: film_solver_t, new_film_solver, step_solved, step_unfinished, step_closed, step_unbounded
+  use film_step, only: step_solver_t, new_step_solver, step_solved, step_closed, step_unbounded
   use film_results, only: film_row_t, film_field_t, film_summary_t, find_row, find_field
   use ring_compliance, only: elastic_bore_t
   implicit none
@@ -19,6 +20,7 @@ module film_history
   integer, parameter :: steady_steps = 23             !! towards a steady state, each longer than the last one by the root of ten
   real(dp), parameter :: steady_rate = 1e-10_dp       !! reciprocal of the last of them, over the rates of the film
   real(dp), parameter :: most_unsteady = 1e-3_dp      !! relative change of the smallest thickness in that step
+  real(dp), parameter :: most_eccentric = 0.9_dp      !! eccentricity over c at which a film begins whose first row has no gap
 
   !> What the bearing is given over a cycle, in rows; the last of several rows is the first one of the next cycle.
   type :: film_duty_t
@@ -31,6 +33,7 @@ module film_history
 
   type :: film_history_t
     type(bearing_t) :: bearing
+    logical :: has_memory = .true.          !! .false.: Reynolds' condition; the mass residual is then the oil that it loses
     real(dp) :: viscosity = 0               !! mu_0 [Pa s]
     real(dp) :: pressure_viscosity = 0      !! alpha of Barus [1/Pa]
     real(dp) :: ambient_over_cavitation = 0 !! ambient pressure less cavitation pressure [Pa]; > 0: the ends are under oil
@@ -45,7 +48,7 @@ module film_history
     type(film_row_t), allocatable :: rows(:)       !! result: the ends of the intervals of the last cycle
     type(film_field_t), allocatable :: fields(:)   !! result
     type(film_summary_t) :: summary                !! result
-    type(film_solver_t), private :: solver
+    type(step_solver_t), private :: solver
     type(film_conditions_t), private :: conditions
     type(film_state_t), private :: state
     type(film_state_t), private :: earlier  !! before the last step
@@ -64,8 +67,9 @@ module film_history
     procedure, private :: set_conditions
     procedure, private :: set_supply
     procedure, private :: make_step
-    procedure, private :: raise_load
-    procedure, private :: oil_content
+    procedure, private :: approach
+    procedure, private :: reason_of
+    procedure, private :: oil_volume
   end type film_history_t
 
 contains
@@ -76,19 +80,19 @@ contains
     class(film_history_t), intent(inout) :: self
     type(film_duty_t), intent(in) :: duty
     type(error_t), allocatable, intent(out) :: error
-    real(dp) :: content, before
+    real(dp) :: volume, before
     integer :: cycle_number
 
     call self%begin(duty, error)
     if (allocated(error)) return
-    content = self%oil_content()
+    volume = self%oil_volume()
     do cycle_number = 1, merge(1, self%most_cycles, self%is_steady)
-      before = content
-      call self%begin_cycle(duty)
+      before = volume
+      call self%begin_cycle(duty, is_first=cycle_number == 1)
       call self%march_cycle(duty, error)
-      content = self%oil_content()
+      volume = self%oil_volume()
       self%summary%cycles = cycle_number
-      self%summary%content_change = abs(content - before)/content
+      self%summary%content_change = abs(volume - before)/max(volume, tiny(volume))
       self%summary%rounds = self%solver%rounds
       self%summary%factorisations = self%solver%factorisations
       if (allocated(error) .or. self%summary%content_change < self%cycle_tolerance) return
@@ -101,39 +105,45 @@ contains
     type(film_duty_t), intent(in) :: duty
     type(error_t), allocatable, intent(out) :: error
     type(film_cells_t) :: cells
+    real(dp) :: eccentricity(2)
 
     self%rows = [film_row_t ::]
     self%fields = [film_field_t ::]
     self%summary = film_summary_t()
     call new_film_cells(self%bearing, self%supply, self%around, self%along, cells, error)
     if (allocated(error)) return
-    call new_film_solver(cells, self%bore, self%viscosity, self%pressure_viscosity, allocated(duty%load), self%solver)
+    call new_step_solver(cells, self%bore, self%viscosity, self%pressure_viscosity, allocated(duty%load), self%solver)
     self%state = new_state(cells, self%bore%shapes() + 2)
-    self%state%amplitude(self%bore%shapes() + 1:) = -duty%eccentricity(:, 1)/cells%clearance
+    eccentricity = duty%eccentricity(:, 1)/cells%clearance
+    if (norm2(eccentricity) >= 1) eccentricity = eccentricity*most_eccentric/norm2(eccentricity)
+    self%state%amplitude(self%bore%shapes() + 1:) = -eccentricity
     call find_gap(cells, self%solver%shapes, self%state%amplitude, self%solver%gap)
+    self%conditions%has_memory = self%has_memory
     self%conditions%content = spread(self%solver%gap%at_cells, 1, cells%along)
     self%load_before = 0
     self%last_rate = 0
     self%is_steady = size(duty%time) == 1
-    if (self%is_steady .and. self%solver%is_free .and. self%supply%kind == supply_none .and. &
+    if (self%is_steady .and. self%solver%is_free .and. self%has_memory .and. self%supply%kind == supply_none .and. &
       .not. self%ambient_over_cavitation > 0) call fail(error, &
       'a film without supply, with ends in air, has no steady state under load', status_integration)
   end subroutine begin
 
   !> Return to the first row. If the eccentricity is given, the oil of each cell fills the same part of the gap there: an orbit that
   !> does not close would otherwise squeeze the film by the whole difference in one step.
-  pure subroutine begin_cycle(self, duty)
+  pure subroutine begin_cycle(self, duty, is_first)
     class(film_history_t), intent(inout) :: self
     type(film_duty_t), intent(in) :: duty
+    logical, intent(in) :: is_first
     integer :: i
     self%turned = 0
     self%time = duty%time(1)
     self%conditions%speed = duty%pin_speed(1)
-    if (self%solver%is_free) return
+    if (self%supply%fixed_to_pin) call self%solver%cells%turn_supply(self%turned)
+    if (self%solver%is_free .or. is_first) return
     self%state%amplitude(self%solver%bore_shapes + 1:) = -duty%eccentricity(:, 1)/self%solver%cells%clearance
     call find_gap(self%solver%cells, self%solver%shapes, self%state%amplitude, self%solver%gap)
     do i = 1, self%around
-      self%conditions%content(:, i) = self%state%fraction(:, i)*self%solver%gap%at_cells(i)
+      self%conditions%content(:, i) = self%state%fraction(:, i)*max(self%solver%gap%at_cells(i), 0.0_dp)
     end do
   end subroutine begin_cycle
 
@@ -144,6 +154,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(film_row_t) :: rows(size(duty%time))
     integer, allocatable :: field_rows(:)
+    real(dp) :: before
     integer :: i, k, first
 
     allocate (field_rows(0))
@@ -153,6 +164,7 @@ contains
     if (allocated(self%fields)) deallocate (self%fields)
     allocate (self%fields(size(field_rows)))
     call self%summary%begin()
+    before = self%oil_volume()
     do i = first, size(duty%time)
       if (self%is_steady) then
         call self%find_steady(duty, rows(i), error)
@@ -166,6 +178,8 @@ contains
     end do
     call self%summary%finish()
     self%rows = rows(first:i - 1)
+    if (self%supply%fixed_to_pin .and. self%has_memory .and. i > first) &   ! the supply takes up and leaves oil while it turns
+      self%summary%mean_supply_flow = self%summary%mean_side_flow + (self%oil_volume() - before)/self%summary%duration
   end subroutine march_cycle
 
   !> March from row i - 1 to row i.
@@ -264,7 +278,7 @@ contains
     end associate
   end subroutine set_supply
 
-  !> Solve a step, from a film that changes as in the last step; if this fails, from the present film under a load that is raised.
+  !> Solve a step, from a film that changes as in the last step; if this fails, in parts from the present film.
   pure subroutine make_step(self, row, error)
     class(film_history_t), intent(inout) :: self
     type(film_row_t), intent(out) :: row
@@ -278,34 +292,42 @@ contains
     call self%solver%solve_step(self%conditions, self%state, outcome)
     if (outcome /= step_solved) then
       self%state = before
-      call self%raise_load(outcome)
+      call self%approach(outcome)
     end if
     self%earlier = before
     self%last_rate = self%conditions%rate
     if (outcome /= step_solved) then
-      call fail(error, 'the film has no solution at '//text_of(self%time)//' s: '//reason_of(outcome), status_integration)
+      call fail(error, 'the film has no solution at '//text_of(self%time)//' s: '//self%reason_of(outcome), status_integration)
       return
     end if
+    if (.not. self%has_memory) self%state%fraction = 1
     call find_row(self%solver, self%conditions, self%state, self%time, row)
     do i = 1, self%around
       self%conditions%content(:, i) = self%state%fraction(:, i)*self%solver%gap%at_cells(i)
     end do
   end subroutine make_step
 
-  !> Solve a step while the load is raised from the last one, in parts that become larger after a solution and smaller without.
-  !> Without a load the step is solved at once.
-  pure subroutine raise_load(self, outcome)
+  !> Solve a step while the load, or the eccentricity of a pin in an elastic bore, goes there from that of the last step, in parts that
+  !> become larger after a solution and smaller without.
+  pure subroutine approach(self, outcome)
     class(film_history_t), intent(inout) :: self
-    integer, intent(out) :: outcome
+    integer, intent(inout) :: outcome
     real(dp), parameter :: first_part = 0.05_dp, least_part = 1e-3_dp, growth = 2.0_dp, shrinking = 0.25_dp
     type(film_state_t) :: solved
-    real(dp) :: load(2), done, part
-    load = self%conditions%load
+    type(film_conditions_t) :: whole
+    real(dp) :: eccentricity(2), done, part
+
+    if (self%solver%bore_shapes == 0 .and. .not. self%solver%is_free) return
+    whole = self%conditions
     solved = self%state
+    eccentricity = -solved%amplitude(self%solver%bore_shapes + 1:)
     done = 0
-    part = merge(first_part, 1.0_dp, self%solver%is_free)
+    part = first_part
     do
-      self%conditions%load = self%load_before + min(1.0_dp, done + part)*(load - self%load_before)
+      associate (to => min(1.0_dp, done + part))
+        self%conditions%load = self%load_before + to*(whole%load - self%load_before)
+        self%conditions%eccentricity = eccentricity + to*(whole%eccentricity - eccentricity)
+      end associate
       call self%solver%solve_step(self%conditions, self%state, outcome)
       if (outcome == step_solved) then
         done = done + part
@@ -315,19 +337,21 @@ contains
       else
         self%state = solved
         part = shrinking*part
-        if (part < least_part .or. .not. self%solver%is_free) exit
+        if (part < least_part) exit
       end if
     end do
-    self%conditions%load = load
-  end subroutine raise_load
+    self%conditions = whole
+  end subroutine approach
 
   !> What an outcome means.
-  pure function reason_of(outcome) result(reason)
+  pure function reason_of(self, outcome) result(reason)
+    class(film_history_t), intent(in) :: self
     integer, intent(in) :: outcome
     character(len=:), allocatable :: reason
     select case (outcome)
     case (step_closed)
-      reason = 'the gap closes (a heavy load needs more cells or more oil)'
+      reason = 'the eccentricity closes the gap'
+      if (self%solver%is_free) reason = 'the gap closes (a heavy load needs more cells or more oil)'
     case (step_unbounded)
       reason = 'its pressure exceeds what pressure_viscosity allows'
     case default
@@ -343,9 +367,9 @@ contains
     text = trim(adjustl(digits))
   end function text_of
 
-  !> Sum of the content f h of the cells.
-  pure real(dp) function oil_content(self)
+  !> Volume of the oil outside the supply [m^3].
+  pure real(dp) function oil_volume(self)
     class(film_history_t), intent(in) :: self
-    oil_content = sum(matmul(self%state%fraction, self%solver%gap%at_cells))
-  end function oil_content
+    oil_volume = sum(self%conditions%content, .not. self%solver%cells%is_supplied)*self%solver%cells%cell_volume()
+  end function oil_volume
 end module film_history

@@ -3,7 +3,7 @@ module film_results
   use gudgeon_kinds, only: dp
   use film_cells, only: supplied
   use film_balance, only: film_conditions_t, film_state_t
-  use film_step, only: film_solver_t
+  use film_step, only: step_solver_t
   implicit none
   private
   public :: film_row_t, film_field_t, film_summary_t, find_row, find_field
@@ -49,7 +49,8 @@ module film_results
     real(dp) :: mass_residual = 0           !! largest growth of the oil less supply and side flow, over the largest flow [-]
     real(dp) :: cells_per_gap = 0           !! smallest
     integer :: rounds = 0, factorisations = 0   !! of all steps
-    real(dp), private :: time = 0, largest_flow = 0
+    real(dp) :: duration = 0                !! of the steps [s]
+    real(dp), private :: largest_flow = 0
   contains
     procedure :: begin
     procedure :: add
@@ -60,7 +61,7 @@ contains
 
   !> The row of a solved step.
   pure subroutine find_row(solver, conditions, state, time, row)
-    type(film_solver_t), intent(in) :: solver
+    type(step_solver_t), intent(in) :: solver
     type(film_conditions_t), intent(in) :: conditions
     type(film_state_t), intent(in) :: state
     real(dp), intent(in) :: time   !! [s]
@@ -97,7 +98,7 @@ contains
 
   !> Growth of the content f h outside the supply, the sum over the cells [1/s].
   pure real(dp) function content_change(solver, conditions, state) result(growth)
-    type(film_solver_t), intent(in) :: solver
+    type(step_solver_t), intent(in) :: solver
     type(film_conditions_t), intent(in) :: conditions
     type(film_state_t), intent(in) :: state
     integer :: i
@@ -110,7 +111,7 @@ contains
 
   !> Sum of (mu/mu_0) f/h over the cells outside the supply, for the shear of a film that is striated where it has ruptured.
   pure real(dp) function shear_of(solver, state) result(shear)
-    type(film_solver_t), intent(in) :: solver
+    type(step_solver_t), intent(in) :: solver
     type(film_state_t), intent(in) :: state
     integer :: i
     shear = 0
@@ -122,7 +123,7 @@ contains
 
   !> The fields of a solved step.
   pure subroutine find_field(solver, state, time, field)
-    type(film_solver_t), intent(in) :: solver
+    type(step_solver_t), intent(in) :: solver
     type(film_state_t), intent(in) :: state
     real(dp), intent(in) :: time   !! [s]
     type(film_field_t), intent(out) :: field
@@ -142,7 +143,7 @@ contains
   !> Begin a cycle.
   pure subroutine begin(self)
     class(film_summary_t), intent(inout) :: self
-    self%time = 0
+    self%duration = 0
     self%largest_flow = 0
     self%mean_supply_flow = 0
     self%mean_side_flow = 0
@@ -158,7 +159,7 @@ contains
     class(film_summary_t), intent(inout) :: self
     type(film_row_t), intent(in) :: row
     real(dp), intent(in) :: time
-    self%time = self%time + time
+    self%duration = self%duration + time
     self%largest_flow = max(self%largest_flow, abs(row%supply_flow), abs(row%side_flow), abs(row%content_rate), &
       least_flow*row%turnover)
     self%mean_supply_flow = self%mean_supply_flow + row%supply_flow*time
@@ -173,9 +174,9 @@ contains
   !> End a cycle: means over its time, the residual over the largest flow.
   pure subroutine finish(self)
     class(film_summary_t), intent(inout) :: self
-    if (self%time > 0) then
-      self%mean_supply_flow = self%mean_supply_flow/self%time
-      self%mean_side_flow = self%mean_side_flow/self%time
+    if (self%duration > 0) then
+      self%mean_supply_flow = self%mean_supply_flow/self%duration
+      self%mean_side_flow = self%mean_side_flow/self%duration
     end if
     if (self%largest_flow > 0) self%mass_residual = self%mass_residual/self%largest_flow
   end subroutine finish

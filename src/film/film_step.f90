@@ -20,7 +20,7 @@ module film_step
   use ring_compliance, only: elastic_bore_t, shape_value, shape_slope
   implicit none
   private
-  public :: film_solver_t, new_film_solver
+  public :: step_solver_t, new_step_solver
   public :: step_solved, step_unfinished, step_closed, step_unbounded
 
   !> Outcomes of a step: solved; the rounds do not end; a gap closes; the pressure has no bound under the law of the viscosity.
@@ -39,7 +39,7 @@ module film_step
   real(dp), parameter :: most_predicted = 0.3_dp      !! largest part of a gap that a prediction may close
   real(dp), parameter :: most_thickening = 0.7_dp !! largest part of the way to the largest reduced pressure in a round
 
-  type :: film_solver_t
+  type :: step_solver_t
     type(film_cells_t) :: cells
     type(film_oil_t) :: oil                       !! in the unit of pressures of `film_balance`
     type(film_shapes_t) :: shapes
@@ -68,18 +68,18 @@ module film_step
     procedure, private :: find_change
     procedure, private :: allowed_part
     procedure, private :: shift
-  end type film_solver_t
+  end type step_solver_t
 
 contains
 
   !> The solver for a bearing and its oil.
-  pure subroutine new_film_solver(cells, bore, viscosity, pressure_viscosity, is_free, solver)
+  pure subroutine new_step_solver(cells, bore, viscosity, pressure_viscosity, is_free, solver)
     type(film_cells_t), intent(in) :: cells
     type(elastic_bore_t), intent(in) :: bore
     real(dp), intent(in) :: viscosity            !! mu_0 [Pa s]
     real(dp), intent(in) :: pressure_viscosity   !! [1/Pa]
     logical, intent(in) :: is_free               !! the load of the pin is given, not its eccentricity
-    type(film_solver_t), intent(out) :: solver
+    type(step_solver_t), intent(out) :: solver
     integer :: k, n, m, shapes
 
     solver%cells = cells
@@ -114,11 +114,11 @@ contains
     allocate (solver%balance%outflow(m, n), solver%balance%cell_slope(m, n), solver%balance%face_slope(m, n))
     allocate (solver%matrix(-2*m:2*m, n*m), solver%columns(m, n, solver%unknowns), solver%change(m, n), solver%slope(m, n))
     allocate (solver%border(solver%unknowns, solver%unknowns), solver%pivot(solver%unknowns))
-  end subroutine new_film_solver
+  end subroutine new_step_solver
 
   !> Amplitudes of the shapes of the pressure p averaged over the length of the cells: sum over j and i of weight times p.
   pure function harmonics(self, pressure)
-    class(film_solver_t), intent(in) :: self
+    class(step_solver_t), intent(in) :: self
     real(dp), intent(in) :: pressure(:, :)   !! (along, around)
     real(dp) :: harmonics(size(self%weight, 2))
     harmonics = matmul(sum(pressure, 1), self%weight)
@@ -127,7 +127,7 @@ contains
   !> Change a state as it has changed from an earlier one, times a ratio of steps in time: a guess for the next step. Nothing is
   !> changed if a gap would close by much.
   pure subroutine predict(self, earlier, ratio, state)
-    class(film_solver_t), intent(in) :: self
+    class(step_solver_t), intent(in) :: self
     type(film_state_t), intent(in) :: earlier
     real(dp), intent(in) :: ratio
     type(film_state_t), intent(inout) :: state
@@ -155,7 +155,7 @@ contains
 
   !> Solve a step, from `state` as a guess (cells of the supply are set).
   pure subroutine solve_step(self, conditions, state, outcome)
-    class(film_solver_t), intent(inout) :: self
+    class(step_solver_t), intent(inout) :: self
     type(film_conditions_t), intent(in) :: conditions
     type(film_state_t), intent(inout) :: state
     integer, intent(out) :: outcome
@@ -195,7 +195,7 @@ contains
 
   !> Whether a state is beyond those among which a solution is searched.
   pure integer function obstacle(self, state)
-    class(film_solver_t), intent(in) :: self
+    class(step_solver_t), intent(in) :: self
     type(film_state_t), intent(in) :: state
     obstacle = step_solved
     if (self%oil%coefficient*maxval(state%pressure) > most_reduced) obstacle = step_unbounded
@@ -205,7 +205,7 @@ contains
 
   !> Factorise the film's matrix and that of the border.
   pure subroutine factorise(self, conditions, state, is_singular)
-    class(film_solver_t), intent(inout) :: self
+    class(step_solver_t), intent(inout) :: self
     type(film_conditions_t), intent(in) :: conditions
     type(film_state_t), intent(in) :: state
     logical, intent(out) :: is_singular
@@ -241,7 +241,7 @@ contains
 
   !> Harmonics of the change of the pressure for a change of the film's unknowns (along, place), with p(q) made linear.
   pure function pressure_response(self, change) result(response)
-    type(film_solver_t), intent(in) :: self
+    type(step_solver_t), intent(in) :: self
     real(dp), intent(in) :: change(:, :)
     real(dp) :: response(size(self%weight, 2)), line(self%cells%around)
     integer :: i
@@ -253,7 +253,7 @@ contains
 
   !> The change of all unknowns: of the film's, and of the amplitudes (0 for those that are given).
   pure subroutine find_change(self, conditions, state, shape_change)
-    class(film_solver_t), intent(inout) :: self
+    class(step_solver_t), intent(inout) :: self
     type(film_conditions_t), intent(in) :: conditions
     type(film_state_t), intent(in) :: state
     real(dp), intent(out) :: shape_change(:)
@@ -277,7 +277,7 @@ contains
 
   !> The part of a change that is made in this round: no gap and no way to the largest pressure becomes too much smaller.
   pure real(dp) function allowed_part(self, state, shape_change) result(part)
-    class(film_solver_t), intent(in) :: self
+    class(step_solver_t), intent(in) :: self
     type(film_state_t), intent(in) :: state
     real(dp), intent(in) :: shape_change(:)
     real(dp) :: closing(self%cells%around)
@@ -316,7 +316,7 @@ contains
   !> Change the film's unknowns by a part of `change`. `film_change`: the largest change of a fraction, or of a pressure over the
   !> largest one, `floor` at least.
   pure subroutine shift(self, part, floor, state, film_change)
-    class(film_solver_t), intent(in) :: self
+    class(step_solver_t), intent(in) :: self
     real(dp), intent(in) :: part, floor
     type(film_state_t), intent(inout) :: state
     real(dp), intent(out) :: film_change
