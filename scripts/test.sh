@@ -44,7 +44,6 @@ count "extreme scenes" scripts/extremes --scenes 120 --seed 5 --evaluations 1000
 count "summaries against traces" tests/test_summaries.py
 count "force tables of films" tests/test_film_tables.py
 count "failures of the machine" tests/test_faults.py --kills 10
-count "resumed runs" tests/test_resume.py --kills 10
 count "pictures" sh -c 'scripts/setup.sh --python && tests/test_plots.py'
 count "analysis of settled cycles" sh -c 'scripts/setup.sh --python && .venv/bin/python tests/test_orders.py'
 count "heat and work of the gas" sh -c 'scripts/setup.sh --python && .venv/bin/python tests/test_gas.py'

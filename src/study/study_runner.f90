@@ -317,7 +317,8 @@ contains
         path = base_of(tasks, found(i))
         call read_whole(path//trim(suffixes(kind)), text, status)
         call count_rows(tasks, text, found(i), rows, failed)
-        if (index(text, header) /= 1 .or. kind == of_runs .and. rows /= found(i)%last - found(i)%first + 1) then
+        if (index(text, header) /= 1 .or. index(text, newline, back=.true.) /= len(text) .or. &
+            kind == of_runs .and. rows /= found(i)%last - found(i)%first + 1) then
           call remove_file(path//trim(suffixes(of_runs)), ignored)
           call fail(error, path//trim(suffixes(kind))//': damaged; the same command runs its rows again', status_output)
           call file%abandon()
