@@ -156,7 +156,9 @@ contains
     close (unit)
   end subroutine read_facts
 
-  !> 48 steady films with one groove, along and across the line of centres: forces, largest pressure, flow and fill.
+  !> 48 steady films with one groove on 192 by 16 cells: forces along and across the line of centres, largest pressure, flow and
+  !> fill. The reference is extrapolated to first order from these cells and from half their width, between which it changes by its
+  !> last two columns: the error here is twice that.
   subroutine steady_groove_map(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: clearance = 20e-6_dp, radius = 0.01_dp, viscosity = 0.01_dp, speed = 100
@@ -172,6 +174,8 @@ contains
     duty%pin_speed = [speed]
     history%viscosity = viscosity
     history%supply = supply_t(supply_grooves, [0.0_dp], 30.0_dp, 0.0_dp)
+    history%around = 192
+    history%along = 16
     do i = 1, size(map, 1)
       length = map(i, 1)*2*radius
       pressure_unit = viscosity*speed*(radius/clearance)**2
@@ -185,12 +189,13 @@ contains
       call check%that(.not. allocated(error), 'a film of the map is solved')
       if (allocated(error)) cycle
       associate (row => history%rows(1))
-        allowed = (5*map(i, 10) + 0.006_dp)*norm2(map(i, 5:6))   ! of the last two grids the reference changes by column 10
+        allowed = (2.1_dp*map(i, 10) + 1e-3_dp)*norm2(map(i, 5:6))
         call check%close_to(row%force(1)/force_unit, map(i, 5), allowed, 'force along the line of centres')
         call check%close_to(row%force(2)/force_unit, map(i, 6), allowed, 'force across the line of centres')
-        call check%relative(row%max_pressure/pressure_unit, map(i, 7), 0.04_dp, 'largest pressure with a groove')
-        call check%relative(row%side_flow/(clearance*radius**2*speed), map(i, 8), 5*map(i, 11) + 0.01_dp, 'flow from a groove')
-        call check%relative(row%fill, map(i, 9), 0.015_dp, 'fill with a groove')
+        call check%relative(row%max_pressure/pressure_unit, map(i, 7), 3*map(i, 10) + 5e-3_dp, 'largest pressure with a groove')
+        call check%relative(row%side_flow/(clearance*radius**2*speed), map(i, 8), 2.1_dp*map(i, 11) + 1e-3_dp, &
+          'flow from a groove')
+        call check%relative(row%fill, map(i, 9), 0.6_dp*map(i, 10) + 7e-3_dp, 'fill with a groove')
       end associate
     end do
   end subroutine steady_groove_map
@@ -244,8 +249,8 @@ contains
     load_of = 0.02_dp*50*length_ratio*0.1_dp*0.1_dp*(0.05_dp/100e-6_dp)**2/sommerfeld
   end function load_of
 
-  !> Stiffness of one of them over load and clearance (S = 0.235, L/D 1): K_xx 2.19, K_xy 3.57, K_yx -0.80, K_yy 1.55, by differences
-  !> between steady films.
+  !> Stiffness of one of them over load and clearance (S = 0.235, L/D 1): K_xx 2.19, K_xy 3.57, K_yx -0.80, K_yy 1.55, by
+  !> differences between steady films.
   subroutine coefficients_of_lund_and_thomsen(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: printed(2, 2) = reshape([2.19_dp, -0.80_dp, 3.57_dp, 1.55_dp], [2, 2])
@@ -263,8 +268,8 @@ contains
     call check%close_to(maxval(abs(stiffness - printed)), 0.0_dp, 0.06_dp, 'stiffness of Lund and Thomsen')
   end subroutine coefficients_of_lund_and_thomsen
 
-  !> Pfeil (2025), a groove of 15 degrees by 60 mm: integrals of p cos and p sin over the bearing, 1055.4 and -1383.3 N by his finite
-  !> volumes, 1058.5 and -1388.9 by the independent program on 384 by 64 cells.
+  !> Pfeil (2025), a groove of 15 degrees by 60 mm: integrals of p cos and p sin over the bearing, 1055.4 and -1383.3 N by his
+  !> finite volumes, 1058.5 and -1388.9 by the independent program on 384 by 64 cells.
   subroutine pfeil(check)
     class(checks_t), intent(inout) :: check
     type(film_history_t) :: history
@@ -275,7 +280,7 @@ contains
     history%supply = supply_t(supply_grooves, [90.0_dp], 15.0_dp, 0.06_dp)
     history%supply_pressure = 0.7e5_dp
     history%around = 192
-    history%along = 16
+    history%along = 32
     duty%time = [0.0_dp]
     duty%pin_speed = [100*pi]
     duty%eccentricity = reshape([75e-6_dp, 0.0_dp], [2, 1])
@@ -290,8 +295,8 @@ contains
     end associate
   end subroutine pfeil
 
-  !> The bearing of COMSOL's example at 10,000 rpm, rigid, with a viscosity that grows with the pressure: pressures in the middle plane
-  !> read from its plot, 79 bar at 288 degrees, 18 at 320 and 40 at 240, within 5 % of the peak.
+  !> The bearing of COMSOL's example at 10,000 rpm, rigid, with a viscosity that grows with the pressure: pressures in the middle
+  !> plane read from its plot, 79 bar at 288 degrees, 18 at 320 and 40 at 240, within 5 % of the peak.
   subroutine comsol(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: plotted(2, 3) = reshape([288.0_dp, 79e5_dp, 320.0_dp, 18e5_dp, 240.0_dp, 40e5_dp], [2, 3])

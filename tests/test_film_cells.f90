@@ -230,9 +230,10 @@ contains
     end subroutine central
   end subroutine differentiate
 
-  !> Fowell, Olver, Gosman, Spikes and Pegg (2007): a slider, 10 mm, whose gap falls from 1.05 to 1.00 um, with a pocket 1 um deep from
-  !> 2 to 5 mm, under 1 bar at both ends. The film ruptures at the beginning of the pocket, which draws in oil, and is full again
-  !> inside it. A ring with one cell of supply is such a slider; the pocket's edges lie on faces, whose error is of first order.
+  !> Fowell, Olver, Gosman, Spikes and Pegg (2007): a slider, 10 mm, whose gap falls from 1.05 to 1.00 um, with a pocket 1 um deep
+  !> from 2 to 5 mm, under 1 bar at both ends. The film ruptures at the beginning of the pocket, which draws in oil, and is full
+  !> again inside it. A ring with one cell of supply is such a slider; the pocket's edges lie on faces, whose error is of first
+  !> order.
   subroutine fowell_pocket(check)
     class(checks_t), intent(inout) :: check
     real(dp) :: exact(2), found(2, 2)

@@ -1,7 +1,7 @@
 !> LU decomposition of band matrices without row exchanges, and solutions for several right-hand sides.
 !>
-!> Rows are not exchanged: this is stable for a matrix whose columns are diagonally dominant, as those of balances are. Elements stay
-!> at most twice as large as the largest element of the matrix (Wilkinson 1961), half as many diagonals are filled as with row
+!> Rows are not exchanged: this is stable for a matrix whose columns are diagonally dominant, as those of balances are. Elements
+!> stay at most twice as large as the largest element of the matrix (Wilkinson 1961), half as many diagonals are filled as with row
 !> exchanges, and a third of the work is done. Two columns are eliminated in each pass, which halves the traffic with the cache.
 module banded_lu
   use gudgeon_kinds, only: dp

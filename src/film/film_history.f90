@@ -307,8 +307,8 @@ contains
     end do
   end subroutine make_step
 
-  !> Solve a step while the load, or the eccentricity of a pin in an elastic bore, goes there from that of the last step, in parts that
-  !> become larger after a solution and smaller without.
+  !> Solve a step while the load, or the eccentricity of a pin in an elastic bore, goes there from that of the last step, in parts
+  !> that become larger after a solution and smaller without.
   pure subroutine approach(self, outcome)
     class(film_history_t), intent(inout) :: self
     integer, intent(inout) :: outcome

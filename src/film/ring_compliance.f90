@@ -141,8 +141,9 @@ contains
 
   !> Radial displacement of the bore of a ring (plane stress) for the pressure cos n theta, times E/(a p), n = 0 or >= 2.
   !>
-  !> Airy's function (A r^n + B r^(n + 2) + C r^-n + D r^(2 - n)) cos n theta, a = 1, satisfies four conditions: sigma_r = -1 and tau = 0
-  !> at the bore, both 0 outside (Timoshenko and Goodier 1970, section 44). Its growing terms are scaled by the outer radius.
+  !> Airy's function (A r^n + B r^(n + 2) + C r^-n + D r^(2 - n)) cos n theta, a = 1, satisfies four conditions: sigma_r = -1 and
+  !> tau = 0 at the bore, both 0 outside (Timoshenko and Goodier 1970, section 44). Its growing terms are scaled by the outer
+  !> radius.
   pure real(dp) function ring_compliance_of(n, radius_ratio, poissons_ratio) result(compliance)
     integer, intent(in) :: n
     real(dp), intent(in) :: radius_ratio   !! outer over inner radius, > 1
