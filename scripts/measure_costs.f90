@@ -294,7 +294,7 @@ contains
       scene = template
       y = scene%initial_state()
       t = 0
-      if (with_figures) call recorder%begin(scene, y)
+      if (with_figures) call recorder%begin(scene, 0.0_dp, y)
       call system_clock(before, rate)
       if (with_figures) then
         call integrate(scene, method, t, y, simulated_time(case), count - steps, recorder, status)

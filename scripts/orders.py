@@ -11,8 +11,8 @@ equal crank angles. The most accurate input is a run with `&run until = 'periodi
 into --out:
 
     NAME.orders.csv      each column's amplitude, phase and scatter by order
-    NAME.work.csv        work in a cycle [J] of the gas (integral of p dV), drive and damping, losses of the joints; with gas
-                         also as mean effective pressures [Pa]: work over the swept volume
+    NAME.work.csv        work on the bodies in the last whole cycle [J], by its parts, from the summary; with gas also as mean
+                         effective pressures [Pa]: work over the swept volume
     NAME.cycles.png, NAME.orders.png, NAME.bearings.png and, with gas, NAME.indicator.png
 """
 
@@ -70,7 +70,7 @@ def analyse(options: argparse.Namespace) -> int:
     cycles = whole_cycles(results[name], options.settle, options.cycles)
     columns = chosen(cycles, options.columns)
     tables = {column: orders(cycles, column) for column in columns}
-    done = work(cycles)
+    done = work(results[name])
     out.mkdir(parents=True, exist_ok=True)
     done.to_csv(out / f"{name}.work.csv", index=False)
     pd.concat([table.assign(column=column) for column, table in tables.items()])[

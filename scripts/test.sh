@@ -41,7 +41,9 @@ count "command line" tests/test_program.sh
 count "parameter studies" tests/test_sweep.sh
 count "independent judge of runs" tests/test_judge.py
 count "extreme scenes" scripts/extremes --scenes 120 --seed 5 --evaluations 100000 --judged 24 --limit 120 --known tests/known_findings.csv --quiet
+count "states and runs that go on from them" tests/test_state_file.py
 count "summaries against traces" tests/test_summaries.py
+count "answers of cycles" tests/test_cycle_answers.py
 count "force tables of films" tests/test_film_tables.py
 count "failures of the machine" tests/test_faults.py --kills 10
 count "pictures" sh -c 'scripts/setup.sh --python && tests/test_plots.py'

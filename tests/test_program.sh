@@ -120,7 +120,7 @@ advised() {   # advised ARGUMENTS...: whether the run reports within a minute th
 check "a long run reports that it is limited by stability while it runs" advised -s integrator.revolutions=4000 cases/sim_I.nml
 check "a long run reports it once" [ "$(grep -c "needs 1/" "$work/err")" = 1 ]
 check "a long run reports it long before its end" awk -F, '$1 == "simulated_time" { exit !($2 < 60) }' "$work/r/sim_I.summary.csv"   # of 100 s
-run -o "$work/r" -s integrator.revolutions=200 -s output.ideal_twin=F cases/sim_I.nml
+run -o "$work/shorter" -s integrator.revolutions=200 -s output.ideal_twin=F cases/sim_I.nml
 check "a shorter run reports it once" [ "$(grep -c "needs 1/[0-9]* of the evaluations" "$work/err")" = 1 -a "$(wc -l <"$work/err")" = 1 ]
 
 # a group is removed, one end of the run replaces another: the resolved case shows what was run

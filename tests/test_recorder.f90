@@ -88,7 +88,7 @@ contains
     y = scene%initial_state()
     t = 0
     call recorder%prepare(scene)
-    call recorder%begin(scene, y)
+    call recorder%begin(scene, 0.0_dp, y)
     call integrate(scene, method, t, y, t_end, 0, recorder, status)
     has_left = recorder%has_left
     call sink%hand_over(size(recorder%list%id), rows, event)

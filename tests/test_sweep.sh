@@ -516,7 +516,7 @@ check "--check finds the invalid run" grep -q 'table.nml: run 2: .*clearance = -
 run sweep --template
 cp "$work/out" "$work/template.nml"
 cp "$work/base.nml" "$work/sim_I.nml"
-check "the template names every key" [ "$(grep -c '^  [a-z_]* = .*  ! ' "$work/template.nml")" = 15 ]
+check "the template names every key" [ "$(grep -c '^  [a-z_]* = .*  ! ' "$work/template.nml")" = 16 ]
 
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

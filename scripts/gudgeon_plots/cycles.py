@@ -1,10 +1,11 @@
 """Whole cycles of a settled run: orders, spectra, means with their scatter, work over the cycle, loads on the bearings."""
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy import fft, integrate, interpolate, signal
+from scipy import fft, interpolate, signal
 
 from .results import MissingResult, Run
 
@@ -132,72 +133,27 @@ def spectrum(cycles: Cycles, column: str) -> tuple[np.ndarray, np.ndarray]:
     return frequency, np.sqrt(density)
 
 
-def over_cycle(cycles: Cycles, integrand: np.ndarray, over: np.ndarray) -> np.ndarray:
-    """Integral over each cycle by the trapezoidal rule; the last row of a cycle is the first row of the next."""
-    result = []
-    for k in range(cycles.number):
-        y, x = integrand[k], over[k]
-        if k + 1 < cycles.number:
-            y, x = np.append(y, integrand[k + 1, 0]), np.append(x, over[k + 1, 0])
-        else:  # the last cycle has no next row: its last step equals the one before
-            y, x = np.append(y, integrand[k, 0]), np.append(x, 2 * over[k, -1] - over[k, -2])
-        result.append(integrate.trapezoid(y, x))
-    return np.array(result)
+WORK_IN_CYCLE = re.compile(r"(?P<prefix>crank_pin_)?cycle_(work_(?P<part>\w+)|energy_change)")
+LABELS = {"gas": "gas", "drive": "drive", "damping": "damping", "guide": "guide", "elastic": "elastic members",
+          "rest": "rest: error of the integration", None: "change of the energy"}
 
 
-def closed_integral(integrand: np.ndarray, over: np.ndarray) -> np.ndarray:
-    """Integral over each cycle with respect to a quantity that returns to its initial value."""
-    y = np.concatenate([integrand, integrand[:, :1]], axis=1)
-    x = np.concatenate([over, over[:, :1]], axis=1)
-    return integrate.trapezoid(y, x, axis=1)
-
-
-def work(cycles: Cycles) -> pd.DataFrame:
-    """Work and losses of a cycle [J], mean and standard deviation over the cycles. If there is a cylinder, also as mean effective
-    pressure [Pa], that is divided by the volume that the piston sweeps."""
-    run = cycles.run
-    time = cycles["time"]
-    found: dict[str, np.ndarray] = {}
-    swept = None
-    if "cylinder_pressure" in cycles:
-        volume = cycles["cylinder_volume"]
-        swept = float(np.ptp(volume))
-        found["gas (p-V)"] = closed_integral(cycles["cylinder_pressure"], volume)
-    speed = cycles["crank_speed"]
-    found["drive"] = over_cycle(cycles, cycles["crank_moment"] * speed, time)
-    damping = float(run.parameter("drive", "damping", 0.0))
-    if damping > 0:
-        found["damping"] = -over_cycle(cycles, damping * speed**2, time)
-    for name, label in loss_columns(cycles):
-        found[label] = over_cycle(cycles, name, time)
-    done = cycles["energy"] - cycles["energy_residual"]  # the work of all forces except gravity, plus a constant
-    all_work = np.append(done[:, 0], run["energy"][-1] - run["energy_residual"][-1])
-    if cycles.number > 1 and ("eccentricity_x" in cycles or "crank_pin_eccentricity_x" in cycles):
-        of_forces = np.diff(all_work)[: cycles.number - 1]
-        others = found["drive"] + found.get("damping", 0.0)
-        if "gas_force" in cycles:
-            others = others - over_cycle(cycles, cycles["gas_force"] * cycles["piston_velocity"], time)
-        found["joints, all"] = of_forces - others[: cycles.number - 1]
+def work(run: Run) -> pd.DataFrame:
+    """Work on the bodies in the last whole cycle of a run [J], from its summary; with gas also as mean effective pressure [Pa], that is
+    divided by the volume that the piston sweeps. Empty if the summary has none."""
+    values = {name: float(value) for name, (value, _) in run.summary.items() if WORK_IN_CYCLE.fullmatch(name)}
+    imep = float(run.summary.get("cycle_imep", ("0", ""))[0])
+    swept = values["cycle_work_gas"] / imep if imep else 0.0
     rows = []
-    for name, values in found.items():
-        row = {"quantity": name, "work[J]": values.mean(), "scatter[J]": values.std()}
+    for name, value in values.items():
+        found = WORK_IN_CYCLE.fullmatch(name)
+        part = found["part"]
+        label = LABELS.get(part) or f"{part}, {'crank pin' if found['prefix'] else 'piston pin'}"
+        row = {"quantity": label, "work[J]": value}
         if swept:
-            row |= {"mean_effective_pressure[Pa]": values.mean() / swept, "scatter[Pa]": values.std() / swept}
+            row["mean_effective_pressure[Pa]"] = value / swept
         rows.append(row)
     return pd.DataFrame(rows)
-
-
-def loss_columns(cycles: Cycles) -> list[tuple[np.ndarray, str]]:
-    """Powers [W] that joints take from the bodies, negative, if the trace has the necessary columns."""
-    found = []
-    for prefix, place in (("", "piston pin"), ("crank_pin_", "crank pin")):
-        if f"{prefix}friction_force" in cycles and f"{prefix}sliding_speed" in cycles:
-            friction = -np.abs(cycles[f"{prefix}friction_force"] * cycles[f"{prefix}sliding_speed"])
-            if np.any(friction):
-                found.append((friction, f"friction, {place}"))
-        if f"{prefix}film_power" in cycles:
-            found.append((-cycles[f"{prefix}film_power"], f"film, {place}"))
-    return found
 
 
 def bearing_loads(cycles: Cycles) -> dict[str, np.ndarray]:

@@ -15,7 +15,6 @@ from .language import Language
 from .results import MissingResult, Run
 
 COLUMNS = ("crank_speed", "piston_acceleration", "guide_force", "frame_force_x", "crank_moment", "film_thickness")
-FOR_WORK = ("energy", "energy_residual", "crank_moment", "crank_speed", "time")  # columns that the table of work needs
 SETTLED = 0.05  # largest drift of a column's mean over the cycles, divided by the column's range
 HIGHEST = 20.0  # highest order shown
 
@@ -59,7 +58,7 @@ def section(run: Run, wanted: list[str] | None = None, language: Language | None
             picture(cycle_pictures.draw_means(cycles, columns), means, language),
             picture(cycle_pictures.draw_orders(cycles, columns, HIGHEST), by_order, language),
             table(strongest(cycles, columns), "Strongest orders (amplitude; order 0: mean)", language),
-            table(work(cycles).map(number), "Work in a cycle", language) if all(name in cycles for name in FOR_WORK) else "",
+            table(done.map(number), "Work in the last cycle", language) if len(done := work(run)) else "",
         )
     )
 

@@ -2,6 +2,7 @@
 module elastic_members
   use gudgeon_kinds, only: dp
   use state_layout, only: layout_t, coordinates_t
+  use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, most_shapes
   use chain_bodies, only: bodies_t
   use elastic_rod, only: elastic_rod_t
@@ -24,6 +25,7 @@ module elastic_members
   contains
     procedure :: claim
     procedure :: put_start
+    procedure :: declare
     procedure :: read_state
     procedure :: put_rates
     procedure :: driven_speed
@@ -73,6 +75,39 @@ contains
     y(self%flywheel%position) = self%start_angle
     y(self%flywheel%rate) = self%start_speed
   end subroutine put_start
+
+  !> Declare the state of the members, at the angle and the speed of the crank.
+  subroutine declare(self, list, t, y, crank_angle, crank_speed)
+    class(elastic_members_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    real(dp), intent(in) :: t, crank_angle, crank_speed   !! [s], [rad], [rad/s]
+    real(dp), intent(inout) :: y(:)
+    type(motion_t) :: motion
+    real(dp) :: twist, twist_rate
+    integer :: n, i
+    call self%read_state(t, y, motion)
+    n = self%n_shapes()
+    if (n > 0) then
+      call list%add('rod_shapes', motion%shape(:n), 'm', 'amplitudes of the shapes of the elastic rod, bending first')
+      call list%add('rod_shape_rates', motion%shape_rate(:n), 'm/s', 'their rates')
+      do i = 1, n
+        y(self%shapes(i)%position) = motion%shape(i)
+        y(self%shapes(i)%rate) = motion%shape_rate(i)
+      end do
+    end if
+    if (.not. allocated(self%crankshaft)) return
+    twist = motion%flywheel_angle - crank_angle
+    twist_rate = motion%flywheel_speed - crank_speed
+    call list%add('crankshaft_twist', twist, 'rad', 'angle of the flywheel of the elastic crankshaft minus the crank angle')
+    call list%add('crankshaft_twist_rate', twist_rate, 'rad/s', 'its rate')
+    if (.not. list%sets) return
+    if (self%flywheel%n > 0) then
+      y(self%flywheel%position) = crank_angle + twist
+      y(self%flywheel%rate) = crank_speed + twist_rate
+    else
+      self%start_angle = self%start_angle + (crank_angle + twist - motion%flywheel_angle)
+    end if
+  end subroutine declare
 
   pure subroutine read_state(self, t, y, motion)
     class(elastic_members_t), intent(in) :: self

@@ -8,6 +8,7 @@ module valve_gas
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, two_pi
   use cylinder, only: cylinder_t
+  use run_state, only: run_state_t
   implicit none
   private
   public :: valve_gas_t, n_valve_events
@@ -32,6 +33,7 @@ module valve_gas
     real(dp) :: dead_centre = 0       !! crank angle at which that valve closes [rad]
   contains
     procedure :: find_state
+    procedure :: declare
     procedure :: pressure
     procedure :: pressure_slope
     procedure :: events
@@ -61,6 +63,22 @@ contains
       if (volume >= self%suction_volume) call open_valve(self, suction_open, q, crank_speed)
     end if
   end subroutine find_state
+
+  !> Declare the state of the valves.
+  subroutine declare(self, list, q, crank_speed)
+    class(valve_gas_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    real(dp), intent(in) :: q, crank_speed   !! crank angle [rad] and crank speed [rad/s]
+    integer :: state
+    state = self%state
+    call list%add('valve', state, '1: both valves are closed, 2: the discharge valve is open, 3: the suction valve is open')
+    call list%add('held_pressure', self%held_pressure, 'Pa', 'pressure of the gas when the last valve closed')
+    call list%add('held_volume', self%held_volume, 'm3', 'volume of the gas when the last valve closed')
+    if (.not. list%sets) return
+    call close_valves(self, self%held_pressure, self%held_volume)
+    if (all(state /= [both_closed, discharge_open, suction_open])) call list%refuse('valve', 'must be 1, 2 or 3')
+    if (state /= both_closed) call open_valve(self, state, q, crank_speed)
+  end subroutine declare
 
   !> p [Pa] at crank angle q [rad].
   pure real(dp) function pressure(self, q)

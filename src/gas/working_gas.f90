@@ -4,6 +4,7 @@ module working_gas
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree
   use trace_row, only: trace_row_t
+  use run_state, only: run_state_t
   use monotone_cubic, only: monotone_cubic_t
   use cylinder, only: cylinder_t
   use gas_cycle, only: gas_cycle_t, n_parts
@@ -30,6 +31,7 @@ module working_gas
     type(monotone_cubic_t), allocatable :: curve   !! measured pressure [Pa] over the crank angle [rad]
   contains
     procedure :: start
+    procedure :: declare
     procedure :: longest_turn
     procedure, non_overridable :: pressure
     procedure, non_overridable :: force
@@ -53,6 +55,18 @@ contains
       call self%valves%find_state(crank_angle, crank_speed)
     end if
   end subroutine start
+
+  !> Declare the state of the gas at the angle and the speed of the crank, from which that of a cycle follows.
+  subroutine declare(self, list, crank_angle, crank_speed)
+    class(working_gas_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
+    if (allocated(self%valves)) then
+      call self%valves%declare(list, crank_angle, crank_speed)
+    else if (list%sets) then
+      call self%start(crank_angle, crank_speed)
+    end if
+  end subroutine declare
 
   !> Largest crank angle in a step, so that no step passes over a peak [rad]; 0: no limit. A cycle needs no limit, since events
   !> divide it into smooth parts. For a measured pressure it is the smallest distance of its points, but at least 0.25 and at most 5

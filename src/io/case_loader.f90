@@ -8,6 +8,7 @@ module case_loader
   use value_reader, only: set_to_default, read_times
   use case_values, only: case_values_t
   use case_curves, only: provide_curves
+  use state_file, only: provide_state
   implicit none
   private
   public :: load_case, load_model
@@ -49,6 +50,7 @@ contains
       call move_alloc(loader%error, error)
     else
       call provide_curves(values, into, error)
+      if (.not. allocated(error)) call provide_state(values, into, error)
     end if
   end subroutine load_case
 

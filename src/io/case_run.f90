@@ -8,6 +8,8 @@ module case_run
   use film_files, only: write_film_file
   use wear_file, only: write_wear_file
   use gudgeon_simulation, only: run_t, run_report_t
+  use run_state, only: run_state_t
+  use state_file, only: state_text, state_suffix, reached
   use patient_run, only: steps_between_looks
   use trace_files, only: trace_files_t
   use result_file, only: result_file_t, remove_result, write_text
@@ -15,14 +17,17 @@ module case_run
   use certificate_text, only: certificate_table, certificate_summary, certificate_clause
   use gudgeon_summary, only: summary_table, summary_line
   use stability_advice, only: stability_advice_t, advice
-  use gudgeon_progress, only: progress_t, clock
-  use gudgeon_posix, only: synchronise_folder, file_length, error_text, interrupted
+  use gudgeon_progress, only: progress_t, clock, tell
+  use text_file, only: read_whole
+  use gudgeon_posix, only: synchronise_folder, file_length, absolute_path, error_text, interrupted
   use text_tools, only: printable
   use joint_places, only: n_places
   implicit none
   private
   public :: case_run_t, name_file
 
+  character(len=*), parameter :: newline = achar(10)
+  real(dp), parameter :: between_states = 60       !! [s] of the clock, between two files of the state
   integer, parameter :: room_for_summary = 12288   !! [bytes], twice the length of the longest summaries
 
   !> A run. Call `prepare` first, then `go`. Its files are BASE.csv, with contacts BASE.events.csv, and BASE.summary.csv. Errors are
@@ -107,6 +112,7 @@ contains
       '.events.csv', '.film.csv', '.wear.csv', '.certificate.csv', '.ideal.csv']
     logical :: was_there, keeps_twin
     integer :: i, status, ignored
+    if (.not. self%is_twin) call remove_state(self)
     was_there = .false.
     status = 0
     keeps_twin = file_length(self%base//'.ideal.resolved.nml') >= 0
@@ -120,26 +126,69 @@ contains
       error_text(status), status_output)
   end subroutine remove_earlier
 
+  !> Remove the state of an earlier run of this name, unless this run starts from it. The user is told what is discarded if that run
+  !> was stopped, or if this one goes on from it.
+  subroutine remove_state(self)
+    class(case_run_t), intent(in) :: self
+    character(len=:), allocatable :: summary, path, what
+    logical :: unused, starts_from_it
+    integer :: status, ignored
+    path = self%base//state_suffix
+    starts_from_it = .false.
+    if (allocated(self%case%initial%state)) starts_from_it = self%case%initial%state%file == printable(absolute_path(path), 200)
+    call read_whole(self%base//'.summary.csv', summary, status)
+    what = ''
+    if (starts_from_it .and. status == 0) then
+      what = 'replaces the results of the run from which it goes on; another folder with --out keeps both'
+    else if (file_length(self%base//'.csv.part') >= 0 .or. status == 0 .and. index(summary, newline//'status,"done"') == 0) then
+      what = 'discards the results of an earlier run that was stopped'//reached(path)
+    end if
+    if (what /= '' .and. .not. self%is_quiet) call tell(printable(self%case%file, 200)//': '//what)
+    status = 0
+    if (.not. starts_from_it) call remove_result(path, unused, ignored, keeps_part=.false.)
+  end subroutine remove_state
+
   !> Run the case to its end, unless the user interrupts or a file cannot be written.
   subroutine carry_out(self, files)
     class(case_run_t), intent(inout) :: self
     type(trace_files_t), target, intent(inout) :: files
     type(run_t) :: run
+    type(error_t), allocatable :: state_error
+    real(dp) :: now, last   !! of the last file of the state [s]
     call self%progress%start(self%case%name, self%shows_progress)
     call run%begin(self%case, self%is_twin, self%list, files, self%error)
     if (.not. allocated(self%error)) then
+      last = self%began
       do while (.not. run%is_over)
         call run%advance(huge(1.0_dp), steps_between_looks)
         call self%progress%update(run%t/run%expected_end(), run%t)
         call self%advice%consider(run%t, run%expected_end(), clock() - self%began, run%method%statistics, self%progress)
         if (any(files%file%has_failed())) call run%stop()
         if (interrupted()) call run%stop()
+        now = clock()
+        if (now - last < between_states) cycle
+        call write_state(self, run, state_error)
+        last = now
       end do
+      call write_state(self, run, state_error)
       call run%finish(self%report, self%error)
+      if (allocated(state_error)) call move_alloc(state_error, self%error)
     end if
     call self%progress%finish()
     if (.not. allocated(self%report%status)) self%report%status = self%error%message
   end subroutine carry_out
+
+  !> Write the state that the run has reached. The ideal twin has none: it starts as its case says.
+  subroutine write_state(self, run, error)
+    class(case_run_t), intent(in) :: self
+    type(run_t), intent(inout) :: run
+    type(error_t), allocatable, intent(out) :: error
+    type(run_state_t) :: state
+    if (self%is_twin) return
+    call run%state(state)
+    call write_text(self%base//state_suffix, state_text(state, 'State of '//printable(self%case%file, 200)// &
+      ': gudgeon '//printable(self%case%file, 200)//' --from '//printable(self%base, 200)//state_suffix//' goes on from it'), error)
+  end subroutine write_state
 
   !> Close the files of a run that has ended. If the run is done, the trace gets its final name before the summary, which reports it
   !> as done. Otherwise the summary is written first; if that fails, the trace keeps its temporary name.

@@ -12,16 +12,15 @@ module case_runner
   use command_line, only: command_line_t
   use film_files, only: provide_tables
   use gudgeon_columns, only: column_list_t, choose_columns
-  use gudgeon_scene, only: scene_t
   use gudgeon_summary, only: build_advice
-  use scene_builder, only: build_scene
+  use run_start, only: try_start
   use case_run, only: case_run_t, name_file
   use result_file, only: fail_with_file
   use gudgeon_posix, only: absolute_path, make_directory, interrupted
   use gudgeon_progress, only: tell, say, clock, progress_wanted
   use measured_curve, only: measured_curve_t
   use process_pool, only: tasks_t, note_t, share, available_processors
-  use text_tools, only: printable, integer_text
+  use text_tools, only: printable, integer_text, path_beside
   implicit none
   private
   public :: run_cases, tell_warning
@@ -87,7 +86,6 @@ contains
     type(case_values_t) :: values
     type(case_t) :: case
     type(column_list_t) :: list, ideal_list
-    type(scene_t), allocatable :: scene
     character(len=:), allocatable :: base, text
 
     job%path = path
@@ -95,12 +93,12 @@ contains
       call not_begun(path, '', job%error)
       return
     end if
-    call read_case_values(path, with_preset(options%accuracy, options%overrides), values, job%error)
+    call read_case_values(path, settings_of(options), values, job%error)
     if (.not. allocated(job%error)) call complete_case(values, path, case, job%error)
     if (allocated(job%error)) return
     call choose_columns(case, .false., list, job%error)
     if (.not. allocated(job%error)) call choose_columns(case, .true., ideal_list, job%error)
-    if (.not. allocated(job%error)) call build_scene(case, .false., scene, job%error, without_tables=.true.)
+    if (.not. allocated(job%error)) call try_start(case, job%error)
     if (allocated(job%error)) then
       call name_file(path, job%error)
       return
@@ -114,6 +112,20 @@ contains
     call job%run%prepare(case, text, .false., list, base, options, shows_progress)
     if (job%has_twin) call job%twin%prepare(case, text, .true., ideal_list, base//'.ideal', options, shows_progress)
   end subroutine prepare
+
+  !> The overrides of the command line, with those for which an option stands.
+  function settings_of(options) result(settings)
+    type(command_line_t), intent(in) :: options
+    character(len=:), allocatable :: settings(:)
+    integer, parameter :: longest_path = 4096
+    character(len=max(len(options%overrides), longest_path + len(options%from))) :: given(size(options%overrides) + 1)
+    integer :: n
+    n = size(options%overrides)
+    given(:n) = options%overrides
+    given(n + 1) = 'initial.from='//path_beside(absolute_path('.')//'/', options%from)
+    if (options%from /= '') n = n + 1
+    allocate (settings, source=with_preset(options%accuracy, given(:n)))
+  end function settings_of
 
   !> Give the films of a case their tables, before the work is shared among processes. Error: the user interrupted.
   subroutine provide_films(job, is_quiet, shows_progress)

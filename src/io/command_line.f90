@@ -11,6 +11,7 @@ module command_line
     integer, private :: option_count = 0
     character(len=:), allocatable :: out          !! folder for results
     character(len=:), allocatable :: overrides(:) !! GROUP.KEY=VALUE or GROUP=none in the given order, padded with blanks
+    character(len=:), allocatable :: from         !! path of a state from which the cases start; empty: none
     character(len=:), allocatable :: accuracy     !! draft, standard, reference, or empty: as in the case file
     integer :: jobs = 0                           !! number of processes; 0: number of processors
     logical :: certify = .false.                  !! make certificates of the runs
@@ -30,13 +31,13 @@ module command_line
     logical :: takes_value = .false.
   end type option_t
 
-  type(option_t), parameter :: options(14) = [ &
+  type(option_t), parameter :: options(15) = [ &
     option_t('out', 'o', .true.), option_t('set', 's', .true.), option_t('accuracy', 'a', .true.), &
     option_t('jobs', 'j', .true.), option_t('progress', '', .true.), option_t('check', '', .false.), &
     option_t('certify', '', .false.), &
     option_t('template', '', .false.), option_t('quiet', 'q', .false.), option_t('help', 'h', .false.), &
     option_t('version', 'V', .false.), option_t('fresh', '', .false.), option_t('rows', '', .true.), &
-    option_t('reference', '', .true.)]
+    option_t('reference', '', .true.), option_t('from', '', .true.)]
 
   integer, parameter :: most_jobs = 1024
 
@@ -52,6 +53,7 @@ contains
     integer :: i   ! the last argument used
     line%out = 'results'
     line%accuracy = ''
+    line%from = ''
     line%progress = 'auto'
     line%reference = ''
     allocate (character(len=len(arguments)) :: line%overrides(0), line%cases(0))
@@ -84,6 +86,8 @@ contains
       call refuse('no '//trim(merge('study', 'case ', line%sweep))//' file given')
     else if (line%sweep .and. line%certify) then
       call refuse('--certify is not for gudgeon sweep')
+    else if (line%sweep .and. line%from /= '') then
+      call refuse('--from is not for gudgeon sweep: give &initial from in the base case')
     else if (.not. line%sweep .and. (line%fresh .or. line%last_row > 0)) then
       call refuse('--fresh and --rows are for gudgeon sweep')
     else if (line%fresh .and. line%last_row > 0) then
@@ -166,6 +170,9 @@ contains
       case ('set')
         if (.not. is_override(value)) wanted = 'must have the form GROUP.KEY=VALUE or GROUP=none'
         line%overrides = [character(len=len(arguments)) :: line%overrides, value]
+      case ('from')
+        line%from = value
+        if (value == '') wanted = 'must name a file'
       case ('accuracy')
         line%accuracy = value
         if (all(value /= ['draft    ', 'standard ', 'reference'])) wanted = 'must be draft, standard or reference'
@@ -273,6 +280,8 @@ contains
       '  -a, --accuracy LEVEL      draft, standard or reference: about 3, 5 or 8 digits of a motion without impacts. Sets'//n// &
       '                            method auto, contact entry root and the tolerance 1e-4, 1e-6 or 1e-10; --set has'//n// &
       '                            priority'//n// &
+      '      --from STATE.nml      go on from the state that another run has reached; with --set initial.goes_on=.false.'//n// &
+      '                            begin at t = 0 with its motion'//n// &
       '  -j, --jobs N              number of processes for cases and studies (default: number of processors)'//n// &
       '      --certify             estimate the accuracy of each case by running it again at a hundredth of its tolerance'//n// &
       '                            and with another method; results in the summary and in CASE.certificate.csv'//n// &
@@ -285,8 +294,9 @@ contains
       '      --rows A:B            sweep: run only the rows A to B; a later sweep joins them with the others'//n// &
       '  -h, --help                print this text'//n// &
       '  -V, --version             print the version'//n//n// &
-      'Results of CASE.nml: CASE.csv (trace), CASE.events.csv (contacts), CASE.summary.csv, CASE.resolved.nml (the case with'//n// &
-      'all defaults). Results of STUDY.nml: STUDY.runs.csv, one row for each run, and STUDY.study.nml.'//n// &
+      'Results of CASE.nml: CASE.csv (trace), CASE.events.csv (contacts), CASE.summary.csv, CASE.state.nml (the state at'//n// &
+      'the end, from which --from goes on), CASE.resolved.nml (the case with all defaults).'//n// &
+      'Results of STUDY.nml: STUDY.runs.csv, one row for each run, and STUDY.study.nml.'//n// &
       'Exit status: 0 all done; 1 internal error; 2 wrong command line; 3 wrong case file; 4 an integration'//n// &
       'could not continue (sweep: in at least one run); 5 a result could not be written.'//n
   end function help_text

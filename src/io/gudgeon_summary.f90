@@ -106,6 +106,17 @@ contains
       end if
       if (case%is_elastic()) call add_elastic(f%elastic)
     end associate
+    do i = 1, size(report%answers)
+      associate (it => report%answers(i))
+        if (it%unit == '') then
+          call add(trim(it%name), trim(it%text), '')
+        else if (it%name == 'cycle_revolutions') then
+          call add(trim(it%name), integer_text(nint(it%value)), '1')
+        else
+          call add(trim(it%name), peak(it%value), trim(it%unit))
+        end if
+      end associate
+    end do
     call add('version', program_version, '')
     call add('compiler', quoted(compiler_version(), '"'), '')
     call add('compiler_options', quoted(compiler_options(), '"'), '')

@@ -42,7 +42,8 @@ module namelist_reader
     procedure :: at
   end type namelist_t
 
-  integer, parameter :: most = 1000  !! largest number of groups, keys, and values of a key
+  integer, parameter :: most = 1000          !! largest number of groups and of keys
+  integer, parameter :: most_values = 4000   !! largest number of values of a key
 
 contains
 
@@ -198,9 +199,10 @@ contains
   subroutine read_tokens(scan, tokens)
     type(scanner_t), intent(inout) :: scan
     type(token_t), allocatable, intent(out) :: tokens(:)
-    type(token_t) :: found(most)
+    type(token_t), allocatable :: found(:), more(:)
     logical :: comma
     integer :: behind_comma, n
+    allocate (found(8))
     n = 0
     comma = .true.
     behind_comma = 0
@@ -219,8 +221,13 @@ contains
       end if
       if (scan%text(scan%at:scan%at) == '/' .or. scan%text(scan%at:scan%at) == '&') exit
       if (key_is_next(scan)) exit
-      if (n == most) scan%message = 'too many values'
+      if (n == most_values) scan%message = 'too many values'
       if (allocated(scan%message)) return
+      if (n == size(found)) then
+        allocate (more(2*n))
+        more(:n) = found
+        call move_alloc(more, found)
+      end if
       n = n + 1
       found(n)%follows_comma = scan%at == behind_comma
       call read_token(scan, found(n))

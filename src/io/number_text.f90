@@ -13,7 +13,7 @@ module number_text
   use text_tools, only: whole_number
   implicit none
   private
-  public :: real_text, short_text, number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
+  public :: real_text, short_text, exact_text, number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
 
   integer, parameter :: fewest_digits = 6, most_digits = 17   !! significant digits
   integer, parameter :: longest_number = most_digits + 9      !! characters, as -1.2345678901234567E-100, with trailing blanks
@@ -224,13 +224,28 @@ contains
     if (abs(value) > huge(value)) text = trim(merge('-inf', 'inf ', value < 0))
   end function real_text
 
-  !> A real for messages: 6 significant digits without trailing zeros, as 0.0125 or 36000.5 if that is short.
-  pure function short_text(value) result(text)
+  !> The shortest text of a real, as 0.0508 or 1.25E-05, that reads back as the same number.
+  pure function exact_text(value) result(text)
     real(dp), intent(in) :: value
+    character(len=:), allocatable :: text
+    real(dp) :: back
+    integer :: wanted, status
+    do wanted = 15, most_digits
+      text = short_text(value, wanted)
+      read (text, *, iostat=status) back
+      if (status == 0 .and. .not. abs(back - value) > 0) exit
+    end do
+  end function exact_text
+
+  !> A real for messages: 6 significant digits, or as many as wanted, without trailing zeros, as 0.0125 or 36000.5 if that is short.
+  pure function short_text(value, wanted) result(text)
+    real(dp), intent(in) :: value
+    integer, intent(in), optional :: wanted
     character(len=:), allocatable :: text
     character(len=:), allocatable :: digits
     integer :: first, exponent, power
-    text = real_text(value, 6)
+    text = real_text(value, fewest_digits)
+    if (present(wanted)) text = real_text(value, wanted)
     exponent = index(text, 'E')
     if (exponent == 0) return
     power = int(whole_number(text(exponent + 1:)))

@@ -1,18 +1,13 @@
 !> Descriptions of all quantities of NAME.summary.csv and of all columns of NAME.events.csv and NAME.wear.csv, for the
 !> manual. A test compares the summaries of all shipped cases with this table.
 module summary_quantities
+  use cycle_answers, only: quantity_t, cycle_quantities
   implicit none
   private
   public :: quantity_t, quantities_of_runs, event_columns, wear_columns
 
-  !> A quantity. In its name N stands for a number and PHASE for the phases of the joints. Quantities of the crank pin have the
-  !> prefix `crank_pin_`, those of the corners of the skirt `guide_1_` to `guide_4_`.
-  type :: quantity_t
-    character(len=40) :: name = ''
-    character(len=14) :: unit = ''    !! unit as in the file; 1: a number without unit; empty: a text
-    character(len=170) :: meaning = ''
-  end type quantity_t
-
+  !> In the names N stands for a number and PHASE for the phases of the joints. Quantities of the crank pin have the prefix
+  !> `crank_pin_`, those of the corners of the skirt `guide_1_` to `guide_4_`.
   type(quantity_t), parameter :: of_integration(*) = [ &
     quantity_t('status', '', '`done`, or the reason why the run ended early'), &
     quantity_t('simulated_time', 's', 'time that was simulated'), &
@@ -134,7 +129,8 @@ module summary_quantities
     quantity_t('beyond_NAME_difference', '1', 'largest relative difference of this statistic in the two closer runs')]
 
   !> Quantities of a summary, in their order.
-  type(quantity_t), parameter :: quantities_of_runs(*) = [of_integration, of_motion, of_joints, of_certificates]
+  type(quantity_t), parameter :: quantities_of_runs(*) = [of_integration, of_motion, of_joints, &
+    cycle_quantities, of_certificates]
 
   !> Columns of NAME.events.csv, in their order.
   type(quantity_t), parameter :: event_columns(*) = [ &

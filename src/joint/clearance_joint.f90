@@ -6,16 +6,18 @@ module clearance_joint
   use gudgeon_kinds, only: dp
   use gudgeon_bearing, only: bearing_t, crossing_speed
   use state_layout, only: layout_t, coordinates_t, slice_t
+  use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, angular_acceleration, body_crank, body_big_end, body_small_end, body_piston, &
     n_bodies
-  use joint_places, only: place_t, places, piston_pin
+  use joint_places, only: place_t, places, piston_pin, name_prefix
   use chain_bodies, only: bodies_t
   use ideal_chain, only: ideal_rod
   use chain_loads, only: loads_t, bearing_moment
   use archard_wear, only: wear_law_t
   use contact_arc, only: contact_arc_t
   use joint_evaluation, only: joint_evaluation_t, joint_rates_t, most_element_states, find_polar, find_sliding
-  use load_element, only: load_element_t, n_motions, n_slopes, n_kinds
+  use load_element, only: load_element_t, n_motions, n_slopes, n_kinds, of_contact, of_friction, &
+    of_film
   use film_figures, only: film_figures_t, film_figures_of
   implicit none
   private
@@ -74,6 +76,7 @@ module clearance_joint
     procedure :: claim
     procedure :: own_speed
     procedure :: put_start
+    procedure :: declare
     procedure :: put_own_rates
     procedure :: reset_states
     procedure :: work_of_friction
@@ -96,6 +99,9 @@ module clearance_joint
     procedure :: has_worn_bore
     procedure :: film_figures => figures_of_joint
     procedure :: powers
+    procedure :: has_kind
+    procedure :: shares_load
+    procedure :: work_rates
     procedure :: rubs
     procedure :: sliding_load
   end type clearance_joint_t
@@ -180,6 +186,50 @@ contains
       end associate
     end do
   end subroutine put_start
+
+  !> Declare the joint's state, which is in part in the state vector. A position in a bearing of another clearance keeps its
+  !> penetration in contact, else its ratio to the clearance.
+  subroutine declare(self, list, y)
+    class(clearance_joint_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    real(dp), intent(inout) :: y(:)
+    character(len=:), allocatable :: pre, pin
+    real(dp) :: clearance, distance, outward
+    integer :: k
+    pre = name_prefix(self%place)
+    pin = trim(self%site%title)
+    clearance = self%bearing%clearance
+    associate (e => y(self%at%position:self%at%position + 1), rate => y(self%at%rate:self%at%rate + 1))
+      call list%add(pre//'phase', self%phase, pin//': 0 free flight, 1 film, 2 contact')
+      call list%add(pre//'clearance', clearance, 'm', 'clearance of this position')
+      call list%add(pre//'eccentricity', e, 'm', 'centre of the '//pin//' from the centre of its bearing (x, y)')
+      call list%add(pre//'eccentricity_rate', rate, 'm/s', 'its rate')
+      call list%add(pre//'impact_speed', self%impact_speed, 'm/s', 'speed at which the present or last contact began')
+      do k = 1, self%n_elements
+        associate (element => self%slots(k)%element)
+          if (element%n_states > 0) call list%add(pre//trim(element%state_name), &
+            y(element%states%first:element%states%last), trim(element%state_unit), '')
+          if (element%may_stick) call list%add(pre//'sliding', element%sliding, 'sense of sliding; 0 while the surfaces stick')
+          list%of_totals = .true.
+          if (element%integrates_friction) &
+            call list%add(pre//'friction_work', y(element%friction_work%first), 'J', 'work of friction on the bodies')
+          list%of_totals = .false.
+        end associate
+      end do
+      if (.not. list%sets) return
+      distance = norm2(e)
+      if (self%phase == phase_contact .and. self%acting(phase_contact) > 0) then
+        if (distance < clearance*(1 - 1e-6_dp)) call list%refuse(pre//'phase', 'is 2, but the '//pin//' is away from the wall')
+        if (distance > 0) e = e*(1 + (self%bearing%clearance - clearance)/distance)
+      else
+        if (self%phase /= self%phase_apart()) call list%refuse(pre//'phase', 'the '//pin//' of the case does not have this phase')
+        self%phase = self%phase_apart()
+        if (abs(clearance - self%bearing%clearance) > 0) e = e*(self%bearing%clearance/clearance)
+      end if
+      outward = dot_product(e, rate)
+      call self%begin_at(norm2(e), outward)
+    end associate
+  end subroutine declare
 
   !> Rates of the states of the elements, and of the work of friction. They are 0 while an element does not act, and without
   !> contact.
@@ -489,6 +539,69 @@ contains
     powers = 0
     if (self%acting(self%phase) > 0) powers = self%slots(self%acting(self%phase))%element%powers(joint)
   end function powers
+
+  !> Whether the joint has this kind of load in any of its phases.
+  pure logical function has_kind(self, kind)
+    class(clearance_joint_t), intent(in) :: self
+    integer, intent(in) :: kind
+    integer :: k
+    has_kind = .false.
+    do k = 1, self%n_elements
+      associate (element => self%slots(k)%element)
+        select case (kind)
+        case (of_film)
+          has_kind = has_kind .or. allocated(element%film)
+        case (of_contact)
+          has_kind = has_kind .or. element%rubs .and. element%normal_kind == kind .or. allocated(element%walls)
+        case (of_friction)
+          has_kind = has_kind .or. element%rubs .and. element%friction_kind == kind .and. element%has_friction
+        case default
+          has_kind = has_kind .or. element%rubs .and. element%normal_kind == kind
+        end select
+      end associate
+    end do
+  end function has_kind
+
+  !> Whether a film and another kind of load act at the same time.
+  pure logical function shares_load(self)
+    class(clearance_joint_t), intent(in) :: self
+    integer :: k
+    shares_load = .false.
+    do k = 1, self%n_elements
+      associate (element => self%slots(k)%element)
+        shares_load = shares_load .or. allocated(element%film) .and. (element%rubs .or. allocated(element%walls))
+      end associate
+    end do
+  end function shares_load
+
+  !> The same as `powers`, from what the right-hand side computes: loads that the present phase does not have need not be set,
+  !> unless the joint shares its load.
+  pure function work_rates(self, joint, y) result(rates)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    real(dp), intent(in) :: y(*)   !! the whole state vector
+    real(dp) :: rates(n_kinds)
+    type(joint_evaluation_t) :: whole
+    integer :: k
+    rates = 0
+    k = self%acting(self%phase)
+    if (k == 0) return
+    associate (element => self%slots(k)%element)
+      if (.not. allocated(element%film)) then
+        rates(of_contact) = -joint%normal_force*(joint%normal(1)*joint%eccentricity_rate(1) &
+          + joint%normal(2)*joint%eccentricity_rate(2))
+        rates(of_friction) = joint%friction_force*joint%sliding_speed
+      else if (element%rubs .or. allocated(element%walls)) then
+        whole = joint
+        whole%states(:element%n_states) = y(element%states%first:element%states%last)
+        call self%find_gap(y, whole)
+        call find_sliding(self%pin_radius, whole)
+        rates = element%powers(whole)
+      else
+        rates(of_film) = joint%power
+      end if
+    end associate
+  end function work_rates
 
   !> Whether surfaces may touch in the present phase.
   pure logical function rubs(self)

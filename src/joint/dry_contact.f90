@@ -46,10 +46,13 @@ contains
     if (.not. allocated(wanted%friction)) return
     allocate (self%friction, source=wanted%friction)
     call self%friction%prepare()
+    self%has_friction = .true.
     self%may_stick = self%friction%set_valued
     self%holding_ratio = self%friction%holding_ratio()
     self%static_speed = self%friction%static_speed()
     self%n_states = self%friction%n_states
+    self%state_name = 'bristle_deflection'
+    self%state_unit = 'm'
     self%state_scale = self%friction%state_scale
     self%starts_again = .true.
     self%integrates_friction = self%n_states > 0 .or. wanted%reports_friction_work .or. allocated(wanted%wear)

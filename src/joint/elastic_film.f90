@@ -52,6 +52,8 @@ contains
     self%is_unbounded = .false.
     self%has_own_gap = .true.
     self%n_states = 2   ! e_f
+    self%state_name = 'film_eccentricity'
+    self%state_unit = 'm'
     self%state_scale = self%bearing%clearance
     self%state_reach = self%bearing%clearance
   end subroutine prepare

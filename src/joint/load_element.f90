@@ -41,9 +41,12 @@ module load_element
     logical :: has_own_gap = .false.        !! the gap is not that of a round pin in a round bore: see `find_gap`
     logical :: has_slopes = .true.          !! the slopes are in closed form
     logical :: rubs = .false.               !! surfaces may touch while it acts, and wear
+    logical :: has_friction = .false.       !! there is friction where they touch
     integer :: normal_kind = of_contact, friction_kind = of_friction   !! kinds of its normal force and of its friction
     ! first-order states
     integer :: n_states = 0
+    character(len=24) :: state_name = ''    !! of all of them, in files of states
+    character(len=8) :: state_unit = ''
     real(dp) :: state_scale(most_element_states) = 1      !! natural sizes
     real(dp) :: start(most_element_states) = 0            !! values at t = 0
     logical :: starts_again = .false.       !! they are 0 at the beginning of each contact

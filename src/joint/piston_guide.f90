@@ -11,6 +11,7 @@ module piston_guide
   use gudgeon_kinds, only: dp
   use gudgeon_bearing, only: bearing_t, crossing_speed
   use state_layout, only: layout_t, coordinates_t
+  use run_state, only: run_state_t
   use chain_motion, only: motion_t, tilting_t
   use chain_loads, only: loads_t
   use contact_law, only: contact_law_t
@@ -57,6 +58,7 @@ module piston_guide
     procedure :: prepare
     procedure :: claim
     procedure :: put_start
+    procedure :: declare
     procedure :: read_state
     procedure :: place_corners
     procedure :: look
@@ -109,6 +111,33 @@ contains
     y([self%offset%position, self%tilt%position]) = self%start
     y([self%offset%rate, self%tilt%rate]) = self%start_rate
   end subroutine put_start
+
+  !> Declare the state of a piston with clearance in its bore. In a bore of another clearance it keeps its ratio to the clearance.
+  subroutine declare(self, list, y)
+    class(piston_guide_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    real(dp), intent(inout) :: y(:)
+    real(dp) :: clearance
+    integer :: touches(n_corners), i
+    if (.not. self%is_loose) return
+    clearance = self%clearance
+    touches = merge(1, 0, self%touches)
+    call list%add('bore_clearance', clearance, 'm', 'clearance of this position of the piston')
+    call list%add('piston_offset', y(self%offset%position), 'm', 'centre of mass of the piston from the cylinder axis')
+    call list%add('piston_offset_rate', y(self%offset%rate), 'm/s', 'its rate')
+    call list%add('piston_tilt', y(self%tilt%position), 'rad', 'tilt of the piston')
+    call list%add('piston_tilt_rate', y(self%tilt%rate), 'rad/s', 'its rate')
+    do i = 1, n_corners
+      call list%add(trim(corner_names(i))//'_contact', touches(i), '1: this corner of the skirt is in contact')
+    end do
+    call list%add('guide_impact_speed', self%impact_speed, 'm/s', 'speeds at which their present or last contacts began')
+    if (.not. list%sets) return
+    self%touches = touches > 0
+    if (abs(clearance - self%clearance) > 0) then
+      y([self%offset%position, self%tilt%position]) = self%clearance/clearance*y([self%offset%position, self%tilt%position])
+      self%touches = .false.   ! `take_up` of the scene finds them
+    end if
+  end subroutine declare
 
   !> Read offset and tilt, and their rates, from the state vector.
   pure subroutine read_state(self, y, tilting)

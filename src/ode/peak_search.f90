@@ -19,7 +19,7 @@ module peak_search
   !> of parabolas through the three best points, or golden sections where these fail (Brent 1973, ch. 5).
   type :: peak_search_t
     real(dp) :: value(3) = 0              !! the three largest values so far, the largest first
-    real(dp), private :: t(3) = 0         !! their times
+    real(dp) :: t(3) = 0                  !! their times
     type(sample_t), private :: left, right   !! bracket of the maximum
     real(dp), private :: width = 0        !! initial width of the interval
     real(dp), private :: last = 0, last_but_one = 0   !! distances between successive times

@@ -7,6 +7,7 @@
 !> compiled again.
 module case_definition
   use gudgeon_kinds, only: dp
+  use run_state, only: run_state_t
   use gudgeon_parameters, only: has_parameters_t, parameter_list_t
   use run_length, only: run_length_t
   use chain_motion, only: n_pins
@@ -40,6 +41,9 @@ module case_definition
   end type drive_case_t
 
   type, extends(has_parameters_t) :: initial_case_t
+    character(len=:), allocatable :: from      !! file of a state from which the run starts; empty: none
+    logical :: goes_on = .true.                !! it goes on with the totals of that state
+    type(run_state_t), allocatable :: state    !! that state; not allocated: the run starts with the following values
     real(dp) :: crank_angle_deg = 0, crank_speed = 0
     real(dp) :: eccentricity(2, n_places) = 0, eccentricity_rate(2, n_places) = 0   !! of the pin in its bearing, by place
     real(dp) :: piston_offset = 0, piston_offset_rate = 0, piston_tilt = 0, piston_tilt_rate = 0  !! of a piston with clearance in
@@ -69,6 +73,7 @@ module case_definition
     real(dp), allocatable :: snapshot_times(:)   !! the same as numbers, increasing [s]; not allocated if there are none
     integer :: digits = 0                      !! significant digits of the numbers in traces
     logical :: every_step = .false., ideal_twin = .false.
+    logical :: answers = .true.
     character(len=:), allocatable :: window    !! 'all' or 'last_period'
   contains
     procedure :: parameters => output_parameters
@@ -231,6 +236,11 @@ contains
     call list%add('piston_offset_rate', self%piston_offset_rate, 'rate of piston_offset', 'm/s', default='0.0')
     call list%add('piston_tilt', self%piston_tilt, 'tilt of the piston in its bore, positive from x to y', 'rad', default='0.0')
     call list%add('piston_tilt_rate', self%piston_tilt_rate, 'rate of piston_tilt', 'rad/s', default='0.0')
+    call list%text('from', self%from, &
+      'start from the state in this file, a NAME.state.nml, path relative to the case file; crank_speed remains the held '// &
+      'speed and the natural size of speeds, the other values are those of the file', '')
+    call list%add('goes_on', self%goes_on, &
+      '.true.: time, energies, wear and extremes go on from those of that file; .false.: they begin at 0 with its motion', '.true.')
   end subroutine initial_parameters
 
   subroutine integrator_parameters(self, list)
@@ -283,6 +293,7 @@ contains
       'times [s] of pressure fields in NAME.film.csv: t1, t2, ... or from:to:count', '')
     call list%add('every_step', self%every_step, &
       'write rows at the steps of the integrator instead of those at equal times', '.false.')
+    call list%add('answers', self%answers, 'extremes, losses and work of the last whole cycle in the summary', '.true.')
     call list%add('ideal_twin', self%ideal_twin, 'also run the same mechanism with ideal joints and rigid bodies', '.false.')
     call list%word('window', self%window, 'all, last_period', 'all', &
       'all: the whole run; last_period: only the last period of a run until = ''periodic''')

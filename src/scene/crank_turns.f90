@@ -36,6 +36,7 @@ module crank_turns
     integer, private :: made = 0         !! largest number of whole turns made so far
     real(dp), private :: since = 0       !! time at which they had been made [s]
   contains
+    procedure :: begin
     procedure :: follow
     procedure :: limit_end
   end type turn_patience_t
@@ -119,6 +120,15 @@ contains
     real(dp), parameter :: rounding = 1e-9_dp   !! [rad]
     is_over = abs(abs(crank_angle - self%begin) - two_pi*self%turns) <= rounding
   end function is_over
+
+  !> Begin at time t, `turns` turns away from the start.
+  pure subroutine begin(self, t, turns)
+    class(turn_patience_t), intent(inout) :: self
+    real(dp), intent(in) :: t       !! [s]
+    real(dp), intent(in) :: turns   !! >= 0
+    self%made = floor(turns)
+    self%since = t
+  end subroutine begin
 
   !> Report that the crank is `turns` turns away from its start at time t.
   pure subroutine follow(self, t, turns)

@@ -4,9 +4,11 @@ module cycle_statistics
   use joint_places, only: n_places
   implicit none
   private
-  public :: cycle_t, cycle_statistics_t, skirt
+  public :: cycle_t, cycle_statistics_t, skirt, most_parts
 
   integer, parameter :: skirt = n_places + 1   !! the last place of contacts, after the pins: the skirt of a piston in its bore
+
+  integer, parameter :: most_parts = 5 + 4*n_places   !! largest number of parts of the work
 
   !> Results of one revolution at one place. Those of contact and film are 0 at a pin without clearance; an ideal crank pin has no
   !> results. Those of the skirt are over all corners, without film and integral. Peaks are searched also between the accepted
@@ -18,6 +20,10 @@ module cycle_statistics
     integer :: impacts = 0                            !! number of contacts that began
     real(dp) :: max_force = 0                         !! [N]
     real(dp) :: force_integral = 0                    !! integral of the magnitude of the force over time [N s]
+    real(dp) :: thinnest_angle = 0                    !! crank angle at the smallest film thickness [rad]
+    real(dp) :: max_film_pressure = 0                 !! [Pa] if results of the film are requested
+    real(dp) :: pressure_angle = 0                    !! crank angle at that pressure [rad]
+    real(dp) :: film_volume = 0                       !! volume of oil that left the film at its ends, if they are requested [m^3]
   end type pin_cycle_t
 
   !> Results of one revolution.
@@ -25,6 +31,13 @@ module cycle_statistics
     real(dp) :: duration = 0                          !! [s]
     real(dp) :: dissipated_energy = 0                 !! energy taken from the bodies by the joints [J]
     type(pin_cycle_t) :: pin(skirt) = pin_cycle_t()
+    ! for the answers of a cycle
+    real(dp) :: start = 0                             !! [s]
+    real(dp) :: work(most_parts) = 0                  !! of the parts of the work on the bodies [J]
+    real(dp) :: energy_change = 0                     !! of kinetic, potential and elastic energy [J]
+    real(dp) :: max_pressure = -huge(1.0_dp)          !! of the gas in the cylinder [Pa]
+    real(dp) :: max_pressure_angle = 0                !! crank angle then [rad]
+    real(dp) :: max_speed = -huge(1.0_dp), max_slowness = -huge(1.0_dp)   !! of the crank, and of its negative [rad/s]
   end type cycle_t
 
   !> Sums and extremes over the revolutions.
@@ -46,7 +59,20 @@ contains
     self%cycles = self%cycles + 1
     self%total%duration = self%total%duration + cycle%duration
     self%total%dissipated_energy = self%total%dissipated_energy + cycle%dissipated_energy
+    associate (total => self%total, one => cycle)
+      if (self%cycles == 1) total%start = one%start
+      total%work = total%work + one%work
+      total%energy_change = total%energy_change + one%energy_change
+      if (one%max_pressure > total%max_pressure) total%max_pressure_angle = one%max_pressure_angle
+      total%max_pressure = max(total%max_pressure, one%max_pressure)
+      total%max_speed = max(total%max_speed, one%max_speed)
+      total%max_slowness = max(total%max_slowness, one%max_slowness)
+    end associate
     associate (total => self%total%pin, one => cycle%pin)
+      where (one%min_film_thickness < total%min_film_thickness) total%thinnest_angle = one%thinnest_angle
+      where (one%max_film_pressure > total%max_film_pressure) total%pressure_angle = one%pressure_angle
+      total%max_film_pressure = max(total%max_film_pressure, one%max_film_pressure)
+      total%film_volume = total%film_volume + one%film_volume
       total%min_film_thickness = min(total%min_film_thickness, one%min_film_thickness)
       total%max_penetration = max(total%max_penetration, one%max_penetration)
       total%contact_time = total%contact_time + one%contact_time

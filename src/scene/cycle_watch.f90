@@ -12,7 +12,9 @@ module cycle_watch
   use crank_passage, only: find_passage
   use step_peaks, only: n_peaks, of_pin_force, of_penetration
   use gudgeon_columns, only: column_list_t, row_values
-  use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt
+  use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt, most_parts
+  use run_length, only: longest_period
+  use machine_record, only: machine_record_t
   implicit none
   private
   public :: cycle_watch_t
@@ -32,8 +34,11 @@ module cycle_watch
     integer :: strobes = 0                         !! number of samples taken; sample i is in revolution uncounted + i
     real(dp), allocatable :: strobe_values(:, :)   !! (columns, strobes)
     real(dp) :: direction = 1                      !! sense in which the crank turns: 1 or -1
+    type(cycle_t) :: recent(0:longest_period - 1)   !! revolution k in element mod(k, longest_period), for the last ones that ended
+    type(machine_record_t), private :: machine
+    real(dp), private :: works(most_parts) = 0, energy = 0   !! at the start of the revolution [J]
     type(cycle_t), private :: present
-    integer, private :: ended = 0                  !! number of revolutions that have ended
+    integer :: ended = 0                  !! number of revolutions that have ended
     integer, private :: passed = 0                 !! number of times that the crank has passed the strobe angle
     real(dp), private :: start_angle = 0, strobe_offset = 0, initial_energy = 0
     real(dp), private :: t = 0                     !! time of the last point [s]
@@ -49,6 +54,9 @@ module cycle_watch
     procedure :: take_strobes
     procedure :: lower_to_peaks
     procedure :: take_peaks
+    procedure :: take_film
+    procedure :: search_machine
+    procedure :: last_cycle
     procedure :: take_point
     procedure :: take_impact
     procedure :: take_skirt
@@ -57,25 +65,32 @@ module cycle_watch
 
 contains
 
-  !> Begin a run.
-  subroutine begin(self, scene, y, initial_energy)
+  !> Begin a run at (t, y), where the scene has been evaluated if that is inside the model.
+  subroutine begin(self, scene, t, y, now, inside, initial_energy)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: y(:)
+    real(dp), intent(in) :: t, y(:)
+    type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: inside
     real(dp), intent(in) :: initial_energy   !! [J]
+    if (inside) call self%machine%begin(scene, t, now)
     self%statistics = cycle_statistics_t()
     self%present = cycle_t()
     self%uncounted = self%settle
     self%ended = 0
     self%passed = 0
     self%strobes = 0
-    self%t = 0
-    self%cycle_start = 0
+    self%t = t
+    self%cycle_start = t
     self%force_integral = 0
-    self%loss = 0
+    self%loss = scene%joint_loss(t, y)
+    self%works = 0
+    if (allocated(scene%parts)) self%works(:size(scene%parts)) = scene%works(t, y)
+    self%energy = 0
+    if (inside) self%energy = scene%chain%energy(now%motion)
     self%direction = sign(1.0_dp, scene%chain%drive%torque)
     if (abs(scene%start_speed) > 0) self%direction = sign(1.0_dp, scene%start_speed)
-    self%start_angle = scene%start_angle
+    self%start_angle = scene%crank_angle(t, y)
     self%initial_energy = initial_energy
     self%strobe_offset = two_pi - modulo(-self%direction*(self%strobe_angle - self%start_angle), two_pi)
     self%has_strobe = .false.
@@ -139,14 +154,55 @@ contains
     end associate
   end subroutine lower_to_peaks
 
+  !> Account for the values of one evaluation of a film in the present revolution.
+  pure subroutine take_film(self, pin, pressure, angle, volume)
+    class(cycle_watch_t), intent(inout) :: self
+    integer, intent(in) :: pin
+    real(dp), intent(in) :: pressure   !! largest in the film [Pa]
+    real(dp), intent(in) :: angle      !! of the crank then [rad]
+    real(dp), intent(in) :: volume     !! of oil that has left the film since the last call [m^3]
+    associate (c => self%present%pin(pin))
+      c%film_volume = c%film_volume + volume
+      if (pressure > c%max_film_pressure) then
+        c%max_film_pressure = pressure
+        c%pressure_angle = angle
+      end if
+    end associate
+  end subroutine take_film
+
+  !> Search the last step, up to t, where the scene is evaluated, for the largest pressure of the gas and for the extremes of the
+  !> crank speed in the present revolution.
+  subroutine search_machine(self, method, scene, t, now)
+    class(cycle_watch_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    call self%machine%search(method, scene, t, now, self%present)
+  end subroutine search_machine
+
+  !> The last revolutions together, as one cycle; all must have ended.
+  pure type(cycle_t) function last_cycle(self, revolutions) result(cycle)
+    class(cycle_watch_t), intent(in) :: self
+    integer, intent(in) :: revolutions
+    type(cycle_statistics_t) :: sum
+    integer :: k
+    do k = self%ended - revolutions + 1, self%ended
+      call sum%add(self%recent(mod(k, longest_period)))
+    end do
+    cycle = sum%total
+  end function last_cycle
+
   !> Account for values of the quantities with peaks, at a pin in the present revolution.
-  pure subroutine take_peaks(self, pin, is_touching, values)
+  pure subroutine take_peaks(self, pin, is_touching, values, thinnest_angle)
     class(cycle_watch_t), intent(inout) :: self
     integer, intent(in) :: pin
     logical, intent(in) :: is_touching
     real(dp), intent(in) :: values(n_peaks)
+    real(dp), intent(in) :: thinnest_angle   !! crank angle of the value of the penetration [rad]
     associate (c => self%present%pin(pin))
       c%max_force = max(c%max_force, values(of_pin_force))
+      if (-values(of_penetration) < c%min_film_thickness) c%thinnest_angle = thinnest_angle
       c%min_film_thickness = min(c%min_film_thickness, -values(of_penetration))
       if (is_touching) c%max_penetration = max(c%max_penetration, values(of_penetration))
     end associate
@@ -190,11 +246,14 @@ contains
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
+    type(evaluation_t) :: now
+    logical :: inside
     real(dp) :: travel
     travel = travel_at(self, scene, t, y)
     if (abs(travel - next_end(self)) <= rounding*(1 + self%ended)) then
       self%y = y
-      call self%end_cycle(scene, t)
+      call scene%evaluate(t, y, now, inside)
+      call self%end_cycle(scene, t, now)
     end if
     if (.not. self%has_strobe) return
     if (abs(travel - next_strobe(self)) <= rounding*(1 + self%passed)) call strobe(self, scene, t, y)
@@ -232,19 +291,27 @@ contains
       passage, self%y)
   end function passage
 
-  !> End the present revolution at time t, with the state in self%y.
-  subroutine end_cycle(self, scene, t)
+  !> End the present revolution at time t, with the state in self%y, where the scene has been evaluated.
+  subroutine end_cycle(self, scene, t, now)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
-    real(dp) :: force_integral(n_places), loss
+    type(evaluation_t), intent(in) :: now
+    real(dp) :: force_integral(n_places), loss, works(most_parts), energy
     force_integral = scene%force_integrals(self%y)
     loss = scene%joint_loss(t, self%y)
+    energy = scene%chain%energy(now%motion)
+    works = 0
+    if (allocated(scene%parts)) works(:size(scene%parts)) = scene%works(t, self%y)
     call self%take_point(scene, t)
     self%present%duration = t - self%cycle_start
     self%present%pin(:n_places)%force_integral = force_integral - self%force_integral
     self%present%dissipated_energy = loss - self%loss
+    self%present%start = self%cycle_start
+    self%present%work = works - self%works
+    self%present%energy_change = energy - self%energy
     self%ended = self%ended + 1
+    self%recent(mod(self%ended, longest_period)) = self%present
     if (self%ended > self%uncounted) then
       call self%statistics%add(self%present)
       if (self%keeps_cycles) then
@@ -258,6 +325,8 @@ contains
     self%cycle_start = t
     self%force_integral = force_integral
     self%loss = loss
+    self%works = works
+    self%energy = energy
   end subroutine end_cycle
 
   !> Sample the columns at (t, y), where the crank passes the strobe angle.

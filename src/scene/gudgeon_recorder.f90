@@ -7,6 +7,7 @@ module gudgeon_recorder
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
   use ode_problem, only: ode_problem_t
+  use run_state, only: run_state_t
   use ode_method, only: ode_method_t
   use gudgeon_solver, only: observer_t
   use joint_places, only: n_places
@@ -49,6 +50,7 @@ module gudgeon_recorder
                                                    !! revolution; 0: no limit
     real(dp) :: revolution_time = huge(1.0_dp)      !! duration of a revolution at the starting speed [s]
     logical :: over_budget = .false.                !! the run is to end because that number was exceeded
+    logical :: goes_on = .false.                    !! the run goes on with the totals of another one
     logical :: has_left = .false.                   !! the run is to end because the state of a row is outside the model
     real(dp), private :: initial_energy = 0, start_angle = 0
     integer, private :: next_row = 0
@@ -61,6 +63,7 @@ module gudgeon_recorder
     real(dp), allocatable, private :: y(:), values(:)
   contains
     procedure :: prepare
+    procedure :: declare
     procedure :: begin
     procedure :: step_taken
     procedure :: event_taken
@@ -84,46 +87,87 @@ contains
     call self%guide%prepare(scene)
     call self%elastic%prepare(scene, self%figures%elastic)
     allocate (self%y(scene%n), self%values(size(self%list%id)))
-    if (self%periods%is_on) call self%periods%begin(scene)
     if (self%periods%keeps_one_more) self%first_sample = huge(self%first_sample)        ! no rows until the window begins
   end subroutine prepare
 
-  !> Record the initial state, and write the first row if it is due.
-  subroutine begin(self, scene, y)
+  !> Declare the totals so far, which belong to the summary of the run. With those of a list the run goes on.
+  subroutine declare(self, list, scene)
+    class(recorder_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    type(scene_t), intent(inout) :: scene
+    integer :: i
+    list%of_totals = .true.
+    call list%add('initial_energy', self%initial_energy, 'J', 'energy of the bodies at the start of the run')
+    call self%figures%declare(list)
+    do i = 1, self%n_pins
+      call self%pins(i)%declare(list, self%figures, scene)
+    end do
+    call self%guide%declare(list, self%figures)
+    if (self%elastic%is_there) call self%figures%elastic%declare(list)
+    list%of_totals = .false.
+    self%goes_on = list%sets .and. list%goes_on
+  end subroutine declare
+
+  !> Record the state (t, y) with which the run begins, and write the first row if it is due.
+  subroutine begin(self, scene, t, y)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: y(:)
+    real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
     logical :: inside, is_there
     integer :: i
 
-    call look_at(self, scene, 0.0_dp, y, now, inside)
-    if (inside) then
+    call look_at(self, scene, t, y, now, inside)
+    if (self%goes_on) then
+      self%start_angle = scene%crank_angle(t, y) - self%figures%crank_travel
+      self%figures%time = t
+      call self%patience%begin(t, abs(self%figures%crank_travel)/two_pi)
+    else if (inside) then
       self%initial_energy = scene%chain%energy(now%motion)
       self%start_angle = now%motion%crank_angle
     end if
-    if (inside) call self%elastic%begin(scene, 0.0_dp, now)
+    if (self%periods%is_on .or. allocated(self%cycles)) call self%periods%begin(scene, t, y)
+    if (inside) call self%elastic%begin(scene, t, now)
     if (allocated(self%cycles)) then
-      call self%cycles%begin(scene, y, self%initial_energy)
+      call self%cycles%begin(scene, t, y, now, inside, self%initial_energy)
       call self%guide%begin_revolution()
     end if
     do i = 1, self%n_pins
-      if (inside .and. self%pins(i)%is_touching(scene)) call take_contact(self, self%pins(i), event_contact_begins, 0.0_dp, now)
-      call self%pins(i)%begin(scene, 0.0_dp, now)
+      if (inside .and. self%pins(i)%is_touching(scene) .and. .not. self%goes_on) &
+        call take_contact(self, self%pins(i), event_contact_begins, t, now)
+      call self%pins(i)%begin(scene, t, now)
+      call self%pins(i)%count_from(t)
       if (inside) call self%pins(i)%take_values(scene, now, self%figures, self%cycles)
     end do
     if (inside .and. self%guide%is_there) then
-      call self%guide%stand_at(0.0_dp, now)
+      call self%guide%stand_at(t, now)
       do i = 1, size(scene%guide%touches)
-        if (scene%guide%touches(i)) call take_corner_contact(self, i, event_contact_begins, 0.0_dp, now)
+        if (scene%guide%touches(i) .and. .not. self%goes_on) call take_corner_contact(self, i, event_contact_begins, t, now)
       end do
       call self%guide%take_values(scene, now, self%figures)
     end if
-    is_there = .true.
-    if (self%angles%per_revolution > 0) call self%angles%begin(scene%crank_angle(0.0_dp, y), is_there)
-    call take_point(self, scene, 0.0_dp, y, now, inside, self%first_sample <= 0 .and. is_there)
-    if (self%first_sample <= 0) self%next_row = 1
+    call find_first_row(self, t, scene%crank_angle(t, y), is_there)
+    call take_point(self, scene, t, y, now, inside, is_there)
   end subroutine begin
+
+  !> Find out whether a row is due at the start, at a time and a crank angle [rad], and which one comes next.
+  subroutine find_first_row(self, t, crank_angle, is_there)
+    class(recorder_t), intent(inout) :: self
+    real(dp), intent(in) :: t, crank_angle
+    logical, intent(out) :: is_there
+    real(dp), parameter :: same = 1e-9_dp   !! share of an interval that counts as rounding
+    real(dp) :: intervals
+    is_there = .true.
+    if (self%angles%per_revolution > 0) then
+      call self%angles%begin(crank_angle, is_there)
+    else if (self%interval > 0 .and. self%first_sample <= t .and. .not. self%every_step) then
+      intervals = (t - self%first_sample)/self%interval
+      self%next_row = ceiling(intervals - same)
+      is_there = self%next_row <= intervals + same
+      if (is_there) self%next_row = self%next_row + 1
+    end if
+    is_there = is_there .and. self%first_sample <= t
+  end subroutine find_first_row
 
   subroutine step_taken(self, method, problem, t_to)
     class(recorder_t), intent(inout) :: self
@@ -136,7 +180,7 @@ contains
     class is (scene_t)
       t_end = t_to
       call self%patience%limit_end(t_end)
-      if (self%periods%is_on) call watch_periods(self, method, problem, t_end)
+      if (self%periods%is_on .or. allocated(self%cycles)) call watch_periods(self, method, problem, t_end)
       if (.not. self%every_step .and. size(self%values) > 0) call put_samples(self, method, problem, t_end)
       if (allocated(self%films)) call self%films%take(method, problem, t_end, self%figures%evaluations)
       if (t_end < method%t) then
@@ -239,32 +283,34 @@ contains
         call self%cycles%find_end(method, scene, t, y, t_cycle, ends)
         if (.not. ends) exit
         call look_at(self, scene, t_cycle, self%cycles%y, now, inside)
-        if (inside) call search_peaks(self, method, scene, t_cycle, now)
+        if (inside) call search_peaks(self, method, scene, t_cycle, now, is_end=.false.)
         call self%guide%end_revolution(self%cycles)
-        call self%cycles%end_cycle(scene, t_cycle)
+        call self%cycles%end_cycle(scene, t_cycle, now)
         call self%guide%begin_revolution()
       end do
       call self%cycles%take_strobes(method, scene, t, y)
     end if
     call look_at(self, scene, t, y, now, inside)
-    if (inside) call search_peaks(self, method, scene, t, now)
+    if (inside) call search_peaks(self, method, scene, t, now, is_end=.true.)
     call take_point(self, scene, t, y, now, inside, self%every_step .and. t >= self%first_sample)
   end subroutine take_end
 
   !> Search for peaks between the last point recorded (or the beginning of a step after an event) and t, where the scene is
   !> evaluated.
-  subroutine search_peaks(self, method, scene, t, now)
+  subroutine search_peaks(self, method, scene, t, now, is_end)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: is_end   !! t is the end of the step, or of its final part
     integer :: i
     do i = 1, self%n_pins
-      call self%pins(i)%search(method, scene, t, now, self%figures, self%cycles)
+      call self%pins(i)%search(method, scene, t, now, is_end, self%figures, self%cycles)
     end do
     call self%guide%search(method, scene, t, now, self%figures)
     call self%elastic%search(method, scene, t, now, self%figures%elastic)
+    if (allocated(self%cycles)) call self%cycles%search_machine(method, scene, t, now)
   end subroutine search_peaks
 
   !> Check the number of evaluations in the present revolution. A revolution that takes longer than the first would have taken is

@@ -3,6 +3,7 @@ module gudgeon_scene
   use gudgeon_kinds, only: dp
   use ode_problem, only: ode_problem_t, max_events
   use state_layout, only: layout_t, coordinates_t, slice_t
+  use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
   use joint_places, only: places, n_places, in_order
   use chain_loads, only: loads_t, force_size
@@ -18,7 +19,8 @@ module gudgeon_scene
   use crank_turns, only: crank_turns_t, wear_cycle_t
   implicit none
   private
-  public :: scene_t, evaluation_t
+  public :: scene_t, evaluation_t, work_part_t
+  public :: by_gas, by_drive, by_damping, by_guide, by_elastic
   public :: phase_free, phase_film, phase_contact
   public :: event_none, event_contact_begins, event_contact_ends, of_guide, of_wear
 
@@ -46,6 +48,16 @@ module gudgeon_scene
     integer :: event = 0            !! number of the event within its owner
   end type event_owner_t
 
+  !> What does work on the bodies besides the kinds of load in the joints.
+  integer, parameter :: by_gas = -1, by_drive = -2, by_damping = -3, by_guide = -4, by_elastic = -5
+
+  !> A part of the work on the bodies.
+  type :: work_part_t
+    integer :: what = 0             !! kind of load in a joint, or one of the above
+    integer :: joint = 0            !! that joint; 0: none
+    integer :: at = 0               !! index of its quadrature; 0: its work follows otherwise
+  end type work_part_t
+
   !> A scene as an ode_problem. It claims the crank angle in the state vector, unless the crank speed is prescribed; the joints
   !> claim their eccentricities. Quadratures are the work of all non-conservative forces and the drive [J] and, on request, the
   !> integrals of the magnitudes of the forces at the reported places [N s] and, if it does not follow
@@ -70,6 +82,9 @@ module gudgeon_scene
     integer :: work_at = 0          !! index of the work of the forces
     type(slice_t) :: measures       !! indices of the integrals on request
     logical :: measures_loss = .false.   !! the last of them is the energy taken by the joints
+    type(work_part_t), allocatable :: parts(:)   !! parts of the work, if they are told apart
+    logical :: has_shared_loads = .false.   !! of these, film and contact act at the same time in a joint
+    integer :: other_part = 0       !! the part that is the whole work without that of the others; 0: none
     logical :: is_plain = .true.    !! rigid bodies, an ideal guide and a drive that does not vary
     logical :: may_stick = .false.  !! a joint has set-valued friction
     logical :: enters_at_step_end = .false.   !! contacts begin at the ends of steps, and steps that enter too deep are rejected
@@ -87,6 +102,8 @@ module gudgeon_scene
     procedure :: jacobian
     procedure :: initial_state
     procedure :: prepare_start
+    procedure :: declare
+    procedure :: take_up
     procedure :: events => all_events
     procedure :: handle_event
     procedure :: reported_event
@@ -98,6 +115,9 @@ module gudgeon_scene
     procedure :: crank_speed
     procedure :: work
     procedure :: measure_joint
+    procedure, non_overridable :: take_layout
+    procedure :: measure_works
+    procedure :: works
     procedure :: pin_force
     procedure :: force_integrals
     procedure :: joint_loss
@@ -162,6 +182,19 @@ module gudgeon_scene
       class(scene_t), intent(inout) :: self
     end subroutine prepare_start
 
+    !> Declare the state at (t, y) to a list that records it, or set it from a list; then call `take_up`.
+    module subroutine declare(self, list, t, y)
+      class(scene_t), intent(inout) :: self
+      type(run_state_t), intent(inout) :: list
+      real(dp), intent(inout) :: t, y(:)
+    end subroutine declare
+
+    !> Find the part of the discrete state that follows from a state that has been set.
+    module subroutine take_up(self, t, y)
+      class(scene_t), intent(inout) :: self
+      real(dp), intent(in) :: t, y(:)
+    end subroutine take_up
+
     !> `find_accelerations` of a scene that is not plain: with elastic members, a guide that is not ideal or a drive that varies.
     pure module subroutine find_general_accelerations(self, joints, t, y, now, inside)
       class(scene_t), intent(in) :: self
@@ -186,6 +219,27 @@ module gudgeon_scene
       class(scene_t), intent(inout) :: self
     end subroutine claim_elastic
 
+    !> Tell the parts of the work apart; must be called before the run. One part follows from the whole work, the others are
+    !> quadratures without influence on the steps.
+    module subroutine measure_works(self)
+      class(scene_t), intent(inout) :: self
+    end subroutine measure_works
+
+    !> Rates of the quadratures of the parts of the work.
+    pure module subroutine put_work_rates(self, y, now, dydt)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: y(self%n)
+      type(evaluation_t), intent(in) :: now
+      real(dp), intent(inout) :: dydt(*)
+    end subroutine put_work_rates
+
+    !> Work of each part on the bodies since t = 0 [J], in a scene that tells them apart.
+    pure module function works(self, t, y)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: t, y(:)
+      real(dp) :: works(size(self%parts))
+    end function works
+
     !> Natural frequency of crank and flywheel on an elastic crankshaft at the starting angle [rad/s], with ideal joints and a rigid
     !> rod.
     pure real(dp) module function twist_frequency(self)
@@ -202,6 +256,11 @@ contains
     logical, intent(out) :: inside
     type(evaluation_t) :: now
     integer :: i
+    if (self%has_shared_loads) then
+      do i = 1, self%n_joints
+        call clear_loads(now%joint(i))
+      end do
+    end if
     call find_accelerations(self, self%n_joints, self%joints, t, y, now, inside)
     if (.not. inside) return
     if (self%crank_moves) then
@@ -217,6 +276,7 @@ contains
     do i = 1, self%n_joints
       if (self%joints(i)%has_own_rates) call self%joints(i)%put_own_rates(now%joint(i), dydt)
     end do
+    if (allocated(self%parts)) call put_work_rates(self, y, now, dydt)
     if (self%measures%last < self%measures%first) return
     if (self%measures_loss) dydt(self%measures%last) = -sum(now%joint(:self%n_joints)%power)
     do i = 1, size(self%reported)
@@ -387,7 +447,7 @@ contains
     call claim_states(self)
     self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying))
     self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide)
-    call take_layout(self)
+    call self%take_layout()
   end subroutine claim
 
   !> Let all parts claim their states.
@@ -430,7 +490,7 @@ contains
     end if
     call self%layout%claim_quadratures(n, scale, self%measures)
     self%has_more_rates = .true.
-    call take_layout(self)
+    call self%take_layout()
   end subroutine measure_joint
 
   !> Whether the energy taken by the joints follows from the work of all forces: no other part does work except a constant torque.
@@ -459,6 +519,7 @@ contains
     real(dp), intent(in) :: y(:)
     real(dp) :: integrals(n_places)
     integrals = 0
+    if (self%measures%last < self%measures%first) return
     integrals(self%reported) = y(self%measures%first:self%measures%first + size(self%reported) - 1)
   end function force_integrals
 
@@ -468,7 +529,7 @@ contains
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
     joint_loss = 0
-    if (self%n_joints == 0) return
+    if (self%n_joints == 0 .or. self%measures%last < self%measures%first) return
     if (self%measures_loss) then
       joint_loss = y(self%measures%last)
     else

@@ -2,6 +2,7 @@
 module gudgeon_simulation
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_integration
+  use run_state, only: run_state_t
   use case_definition, only: case_t
   use ode_method, only: ode_method_t, step_statistics_t, limit_stability, left_domain
   use gudgeon_methods, only: new_method
@@ -14,9 +15,11 @@ module gudgeon_simulation
   use crank_turns, only: all_made, turned_back
   use gudgeon_columns, only: column_list_t
   use cycle_watch, only: cycle_watch_t
+  use cycle_answers, only: answer_t, find_answers
   use period_watch, only: period_watch_t
   use lyapunov, only: exponent_t, measurement_t
   use gudgeon_recorder, only: recorder_t
+  use run_start, only: find_start
   use run_figures, only: run_figures_t
   use film_snapshots, only: film_field_t
   use wear_record, only: wear_profile_t
@@ -37,6 +40,7 @@ module gudgeon_simulation
     logical :: can_go_on = .false.  !! the run was stopped from outside or by a limit
     logical :: energy_is_poor = .false.          !! the run is done, but the user must be told of its energy residual
     type(period_watch_t) :: periods              !! search for a periodic motion that ends the run
+    type(answer_t), allocatable :: answers(:)    !! of the last whole cycle, if the case asks for them
     type(exponent_t) :: exponent                 !! Lyapunov exponent, if it is requested
     real(dp) :: auto_saves = 0  !! > 0: evaluations of this run divided by those that method auto needs, as measured
   end type run_report_t
@@ -60,6 +64,7 @@ module gudgeon_simulation
     procedure :: begin
     procedure :: advance
     procedure :: look
+    procedure :: state
     procedure :: stop
     procedure :: expected_end
     procedure :: finish
@@ -96,6 +101,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(cycle_watch_t), allocatable, intent(inout), optional :: cycles
     real(dp), allocatable :: y(:)
+    real(dp) :: t
 
     self%case = case
     self%ideal_joint = ideal_joint
@@ -126,16 +132,21 @@ contains
       if (self%has_cycles) then
         call scene%measure_joint()
         call move_alloc(cycles, recorder%cycles)
+      else if (case%output%answers .and. .not. ideal_joint) then
+        allocate (recorder%cycles)
+        call scene%measure_works()
       end if
       self%method%settings = settings_for(case, scene)
-      y = scene%initial_state()
       call recorder%prepare(scene)
+      call find_start(case, ideal_joint, scene, t, y, error, recorder)
+      if (allocated(error)) return
       if (case%output%film_times /= '' .and. .not. ideal_joint) then
         allocate (recorder%films)
-        call recorder%films%prepare(case%output%snapshot_times, scene)
+        call recorder%films%prepare(pack(case%output%snapshot_times, case%output%snapshot_times >= t), scene)
       end if
-      call recorder%begin(scene, y)
-      call self%integration%begin(scene, self%method, 0.0_dp, y, recorder%end_time, case%integrator%max_steps)
+      call recorder%begin(scene, t, y)
+      self%t = t
+      call self%integration%begin(scene, self%method, t, y, recorder%end_time, case%integrator%max_steps)
     end associate
   end subroutine begin
 
@@ -177,6 +188,19 @@ contains
     end if
     if (inside) call self%recorder%row(self%scene, self%t, y, now, values)
   end subroutine look
+
+  !> The state that the run has reached, from which another one may start. The run must not pause inside a step.
+  subroutine state(self, list)
+    class(run_t), intent(inout) :: self
+    type(run_state_t), intent(out) :: list
+    real(dp) :: t, y(self%scene%n)
+    t = self%integration%t
+    y = self%integration%y
+    if (.not. self%has_ended) y = self%integration%state(self%method)
+    allocate (list%numbers(0))
+    call self%scene%declare(list, t, y)
+    call self%recorder%declare(list, self%scene)
+  end subroutine state
 
   !> End the run here, as interrupted.
   subroutine stop(self)
@@ -245,6 +269,8 @@ contains
     if (allocated(self%method%time_with)) report%time_with = self%method%time_with
     report%figures = self%recorder%figures
     report%wear = self%recorder%wear(self%scene)
+    allocate (report%answers(0))
+    if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, self%recorder%periods)
     if (allocated(self%recorder%films)) report%films = self%recorder%films%fields(self%scene)
     associate (case => self%case, scene => self%scene, t => self%integration%t, y => self%integration%y)
       if (self%status == integration_done .and. case%integrator%method == 'adams' .and. &
@@ -332,8 +358,8 @@ contains
     if (.not. allocated(error)) call new_method('auto', method, error)
     if (allocated(error)) return
     method%settings = settings_for(case, scene)
-    allocate (y(scene%n), source=scene%initial_state())
-    t = 0
+    call find_start(case, .false., scene, t, y, error)
+    if (allocated(error)) return
     call integrate(scene, method, t, y, time, max_steps, observer, status)
     needed = method%totals()
     if (status == integration_done .or. status == integration_stopped) evaluations = needed%evaluations

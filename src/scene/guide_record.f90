@@ -5,8 +5,9 @@
 module guide_record
   use gudgeon_kinds, only: dp
   use ode_method, only: ode_method_t
+  use run_state, only: run_state_t
   use joint_places, only: n_places
-  use piston_guide, only: corner_t, n_corners
+  use piston_guide, only: corner_t, n_corners, corner_names
   use gudgeon_scene, only: scene_t, evaluation_t, event_contact_begins
   use peak_search, only: sample_t, peak_search_t, may_peak
   use trace_sink, only: trace_event_t
@@ -29,6 +30,7 @@ module guide_record
                                                           !! are counted
   contains
     procedure, non_overridable :: prepare
+    procedure, non_overridable :: declare
     procedure, non_overridable :: stand_at
     procedure, non_overridable :: begin_revolution
     procedure, non_overridable :: end_revolution
@@ -50,6 +52,18 @@ contains
       self%contact(i)%pin = n_places + i
     end do
   end subroutine prepare
+
+  !> Declare the totals of the corners.
+  subroutine declare(self, list, figures)
+    class(guide_record_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    type(run_figures_t), intent(inout) :: figures
+    integer :: i
+    do i = 1, merge(n_corners, 0, self%is_there)
+      call figures%corner(i)%declare(corner_names(i)//'_', list, has_gap=.false., has_contacts=.true., has_film=.false.)
+      call self%contact(i)%declare(list)
+    end do
+  end subroutine declare
 
   !> Let the next interval to be searched begin at t, where the scene has been evaluated.
   pure subroutine stand_at(self, t, now)

@@ -25,7 +25,7 @@ module period_watch
   real(dp), parameter :: noise = 1e-2_dp            !! differences due to the integration, relative to the tolerance
 
   type :: period_watch_t
-    logical :: is_on = .false.
+    logical :: is_on = .false.             !! a periodic motion ends the run; else the revolutions are only compared
     integer :: longest = longest_period    !! longest period searched [revolutions]
     real(dp) :: tolerance = 0
     integer :: most_revolutions = 0        !! largest number of revolutions of the run
@@ -41,6 +41,7 @@ module period_watch
     real(dp), allocatable :: y(:)          !! state at that time
     integer, private :: forcing = 1        !! period of the excitation [revolutions]
     integer, private :: made = 0           !! number of complete revolutions
+    integer, private :: earlier = 0        !! number of revolutions before the beginning
     real(dp), private :: start_angle = 0, direction = 1
     integer, allocatable, private :: at(:)       !! indices of the components that are compared
     real(dp), allocatable, private :: smallest_range(:)
@@ -53,14 +54,16 @@ module period_watch
     procedure :: begin
     procedure :: take_point
     procedure :: follow
+    procedure :: change
   end type period_watch_t
 
 contains
 
-  !> Prepare for a scene that is ready to run.
-  subroutine begin(self, scene)
+  !> Begin with a scene at (t, y). Revolutions that it has made before count as a part of the largest number.
+  subroutine begin(self, scene, t, y)
     class(period_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
     real(dp) :: scales(scene%n)
     logical :: growing(scene%n)
     integer :: i, n
@@ -70,8 +73,10 @@ contains
     self%smallest_range = least_range*scales(self%at)
     self%turning = merge(1.0_dp, 0.0_dp, growing(self%at))
     if (allocated(scene%gas)) self%forcing = scene%gas%revolutions
-    self%start_angle = scene%start_angle
-    self%direction = sign(1.0_dp, scene%start_speed)
+    self%start_angle = scene%crank_angle(t, y)
+    self%earlier = int(abs(self%start_angle - scene%start_angle)/two_pi)
+    self%direction = sign(1.0_dp, scene%chain%drive%torque)
+    if (abs(scene%start_speed) > 0) self%direction = sign(1.0_dp, scene%start_speed)
     allocate (self%states(size(self%at), 0:depth - 1), source=0.0_dp)
     allocate (self%low(size(self%at), 0:depth - 1), source=huge(1.0_dp))
     allocate (self%high(size(self%at), 0:depth - 1), source=-huge(1.0_dp))
@@ -105,10 +110,10 @@ contains
       target = self%start_angle + self%direction*two_pi*(self%made + 1)
       if (t_to < method%t) then
         call method%interpolate(t_to, self%y)
+        if (self%direction*(scene%crank_angle(t_to, self%y) - target) < 0) exit
       else
-        self%y = method%y
+        if (self%direction*(scene%crank_angle(t_to, method%y) - target) < 0) exit
       end if
-      if (self%direction*(scene%crank_angle(t_to, self%y) - target) < 0) exit
       call find_passage(method, scene, target, self%direction, method%t_old, t_to, 0.0_dp, self%t, self%y)
       call close_revolution(self)
     end do
@@ -126,6 +131,7 @@ contains
       self%low(:, next) = self%states(:, now)
       self%high(:, next) = self%states(:, now)
     end associate
+    if (.not. self%is_on) return
     if (self%window_after >= 0) then
       if (self%period > 0) self%has_ended = self%made >= self%window_after + self%period
       return
@@ -133,11 +139,31 @@ contains
     call look_for_period(self)
     if (.not. self%keeps_one_more) then
       self%has_ended = self%period > 0
-    else if (self%period > 0 .or. self%made >= self%most_revolutions - self%longest) then
+    else if (self%period > 0 .or. self%made + self%earlier >= self%most_revolutions - self%longest) then
       self%window_after = self%made
       self%window_start = self%t
     end if
   end subroutine close_revolution
+
+  !> Largest difference of the state from that p revolutions earlier, at the ends of the last p revolutions, over the range of each
+  !> component in these; negative if fewer than 2 p revolutions are complete.
+  pure real(dp) function change(self, p)
+    class(period_watch_t), intent(in) :: self
+    integer, intent(in) :: p
+    real(dp) :: range(size(self%at))
+    integer :: k
+    change = -1
+    if (self%made < 2*p) return
+    change = 0
+    range = self%smallest_range
+    do k = self%made - p + 1, self%made
+      range = max(range, self%high(:, mod(k, depth)) - self%low(:, mod(k, depth)))
+    end do
+    do k = self%made - p + 1, self%made
+      if (k - p < 1) cycle   ! the start is not stored
+      change = max(change, maxval(abs(self%states(:, mod(k, depth)) - self%states(:, mod(k - p, depth)))/range))
+    end do
+  end function change
 
   !> Search the shortest period of the stored states.
   subroutine look_for_period(self)

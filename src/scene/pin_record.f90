@@ -2,6 +2,8 @@
 module pin_record
   use gudgeon_kinds, only: dp
   use ode_method, only: ode_method_t
+  use run_state, only: run_state_t
+  use joint_places, only: name_prefix
   use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins
   use joint_events, only: may_touch
   use inside_step, only: look_inside
@@ -24,6 +26,8 @@ module pin_record
     type(wear_record_t), allocatable :: wear   !! not allocated: wear is not counted
   contains
     procedure, non_overridable :: prepare
+    procedure, non_overridable :: declare
+    procedure, non_overridable :: count_from
     procedure, non_overridable :: search
     procedure, non_overridable :: take_values
     procedure, non_overridable :: take_contact
@@ -53,6 +57,28 @@ contains
     end associate
   end subroutine prepare
 
+  !> Declare the totals of the pin, and with them the worn shape of its bore.
+  subroutine declare(self, list, figures, scene)
+    class(pin_record_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    type(run_figures_t), intent(inout) :: figures
+    type(scene_t), intent(inout) :: scene
+    logical :: touches
+    touches = .false.
+    if (self%joint > 0) touches = may_touch(scene%joints(self%joint))
+    call figures%pin(self%pin)%declare(name_prefix(self%pin), list, self%joint > 0, touches, self%reports_film)
+    if (touches) call self%contact%declare(list)
+    if (allocated(self%wear)) call self%wear%declare(name_prefix(self%pin), list, scene%joints(self%joint))
+  end subroutine declare
+
+  !> Count what is integrated from a time [s].
+  pure subroutine count_from(self, t)
+    class(pin_record_t), intent(inout) :: self
+    real(dp), intent(in) :: t
+    self%film_time = t
+    if (allocated(self%wear)) self%wear%time = t
+  end subroutine count_from
+
   !> Whether the joint at the pin is in contact.
   pure logical function is_touching(self, scene)
     class(pin_record_t), intent(in) :: self
@@ -63,12 +89,13 @@ contains
 
   !> Search the peaks between the last point recorded (or the beginning of a step after an event) and t, where the scene is
   !> evaluated.
-  subroutine search(self, method, scene, t, now, figures, cycles)
+  subroutine search(self, method, scene, t, now, is_end, figures, cycles)
     class(pin_record_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: is_end   !! t is the end of the step, or of its final part, to which wear is counted at once
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
     real(dp) :: known(n_peaks), largest(n_peaks)
@@ -88,22 +115,36 @@ contains
     call self%search_interval(method, scene, t, now, known, largest)
     figures%evaluations = figures%evaluations + (self%evaluations - before)
     figures%peak_evaluations = figures%peak_evaluations + (self%evaluations - before)
-    call put_values(self, touches, largest, figures, cycles)
-    if (self%reports_film) call sum_film(self, method, scene, t, now, figures)
-    if (.not. allocated(self%wear)) return
+    call put_values(self, touches, largest, figures)
+    if (present(cycles)) call cycles%take_peaks(self%pin, touches, largest, angle_at(self%thinnest_time))
+    if (self%reports_film) call sum_film(self, method, scene, t, now, figures, cycles)
+    if (.not. (allocated(self%wear) .and. is_end)) return
     before = self%wear%evaluations
     call self%wear%follow(method, scene, t)
     figures%evaluations = figures%evaluations + (self%wear%evaluations - before)
+
+  contains
+
+    !> Crank angle at a time in the last step [rad].
+    real(dp) function angle_at(time)
+      real(dp), intent(in) :: time
+      real(dp) :: y(size(method%y))
+      angle_at = now%motion%crank_angle
+      if (.not. time < t) return
+      call method%interpolate(time, y)
+      angle_at = scene%crank_angle(time, y)
+    end function angle_at
   end subroutine search
 
   !> Integrate the power, the side flow and the pressure of the film up to t, with Gauss's rule of three points.
-  subroutine sum_film(self, method, scene, t, now, figures)
+  subroutine sum_film(self, method, scene, t, now, figures, cycles)
     class(pin_record_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     type(run_figures_t), intent(inout) :: figures
+    type(cycle_watch_t), intent(inout), optional :: cycles
     real(dp), parameter :: place(3) = 0.5_dp + sqrt(0.15_dp)*[-1, 0, 1], weight(3) = [5, 8, 5]/18.0_dp
     type(evaluation_t) :: halfway
     type(film_figures_t) :: film
@@ -120,9 +161,12 @@ contains
         f%neglected_shear_loss = f%neglected_shear_loss + weight(i)*span*film%neglected_power
         f%film_volume = f%film_volume + weight(i)*span*film%side_flow
         f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
+        if (present(cycles)) call cycles%take_film(self%pin, film%max_pressure, halfway%motion%crank_angle, &
+          weight(i)*span*film%side_flow)
       end do
       film = joint%film_figures(now%joint(k))
       f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
+      if (present(cycles)) call cycles%take_film(self%pin, film%max_pressure, now%motion%crank_angle, 0.0_dp)
     end associate
     self%film_time = t
   end subroutine sum_film
@@ -135,18 +179,19 @@ contains
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
     type(film_figures_t) :: film
-    call put_values(self, self%is_touching(scene), self%values(scene, now), figures, cycles)
+    call put_values(self, self%is_touching(scene), self%values(scene, now), figures)
+    if (present(cycles)) call cycles%take_peaks(self%pin, self%is_touching(scene), self%values(scene, now), &
+      now%motion%crank_angle)
     if (.not. self%reports_film) return
     film = scene%joints(self%joint)%film_figures(now%joint(self%joint))
     figures%pin(self%pin)%max_film_pressure = max(figures%pin(self%pin)%max_film_pressure, film%max_pressure)
   end subroutine take_values
 
-  subroutine put_values(self, touches, values, figures, cycles)
+  subroutine put_values(self, touches, values, figures)
     class(pin_record_t), intent(inout) :: self
     logical, intent(in) :: touches
     real(dp), intent(in) :: values(n_peaks)
     type(run_figures_t), intent(inout) :: figures
-    type(cycle_watch_t), intent(inout), optional :: cycles
     associate (f => figures%pin(self%pin), contact => self%contact)
       f%max_force = max(f%max_force, values(of_pin_force))
       f%min_film_thickness = min(f%min_film_thickness, -values(of_penetration))
@@ -158,7 +203,6 @@ contains
         contact%max_normal_force = max(contact%max_normal_force, values(of_normal_force))
       end if
     end associate
-    if (present(cycles)) call cycles%take_peaks(self%pin, touches, values)
   end subroutine put_values
 
   !> A contact begins or ends at time t; `now` is evaluated before that event. `event` is its entry in the trace.

@@ -1,6 +1,7 @@
 !> The results of a run that are single numbers, most of them for its summary.
 module run_figures
   use gudgeon_kinds, only: dp
+  use run_state, only: run_state_t
   use joint_places, only: n_places
   use piston_guide, only: n_corners
   implicit none
@@ -24,6 +25,7 @@ module run_figures
     real(dp) :: max_film_pressure = 0         !! [Pa]
     real(dp) :: friction_work = huge(1.0_dp)  !! work of the friction forces on the bodies so far [J]; huge: not integrated
   contains
+    procedure :: declare => declare_pin
   end type pin_figures_t
 
   !> Results of the elastic members.
@@ -35,6 +37,8 @@ module run_figures
     real(dp) :: bending_frequency = 0         !! of the rod between two fixed pins [rad/s]
     real(dp) :: axial_frequency = 0           !! of the axial vibration of the rod with the piston [rad/s]
     real(dp) :: twist_frequency = 0           !! of the crankshaft at the starting angle [rad/s]
+  contains
+    procedure :: declare => declare_elastic
   end type elastic_figures_t
 
   type :: run_figures_t
@@ -48,5 +52,53 @@ module run_figures
     real(dp) :: row_energy_residual = 0       !! the same in the rows of the trace, also inside the steps [J]
     real(dp) :: crank_travel = 0              !! crank angle turned through, signed [rad]
     real(dp) :: time = 0                      !! time simulated [s]
+  contains
+    procedure :: declare
   end type run_figures_t
+
+contains
+
+  !> Declare the totals that do not belong to a pin, a corner or an elastic member.
+  subroutine declare(self, list)
+    class(run_figures_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    call list%add('crank_travel', self%crank_travel, 'rad', 'crank angle turned through')
+    call list%add('max_energy', self%max_energy, 'J', 'largest energy of the bodies')
+    call list%add('max_energy_residual', self%max_energy_residual, 'J', 'largest energy residual at the ends of steps')
+    call list%add('row_energy_residual', self%row_energy_residual, 'J', 'largest energy residual of a row')
+  end subroutine declare
+
+  !> Declare the totals of a pin or corner, with a prefix: those of its force, its gap, its contacts and its film, as far as it has
+  !> them.
+  subroutine declare_pin(self, pre, list, has_gap, has_contacts, has_film)
+    class(pin_figures_t), intent(inout) :: self
+    character(len=*), intent(in) :: pre
+    type(run_state_t), intent(inout) :: list
+    logical, intent(in) :: has_gap, has_contacts, has_film
+    call list%add(pre//'max_force', self%max_force, 'N', 'largest force')
+    if (has_gap) call list%add(pre//'min_film_thickness', self%min_film_thickness, 'm', 'least film thickness')
+    if (has_contacts) then
+      call list%add(pre//'contacts', self%contacts, 'contacts that began')
+      call list%add(pre//'impacts_beyond_validity', self%impacts_beyond_validity, 'impacts too fast for the contact law')
+      call list%add(pre//'contacts_beyond_validity', self%contacts_beyond_validity, 'contacts too deep for the contact geometry')
+      call list%add(pre//'contact_time', self%contact_time, 's', 'time in contact')
+      call list%add(pre//'max_penetration', self%max_penetration, 'm', 'largest penetration')
+      call list%add(pre//'max_entry_penetration', self%max_entry_penetration, 'm', 'largest penetration at a beginning of contact')
+    end if
+    if (.not. has_film) return
+    call list%add(pre//'film_energy_lost', self%film_energy_lost, 'J', 'energy that the film has taken from the bodies')
+    call list%add(pre//'neglected_shear_loss', self%neglected_shear_loss, 'J', 'energy that neglected shear would have taken')
+    call list%add(pre//'film_volume', self%film_volume, 'm3', 'oil that has left the film')
+    call list%add(pre//'max_film_pressure', self%max_film_pressure, 'Pa', 'largest film pressure')
+  end subroutine declare_pin
+
+  !> Declare the extremes of the elastic members.
+  subroutine declare_elastic(self, list)
+    class(elastic_figures_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    call list%add('max_mid_deflection', self%mid_deflection, 'm', 'largest deflection of the rod')
+    call list%add('max_stretch', self%stretch, 'm', 'largest change of the length of the rod')
+    call list%add('max_strain_energy', self%strain_energy, 'J', 'largest strain energy of the rod')
+    call list%add('max_twist', self%twist, 'rad', 'largest twist of the crankshaft')
+  end subroutine declare_elastic
 end module run_figures

@@ -241,7 +241,7 @@ contains
       if (self%joints(i)%phase == phase_contact) call decide_at_wall(self, i, y)
       call decide_at_kink(self, i, y)
     end do
-    call find_lost_forces(self, y)
+    call find_lost_forces(self, 0.0_dp, y)
     self%smooth_in_root = .not. self%entry_time < 0
     self%mode = mode_of(self)
     do i = 1, self%n_joints
@@ -249,10 +249,18 @@ contains
     end do
   end procedure prepare_start
 
-  !> Find the contacts that have no force at t = 0, since their pins or corners move out too fast.
-  subroutine find_lost_forces(scene, y)
+  module procedure take_up
+    if (allocated(self%guide)) then
+      if (self%guide%is_loose .and. .not. any(self%guide%touches)) call prepare_corners(self, y)
+    end if
+    call find_lost_forces(self, t, y)
+    self%mode = mode_of(self)
+  end procedure take_up
+
+  !> Find the contacts that have no force at the start, since their pins or corners move out too fast.
+  subroutine find_lost_forces(scene, t, y)
     class(scene_t), intent(inout) :: scene
-    real(dp), intent(in) :: y(:)
+    real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
     real(dp) :: share, share_rate
     logical :: inside, has_corners
@@ -260,7 +268,7 @@ contains
     has_corners = .false.
     if (allocated(scene%guide)) has_corners = n_guide_events(scene%guide) > n_corners
     if (.not. (has_corners .or. any(may_lose_force(scene%joints)))) return
-    call scene%evaluate(0.0_dp, y, now, inside)
+    call scene%evaluate(t, y, now, inside)
     if (.not. inside) return
     do i = 1, scene%n_joints
       if (may_lose_force(scene%joints(i))) call &

@@ -31,6 +31,7 @@ module step_peaks
     integer :: pin = 0                            !! index in `places`
     integer :: joint = 0  !! index of the scene's joint at this pin; 0: the pin is ideal, and only its force is searched
     integer :: evaluations = 0                    !! number of evaluations of the scene so far
+    real(dp) :: thinnest_time = 0                 !! time of the largest penetration in the last interval [s]
     logical, private :: fresh = .true.            !! an event has changed the phase of a joint: the next interval begins there
     logical, private :: has_before = .false.      !! there was an earlier interval in this phase
     real(dp), private :: t_before = 0, t = 0      !! beginning and end of the last interval [s]
@@ -112,9 +113,11 @@ contains
     ends = self%values(scene, now)
     rate = rate_of(self, now)
     largest = ends
+    self%thinnest_time = t_to
     if (self%fresh) then
       call meet_beginning(self, method, scene, ends(of_normal_force))
       largest = max(ends, self%last)
+      if (self%last(of_penetration) > ends(of_penetration)) self%thinnest_time = self%t
       self%fresh = .false.
     end if
     if (t_to > self%t) then
@@ -247,6 +250,7 @@ contains
       if (is_done) exit
       call peak%take(t, value_inside(self, method, scene, quantity, t))
     end do
+    if (quantity == of_penetration .and. peak%value(1) > largest) self%thinnest_time = peak%t(1)
     largest = max(largest, peak%value(1))
   end subroutine search_peak
 

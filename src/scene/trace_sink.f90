@@ -1,6 +1,7 @@
 !> Receiver of the results of a run. The code that writes files and tests extend it by what they need of the results.
 module trace_sink
   use gudgeon_kinds, only: dp
+  use run_state, only: run_state_t
   use joint_places, only: piston_pin, places, n_places
   use piston_guide, only: corner_names, n_corners
   implicit none
@@ -22,6 +23,7 @@ module trace_sink
     integer :: pin = piston_pin            !! index of the place in `joint_names`
   contains
     procedure :: change
+    procedure :: declare
   end type trace_event_t
 
   !> Takes rows and events in the order of time. This type itself ignores them.
@@ -51,6 +53,17 @@ contains
     self%crank_angle = crank_angle
     self%normal_speed = normal_speed
   end subroutine change
+
+  !> Declare what the end of the present contact reports of it.
+  subroutine declare(self, list)
+    class(trace_event_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    character(len=:), allocatable :: pre
+    pre = trim(joint_names(self%pin))//'_'
+    call list%add(pre//'contact_since', self%time, 's', 'beginning of the present contact, or end of the last one')
+    call list%add(pre//'contact_max_penetration', self%max_penetration, 'm', 'largest penetration in it')
+    call list%add(pre//'contact_max_normal_force', self%max_normal_force, 'N', 'largest normal force in it')
+  end subroutine declare
 
   !> Take one row of the trace, with values in the order of its columns.
   subroutine take_row(self, values)

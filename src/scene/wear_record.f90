@@ -2,6 +2,7 @@
 module wear_record
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi
+  use run_state, only: run_state_t
   use ode_method, only: ode_method_t
   use archard_wear, only: worn_surface_t, of_pin, of_bore
   use contact_arc, only: contact_arc_t
@@ -39,7 +40,7 @@ module wear_record
   type :: wear_record_t
     integer :: joint = 0                       !! index of the scene's joint
     integer :: evaluations = 0                 !! number of evaluations of the scene so far
-    real(dp), private :: time = 0              !! time up to which wear has been counted [s]
+    real(dp) :: time = 0                       !! time up to which wear has been counted [s]
     real(dp), private :: total = 0             !! integral of pressing force times sliding speed since the bore last changed [N m]
     real(dp), private :: depth_sum = 0         !! the same of their product with the penetration [N m^2]
     type(worn_surface_t), private :: surface(2)    !! since the last change of the bore
@@ -49,6 +50,7 @@ module wear_record
   contains
     procedure :: prepare
     procedure :: follow
+    procedure :: declare
     procedure :: begin_at
     procedure :: change_bore
     procedure :: end_cycle
@@ -70,6 +72,29 @@ contains
     end do
   end subroutine prepare
 
+  !> Declare the wear so far of a joint of the scene, and shape its bore by it. The load path of a bin is the integral of the force
+  !> that presses on it over the sliding path.
+  subroutine declare(self, pre, list, joint)
+    class(wear_record_t), intent(inout) :: self
+    character(len=*), intent(in) :: pre
+    type(run_state_t), intent(inout) :: list
+    type(clearance_joint_t), intent(inout) :: joint
+    character(len=*), parameter :: of(2) = [character(len=4) :: 'pin', 'bore']
+    integer :: k
+    do k = 1, size(of)
+      call list%add(pre//trim(of(k))//'_load_path', self%surface(k)%load_path, 'N m', 'load path of each bin, from 0 degrees')
+      if (joint%has_worn_bore()) call list%add(pre//trim(of(k))//'_earlier_load_path', self%earlier(k)%load_path, 'N m', &
+        'load path of each bin before the bore changed its shape last, extrapolated')
+    end do
+    call list%add(pre//'load_path', self%total, 'N m', 'load path of all bins')
+    if (.not. joint%has_worn_bore()) return
+    call list%add(pre//'load_path_penetration', self%depth_sum, 'N m2', 'integral of the penetration over it')
+    call list%add(pre//'wear_revolutions', self%turns, '', 'crank revolutions of the wear before')
+    call list%add(pre//'wear_steps', self%step_ratios, '', &
+      'largest change of depth at once, over the clearance and over the mean penetration')
+    if (list%sets .and. list%goes_on) call shape_bore(self, joint)
+  end subroutine declare
+
   !> Forget the wear before a time [s].
   subroutine begin_at(self, t)
     class(wear_record_t), intent(inout) :: self
@@ -89,12 +114,19 @@ contains
     class(wear_record_t), intent(inout) :: self
     type(clearance_joint_t), intent(inout) :: joint
     call self%end_cycle(joint)
-    call joint%slots(joint%acting(phase_contact))%element%wear_bore(depth_by_load(self, joint)*self%earlier(of_bore)%load_path)
+    call shape_bore(self, joint)
   end subroutine change_bore
+
+  !> Give the bore of a joint the shape of the wear up to its last change.
+  subroutine shape_bore(self, joint)
+    type(wear_record_t), intent(in) :: self
+    type(clearance_joint_t), intent(inout) :: joint
+    call joint%slots(joint%acting(phase_contact))%element%wear_bore(depth_by_load(self, joint)*self%earlier(of_bore)%load_path)
+  end subroutine shape_bore
 
   !> Depth of wear in a bin of the bore over its load path [1/N].
   pure real(dp) function depth_by_load(self, joint)
-    class(wear_record_t), intent(in) :: self
+    type(wear_record_t), intent(in) :: self
     type(clearance_joint_t), intent(in) :: joint
     depth_by_load = joint%wear%rate(of_bore)/(joint%bearing%radius*joint%bearing%length*self%surface(of_bore)%width())
   end function depth_by_load

@@ -31,6 +31,7 @@ module study_definition
     character(len=:), allocatable :: case           !! path of the base case
     character(len=:), allocatable :: table          !! path of a table of runs; empty: a grid over parameters
     integer :: settle_cycles = 0                    !! number of revolutions at the start that are left out of the statistics
+    character(len=:), allocatable :: start          !! of each run: 'case', or 'previous'
     character(len=:), allocatable :: traces
     logical :: cycles = .false.                     !! write the statistics of every revolution too
     real(dp) :: strobe_angle_deg = 0
@@ -69,6 +70,8 @@ contains
       'CSV file with a column for each key and a row for each run, instead of &parameter; path relative to the study file', '')
     call list%add('settle_cycles', self%settle_cycles, &
       'crank revolutions at the start that are left out of the statistics', '>= 0', '0')
+    call list%word('start', self%start, 'case, previous', 'case', &
+      'case: each run starts as its case says; previous: with the motion at the end of the run before it, at t = 0')
     call list%word('traces', self%traces, 'none, all, failed', 'none', 'runs whose trace is written to NAME/RUN.csv')
     call list%add('cycles', self%cycles, 'also write the statistics of each revolution to NAME.cycles.csv', '.false.')
     call list%add('strobe_angle_deg', self%strobe_angle_deg, &

@@ -181,6 +181,7 @@ contains
       tasks%began = count(is_there)
       tasks%done = tasks%began
       size_of = (sweep%design%runs - 1)/most_chunks + 1
+      if (sweep%study%start == 'previous') size_of = sweep%design%runs   ! one process, one run after the other
       allocate (tasks%missing(0))
       do i = sweep%first, sweep%last
         if (is_there(i)) cycle

@@ -81,6 +81,9 @@ contains
         call fail(error, at//'--rows '//integer_text(options%first_row)//':'//integer_text(options%last_row)// &
                   ': the study has '//integer_text(sweep%last)//' runs', status_case_file)
         return
+      else if (options%last_row > 0 .and. study%start == 'previous') then
+        call fail(error, at//'--rows: with &study start = ''previous'' each run follows the one before it', status_case_file)
+        return
       else if (options%last_row > 0) then
         sweep%first = options%first_row
         sweep%last = options%last_row

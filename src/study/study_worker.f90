@@ -2,6 +2,7 @@
 !> what the simulation itself needs.
 module study_worker
   use gudgeon_errors, only: error_t
+  use run_state, only: run_state_t
   use gudgeon_constants, only: degree
   use gudgeon_columns, only: column_list_t, choose_columns
   use cycle_watch, only: cycle_watch_t
@@ -24,6 +25,8 @@ module study_worker
     logical :: was_interrupted = .false.                   !! the last run was abandoned, and has no row
     type(error_t), allocatable :: output_error             !! reason why its trace could not be written
     type(study_case_t), private :: base
+    logical, private :: follows = .false.                  !! each run starts from the end of the one before it
+    type(run_state_t), allocatable, private :: previous    !! that end
     type(cycle_watch_t), allocatable, private :: watch
     type(column_list_t), private :: no_columns
     character(len=:), allocatable, private :: values(:)
@@ -50,6 +53,7 @@ contains
     self%cycle_rows = self%run_row
     self%strobe_rows = self%run_row
     self%trace_folder = trace_folder
+    self%follows = study%start == 'previous'
     self%traces_all = study%traces == 'all'
     self%traces_failed = study%traces == 'failed'
     allocate (self%watch)
@@ -116,10 +120,18 @@ contains
     type(run_report_t), intent(out) :: report
     type(error_t), allocatable, intent(out) :: error
     type(run_t) :: run
+    if (allocated(self%previous)) then
+      self%base%case%initial%state = self%previous
+      self%base%case%initial%goes_on = .false.
+    end if
     call run%begin(self%base%case, .false., list, sink, error, self%watch)
     if (allocated(error)) return
     call go_to_end(run, self%was_interrupted)
     call run%finish(report, error, self%watch)
+    if (.not. self%follows .or. allocated(error)) return
+    if (.not. allocated(self%previous)) allocate (self%previous)
+    call run%state(self%previous)
+    self%previous%file = 'the run before'
   end subroutine carry_out
 
   !> Carry out the run whose values have been set, with a trace NAME/RUN.csv and its events.

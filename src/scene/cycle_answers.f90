@@ -1,0 +1,216 @@
+!> The answers of a cycle: what the last whole cycle of a run gives, by bearing and for the machine, and the work done in it.
+!>
+!> The cycle is the period of the motion if one was found, else that of the gas, else one revolution. It ends where the run last
+!> completed a revolution. Work is that on the bodies, so losses are negative.
+module cycle_answers
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi, degree
+  use joint_places, only: name_prefix
+  use load_element, only: of_contact, of_friction, of_film, of_asperities
+  use gudgeon_scene, only: scene_t, by_gas, by_drive, by_damping, by_guide, by_elastic
+  use cycle_statistics, only: cycle_t
+  use cycle_watch, only: cycle_watch_t
+  use period_watch, only: period_watch_t
+  use run_length, only: longest_period
+  implicit none
+  private
+  public :: answer_t, quantity_t, find_answers, cycle_quantities
+
+  !> What a result is.
+  type :: quantity_t
+    character(len=40) :: name = ''
+    character(len=14) :: unit = ''    !! unit as in the file; 1: a number without unit; empty: a text
+    character(len=170) :: meaning = ''
+  end type quantity_t
+
+  !> An answer of one run.
+  type :: answer_t
+    character(len=40) :: name = ''    !! with the place of the joint
+    character(len=14) :: unit = ''
+    real(dp) :: value = 0
+    character(len=8) :: text = ''     !! instead of the value, of a quantity without unit
+  end type answer_t
+
+  !> Indices into `cycle_quantities`.
+  integer, parameter :: q_start = 1, q_duration = 2, q_revolutions = 3, q_change = 4, q_settled = 5, &
+    q_film = 6, q_film_angle = 7, q_ratio = 8, q_force = 9, q_share = 10, q_film_power = 11, q_friction_power = 12, &
+    q_joint_fmep = 13, q_pressure = 14, q_pressure_angle = 15, q_flow = 16, &
+    q_speed = 17, q_fluctuation = 18, q_piston_speed = 19, q_gas_pressure = 20, q_gas_angle = 21, &
+    q_indicated = 22, q_brake = 23, q_imep = 24, q_bmep = 25, q_fmep = 26, &
+    q_energy = 36, q_rest = 37
+  !> Parts of the work, in the order of their quantities from `q_first_work` on.
+  integer, parameter :: q_first_work = 27, parts(*) = [by_gas, by_drive, by_damping, of_contact, of_friction, of_film, &
+    of_asperities, by_guide, by_elastic]
+
+  !> All quantities; those of a joint get its place as a prefix.
+  type(quantity_t), parameter :: cycle_quantities(*) = [ &
+    quantity_t('cycle_start', 's', 'beginning of the last whole cycle of the run; `cycle_...` is of this cycle alone'), &
+    quantity_t('cycle_duration', 's', 'its duration'), &
+    quantity_t('cycle_revolutions', '1', 'its revolutions: the period of the motion if one was found, else of the gas, else 1'), &
+    quantity_t('cycle_change', '1', &
+      'largest difference of the state from one cycle earlier, over the range of each component'), &
+    quantity_t('cycle_is_settled', '', &
+      '`yes`, `no` (that is above `periodic_tolerance`) or `unknown` (the run has only one whole cycle)'), &
+    quantity_t('cycle_min_film_thickness', 'm', 'smallest film thickness in the cycle; negative: deepest penetration'), &
+    quantity_t('cycle_min_film_thickness_angle', 'deg', 'crank angle then, from 0 to the length of the cycle'), &
+    quantity_t('cycle_max_eccentricity_ratio', '1', 'largest eccentricity in the cycle over the clearance'), &
+    quantity_t('cycle_max_force', 'N', 'largest force at the pin in the cycle'), &
+    quantity_t('cycle_contact_share', '1', 'share of the cycle in contact'), &
+    quantity_t('cycle_mean_film_power', 'W', 'mean power that the film takes from the bodies in the cycle'), &
+    quantity_t('cycle_mean_friction_power', 'W', 'the same of the friction of contact and asperities'), &
+    quantity_t('cycle_joint_fmep', 'Pa', 'these losses in the cycle over the displacement of the cylinder'), &
+    quantity_t('cycle_max_film_pressure', 'Pa', 'largest pressure in the film in the cycle, with `report`'), &
+    quantity_t('cycle_max_film_pressure_angle', 'deg', 'crank angle then'), &
+    quantity_t('cycle_mean_film_side_flow', 'm3/s', 'mean oil flow out of both ends of the bearing in the cycle'), &
+    quantity_t('cycle_mean_crank_speed', 'rad/s', 'angle that the crank turns through in the cycle over its duration'), &
+    quantity_t('cycle_speed_fluctuation', '1', 'largest minus smallest crank speed in the cycle, over the mean'), &
+    quantity_t('cycle_mean_piston_speed', 'm/s', 'two strokes of the ideal mechanism in the mean time of a revolution'), &
+    quantity_t('cycle_max_cylinder_pressure', 'Pa', 'largest pressure of the gas in the cycle'), &
+    quantity_t('cycle_max_cylinder_pressure_angle', 'deg', 'crank angle then, from 0 to the length of the cycle'), &
+    quantity_t('cycle_indicated_power', 'W', 'work of the gas on the piston in the cycle over its duration'), &
+    quantity_t('cycle_brake_power', 'W', 'power that leaves through the shaft, by drive and damping; negative: it is driven'), &
+    quantity_t('cycle_imep', 'Pa', 'work of the gas in a cycle of the gas over the displacement'), &
+    quantity_t('cycle_bmep', 'Pa', 'the same of the work that leaves through the shaft'), &
+    quantity_t('cycle_fmep', 'Pa', 'the same of the losses in joints, guide and elastic members'), &
+    quantity_t('cycle_work_gas', 'J', 'work of the gas on the piston in the cycle'), &
+    quantity_t('cycle_work_drive', 'J', 'work of the driving torque, or of the moment that holds the speed'), &
+    quantity_t('cycle_work_damping', 'J', 'work of the damping of the drive'), &
+    quantity_t('cycle_work_contact', 'J', 'work of the normal forces of the contact, and of elastic walls'), &
+    quantity_t('cycle_work_friction', 'J', 'work of the friction of the contact'), &
+    quantity_t('cycle_work_film', 'J', 'work of the film'), &
+    quantity_t('cycle_work_asperities', 'J', 'work of the asperities, with their friction'), &
+    quantity_t('cycle_work_guide', 'J', 'work of the guide: friction of the bore and loads of the corners of the skirt'), &
+    quantity_t('cycle_work_elastic', 'J', 'work of the damping of rod and crankshaft'), &
+    quantity_t('cycle_energy_change', 'J', 'change of kinetic, potential and elastic energy in the cycle'), &
+    quantity_t('cycle_work_rest', 'J', 'that change less all work in the cycle: the error of the integration')]
+
+contains
+
+  !> The answers of a run that has ended; none if it has no whole cycle. The scene must tell the parts of the work apart.
+  function find_answers(scene, cycles, periods) result(answers)
+    type(scene_t), intent(in) :: scene
+    type(cycle_watch_t), intent(in) :: cycles
+    type(period_watch_t), intent(in) :: periods
+    type(answer_t), allocatable :: answers(:)
+    type(cycle_t) :: cycle
+    real(dp) :: displacement   !! swept in all cycles of the gas in this cycle [m^3]
+    real(dp) :: loss, shaft
+    integer :: revolutions, i, gas_revolutions
+    allocate (answers(0))
+    gas_revolutions = 1
+    if (allocated(scene%gas)) gas_revolutions = scene%gas%revolutions
+    revolutions = gas_revolutions
+    if (periods%period > 0) revolutions = periods%period
+    if (cycles%ended < revolutions .or. revolutions > longest_period) return
+    cycle = cycles%last_cycle(revolutions)
+    displacement = 0
+    if (allocated(scene%gas)) displacement = scene%gas%cylinder%displacement*revolutions/gas_revolutions
+
+    call add(q_start, cycle%start)
+    call add(q_duration, cycle%duration)
+    call add(q_revolutions, real(revolutions, dp))
+    call add_change(periods%change(revolutions))
+    do i = 1, scene%n_joints
+      call add_joint(i)
+    end do
+    call add_machine()
+    do i = 1, size(scene%parts)
+      call add(q_first_work - 1 + findloc(parts, scene%parts(i)%what, 1), cycle%work(i), prefix_of(scene%parts(i)%joint))
+    end do
+    call add(q_energy, cycle%energy_change)
+    call add(q_rest, cycle%energy_change - sum(cycle%work(:size(scene%parts))))
+
+  contains
+
+    subroutine add(quantity, value, prefix)
+      integer, intent(in) :: quantity
+      real(dp), intent(in) :: value
+      character(len=*), intent(in), optional :: prefix
+      type(quantity_t) :: it
+      it = cycle_quantities(quantity)
+      if (present(prefix)) it%name = prefix//it%name
+      answers = [answers, answer_t(it%name, it%unit, value)]
+    end subroutine add
+
+    subroutine add_change(change)
+      real(dp), intent(in) :: change   !! negative: not known
+      if (change >= 0) call add(q_change, change)
+      call add(q_settled, 0.0_dp)
+      answers(size(answers))%text = 'unknown'
+      if (change >= 0) answers(size(answers))%text = merge('yes', 'no ', change <= periods%tolerance)
+    end subroutine add_change
+
+    !> Name of the place of a joint as a prefix; none for what is not in a joint.
+    function prefix_of(joint) result(prefix)
+      integer, intent(in) :: joint
+      character(len=:), allocatable :: prefix
+      prefix = ''
+      if (joint > 0) prefix = name_prefix(scene%joints(joint)%place)
+    end function prefix_of
+
+    !> Work of one kind in a joint, or of another part [J].
+    pure real(dp) function work_of(what, joint) result(work)
+      integer, intent(in) :: what
+      integer, intent(in), optional :: joint
+      integer :: k
+      work = 0
+      do k = 1, size(scene%parts)
+        if (scene%parts(k)%what /= what) cycle
+        if (present(joint)) then
+          if (scene%parts(k)%joint /= joint) cycle
+        end if
+        work = work + cycle%work(k)
+      end do
+    end function work_of
+
+    subroutine add_joint(i)
+      integer, intent(in) :: i
+      character(len=:), allocatable :: prefix
+      real(dp) :: film, friction
+      associate (joint => scene%joints(i), pin => cycle%pin(scene%joints(i)%place))
+        prefix = prefix_of(i)
+        call add(q_film, pin%min_film_thickness, prefix)
+        call add(q_film_angle, degrees(pin%thinnest_angle), prefix)
+        call add(q_ratio, 1 - pin%min_film_thickness/joint%bearing%clearance, prefix)
+        call add(q_force, pin%max_force, prefix)
+        call add(q_share, pin%contact_time/cycle%duration, prefix)
+        film = work_of(of_film, i)
+        friction = work_of(of_friction, i) + work_of(of_asperities, i)
+        if (joint%has_kind(of_film)) call add(q_film_power, -film/cycle%duration, prefix)
+        if (joint%has_kind(of_friction) .or. joint%has_kind(of_asperities)) &
+          call add(q_friction_power, -friction/cycle%duration, prefix)
+        if (displacement > 0) call add(q_joint_fmep, -(film + friction)/displacement, prefix)
+        if (.not. (joint%reports_film .and. joint%has_kind(of_film))) return
+        if (pin%max_film_pressure > 0) then
+          call add(q_pressure, pin%max_film_pressure, prefix)
+          call add(q_pressure_angle, degrees(pin%pressure_angle), prefix)
+        end if
+        if (pin%film_volume > 0) call add(q_flow, pin%film_volume/cycle%duration, prefix)
+      end associate
+    end subroutine add_joint
+
+    subroutine add_machine()
+      real(dp) :: mean_speed
+      mean_speed = two_pi*revolutions/cycle%duration
+      call add(q_speed, cycles%direction*mean_speed)
+      call add(q_fluctuation, (cycle%max_speed + cycle%max_slowness)/mean_speed)
+      call add(q_piston_speed, 4*scene%chain%bodies%crank%length*revolutions/cycle%duration)
+      if (.not. allocated(scene%gas)) return
+      call add(q_gas_pressure, cycle%max_pressure)
+      call add(q_gas_angle, degrees(cycle%max_pressure_angle))
+      shaft = -work_of(by_drive) - work_of(by_damping)
+      loss = work_of(by_gas) - shaft - sum(cycle%work(:size(scene%parts)))   ! by what is neither gas nor shaft
+      call add(q_indicated, work_of(by_gas)/cycle%duration)
+      call add(q_brake, shaft/cycle%duration)
+      call add(q_imep, work_of(by_gas)/displacement)
+      call add(q_bmep, shaft/displacement)
+      call add(q_fmep, loss/displacement)
+    end subroutine add_machine
+
+    !> A crank angle [rad] in degrees, from 0 to the length of the cycle.
+    pure real(dp) function degrees(angle)
+      real(dp), intent(in) :: angle
+      degrees = modulo(angle, two_pi*revolutions)/degree
+    end function degrees
+  end function find_answers
+end module cycle_answers

@@ -1,0 +1,136 @@
+!> Follows the pressure of the gas and the speed of the crank: their extremes in each revolution, searched inside the steps.
+module machine_record
+  use gudgeon_kinds, only: dp
+  use ode_method, only: ode_method_t
+  use gudgeon_scene, only: scene_t, evaluation_t
+  use peak_search, only: sample_t, peak_search_t, may_peak
+  use cycle_statistics, only: cycle_t
+  implicit none
+  private
+  public :: machine_record_t
+
+  !> Quantities that are searched: the pressure, the speed and its negative.
+  integer, parameter :: of_pressure = 1, of_speed = 2, of_slowness = 3
+
+  type :: machine_record_t
+    private
+    real(dp) :: t = 0                                     !! end of the last interval that was searched [s]
+    real(dp) :: angle = 0, speed = 0, acceleration = 0    !! of the crank at that time [rad], [rad/s], [rad/s^2]
+  contains
+    procedure, non_overridable :: begin
+    procedure, non_overridable :: search
+  end type machine_record_t
+
+contains
+
+  !> Begin a run at t, where the scene has been evaluated.
+  pure subroutine begin(self, scene, t, now)
+    class(machine_record_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    self%t = t
+    self%angle = now%motion%crank_angle
+    self%speed = now%motion%crank_speed
+    self%acceleration = 0
+    if (scene%crank_moves) self%acceleration = now%accelerations%crank
+  end subroutine begin
+
+  !> Search between the end of the last interval and t, where the scene is evaluated. Both must lie inside the last step.
+  subroutine search(self, method, scene, t, now, cycle)
+    class(machine_record_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    type(cycle_t), intent(inout) :: cycle   !! extremes of the present revolution
+    type(machine_record_t) :: next
+    call next%begin(scene, t, now)
+    if (allocated(scene%gas)) call search_one(of_pressure, cycle%max_pressure, cycle%max_pressure_angle)
+    if (scene%crank_moves) then
+      call search_one(of_speed, cycle%max_speed)
+      call search_one(of_slowness, cycle%max_slowness)
+    else
+      cycle%max_speed = max(cycle%max_speed, next%speed)
+      cycle%max_slowness = max(cycle%max_slowness, -next%speed)
+    end if
+    self%t = next%t
+    self%angle = next%angle
+    self%speed = next%speed
+    self%acceleration = next%acceleration
+
+  contains
+
+    !> Search the largest value of a quantity, if it may exceed `largest`.
+    subroutine search_one(quantity, largest, angle)
+      integer, intent(in) :: quantity
+      real(dp), intent(inout) :: largest
+      real(dp), intent(inout), optional :: angle   !! crank angle there [rad]
+      type(peak_search_t) :: peak
+      type(sample_t) :: left, right
+      left = sample_at(self, scene, quantity)
+      right = sample_at(next, scene, quantity)
+      call peak%begin(left, right)
+      if (left%slope > 0 .and. right%slope < 0) then
+        if (may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, largest)) call climb(quantity, peak)
+      end if
+      if (.not. peak%value(1) > largest) return
+      largest = peak%value(1)
+      if (present(angle)) angle = angle_at(peak%t(1))
+    end subroutine search_one
+
+    !> Crank angle at a time inside the step [rad].
+    real(dp) function angle_at(time)
+      real(dp), intent(in) :: time
+      real(dp) :: y(scene%n)
+      call method%interpolate(time, y)
+      angle_at = scene%crank_angle(time, y)
+    end function angle_at
+
+    !> Search the peak of a quantity that rises and then falls.
+    subroutine climb(quantity, peak)
+      integer, intent(in) :: quantity
+      type(peak_search_t), intent(inout) :: peak
+      real(dp) :: time
+      logical :: is_done
+      do
+        call peak%next_time(time, is_done)
+        if (is_done) exit
+        call peak%take(time, value_at(quantity, time))
+      end do
+    end subroutine climb
+
+    !> The value of a quantity at a time inside the step.
+    real(dp) function value_at(quantity, time) result(value)
+      integer, intent(in) :: quantity
+      real(dp), intent(in) :: time
+      type(machine_record_t) :: point
+      type(sample_t) :: sample
+      real(dp) :: y(scene%n)
+      call method%interpolate(time, y)
+      point%angle = scene%crank_angle(time, y)
+      point%speed = scene%crank_speed(time, y)
+      sample = sample_at(point, scene, quantity)
+      value = sample%value
+    end function value_at
+  end subroutine search
+
+  !> Value and slope of a quantity at a point.
+  pure type(sample_t) function sample_at(point, scene, quantity) result(sample)
+    type(machine_record_t), intent(in) :: point
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: quantity
+    sample%t = point%t
+    select case (quantity)
+    case (of_pressure)
+      sample%value = scene%gas%pressure(point%angle)
+      sample%slope = scene%gas%force_slope(point%angle)/scene%gas%cylinder%area*point%speed
+    case (of_speed)
+      sample%value = point%speed
+      sample%slope = point%acceleration
+    case default
+      sample%value = -point%speed
+      sample%slope = -point%acceleration
+    end select
+  end function sample_at
+end module machine_record

@@ -1,0 +1,63 @@
+!> The state of a scene as named numbers, from which another run may start.
+submodule (gudgeon_scene) scene_state
+  use gudgeon_constants, only: two_pi
+  use crank_turns, only: new_crank_turns
+  implicit none
+
+contains
+
+  module procedure declare
+    real(dp) :: angle, speed, since_wear
+    integer :: i
+    list%of_totals = .true.
+    call list%add('time', t, 's', 'time that the run has reached')
+    call list%add('work', y(self%work_at), 'J', 'work of all forces and the drive on the bodies')
+    list%of_totals = .false.
+    angle = self%crank_angle(t, y)
+    speed = self%crank_speed(t, y)
+    call list%add('crank_angle', angle, 'rad', 'crank angle from the cylinder axis')
+    call list%add('crank_speed', speed, 'rad/s', 'crank speed')
+    if (list%sets) call turn_to(self, t, y, angle, speed, list%goes_on)
+    do i = 1, self%n_joints
+      call self%joints(i)%declare(list, y)
+    end do
+    if (allocated(self%guide)) call self%guide%declare(list, y)
+    if (allocated(self%chain%elastic)) call self%chain%elastic%declare(list, t, y, angle, speed)
+    if (allocated(self%gas)) call self%gas%declare(list, angle, speed)
+    if (.not. allocated(self%wear_cycle)) return
+    since_wear = angle - self%wear_cycle%begin
+    list%of_totals = .true.
+    call list%add('wear_cycle_angle', since_wear, 'rad', 'angle that the crank has turned since the bore changed its shape')
+    list%of_totals = .false.
+    if (.not. list%sets) return
+    self%wear_cycle%begin = angle - since_wear
+    if (self%wear_cycle%is_over(angle) .or. .not. list%goes_on) self%wear_cycle%begin = angle
+  end procedure declare
+
+  !> Begin with the crank at an angle [rad], which is reduced by whole cycles of the machine unless a run goes on, and a speed
+  !> [rad/s].
+  subroutine turn_to(scene, t, y, angle, speed, goes_on)
+    type(scene_t), intent(inout) :: scene
+    real(dp), intent(in) :: t, speed
+    real(dp), intent(inout) :: y(:), angle
+    logical, intent(in) :: goes_on
+    character(len=:), allocatable :: key
+    real(dp) :: cycle
+    if (.not. goes_on) then
+      cycle = two_pi
+      if (allocated(scene%gas)) cycle = scene%gas%revolutions*two_pi
+      angle = modulo(angle, cycle)
+      scene%start_angle = angle
+    end if
+    if (scene%crank_moves) then
+      y(scene%crank%position) = angle
+      y(scene%crank%rate) = speed
+    else
+      scene%start_angle = scene%start_angle + (angle - scene%crank_angle(t, y))
+    end if
+    if (.not. allocated(scene%turns)) return
+    key = scene%turns%key
+    scene%turns = new_crank_turns(scene%turns%wanted, scene%start_angle, speed)
+    scene%turns%key = key
+  end subroutine turn_to
+end submodule scene_state

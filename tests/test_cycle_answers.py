@@ -1,0 +1,185 @@
+#!/usr/bin/env python3
+"""The answers of the last whole cycle in summaries: work, mean effective pressures and extremes, against an independent quadrature of an
+engine, against the rows of traces, and as a closed ledger in all shipped cases.
+
+    tests/test_cycle_answers.py [--program PATH]
+
+Ends with the line "N passed, N failed".
+"""
+from __future__ import annotations
+
+import argparse
+import csv
+import math
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from assertions import Assertions
+
+ROOT = Path(__file__).resolve().parent.parent
+assertions = Assertions()
+check = assertions.check
+
+# An engine with ideal joints, viscous friction of the rings and damping at constant speed. Its values were computed by Gauss quadrature
+# over 17 pieces of the cycle by an independent program, to ten digits.
+ENGINE = """&mechanism crank_length=0.045, crank_mass=1.1, crank_inertia=0.004, crank_com=0.006,-0.002, rod_length=0.15, rod_mass=0.62,
+  rod_inertia=0.0024, rod_com=0.042,0.003, piston_mass=0.47, gravity=9.80665 /
+&drive kind='constant_speed', damping=0.02 /
+&initial crank_angle_deg=0, crank_speed=314.1592653589793 /
+&combustion bore=0.082, compression_ratio=9.5, heat_capacity_ratio=1.35, heat=900.0, wiebe_efficiency=5.0, wiebe_form=3.0,
+  start_deg=345.0, duration_deg=50.0, intake_pressure=101325.0, crankcase_pressure=101325.0 /
+&guide kind='friction', viscous=12.0 /
+&integrator revolutions=2, relative_tolerance=1e-9 /
+"""
+ENGINE_ANSWERS = {
+    "cycle_work_gas": 465.686029664, "cycle_work_guide": -49.0970009246, "cycle_work_damping": -78.9568352087,
+    "cycle_work_drive": -337.632193531, "cycle_indicated_power": 11642.1507416, "cycle_brake_power": 10414.7257185,
+    "cycle_imep": 979790.251172, "cycle_bmep": 876491.548176, "cycle_fmep": 103298.702996,
+    "cycle_max_cylinder_pressure": 4736276.99121, "cycle_max_cylinder_pressure_angle": 377.374715926, "cycle_mean_piston_speed": 9.0,
+}
+DISPLACEMENT = 0.000475291552562   # of this engine [m3]
+
+
+def run(program: Path, out: Path, case: Path, *settings: str) -> tuple[dict[str, float], list[dict[str, float]]]:
+    """Summary and rows of the trace of a case."""
+    words = [word for setting in settings for word in ("--set", setting)]
+    ran = subprocess.run([program, "-q", "-o", out, *words, case], capture_output=True, text=True, check=False)
+    if ran.returncode:
+        check(False, f"{case.name} is run: {ran.stderr}")
+        return {}, []
+    with (out / f"{case.stem}.summary.csv").open() as file:
+        summary = {row["quantity"]: number(row["value"]) for row in csv.DictReader(file)}
+    with (out / f"{case.stem}.csv").open() as file:
+        rows = [{name.split("[")[0]: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+    return summary, rows
+
+
+def number(text: str):
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def close(found: float, wanted: float, tolerance: float) -> bool:
+    return abs(found - wanted) <= tolerance*abs(wanted)
+
+
+def test_engine(program: Path, work: Path) -> None:
+    case = work / "engine.nml"
+    case.write_text(ENGINE)
+    summary, _ = run(program, work, case)
+    for name, wanted in ENGINE_ANSWERS.items():
+        tolerance = 3e-7 if name.endswith("angle") else 2e-8
+        check(close(summary[name], wanted, tolerance), f"engine: {name}", f"{summary[name]}, not {wanted}")
+    check(summary["cycle_revolutions"] == 2 and summary["cycle_is_settled"] == "unknown", "engine: one cycle of two revolutions")
+    loose, _ = run(program, work, case, "integrator.relative_tolerance=1e-5")
+    check(close(loose["cycle_work_gas"], ENGINE_ANSWERS["cycle_work_gas"], 1e-4), "engine: the work of the gas follows the tolerance",
+          str(loose["cycle_work_gas"]))
+    longer, _ = run(program, work, case, "integrator.revolutions=6")
+    check(close(longer["cycle_work_gas"], ENGINE_ANSWERS["cycle_work_gas"], 2e-8), "engine: the third cycle", str(longer["cycle_work_gas"]))
+    check(longer["cycle_is_settled"] == "yes", "engine at constant speed: settled")
+
+
+def test_ledger(program: Path, work: Path) -> None:
+    """In every shipped case the rest is the error of the integration, and the work of parts has the sign of a loss where it must."""
+    for case in sorted(path for path in (ROOT / "cases").rglob("*.nml") if "studies" not in path.parts):
+        if "&study" in case.read_text():
+            continue
+        summary, _ = run(program, work, case, "output.samples_per_revolution=10")
+        if "cycle_work_rest" not in summary:
+            continue
+        parts = sum(value for name, value in summary.items() if "cycle_work_" in name and name != "cycle_work_rest")
+        rest = summary["cycle_work_rest"]
+        size = max(abs(value) for name, value in summary.items() if "cycle_work_" in name or name == "cycle_energy_change")
+        check(abs(summary["cycle_energy_change"] - parts - rest) <= 1e-8*max(size, 1e-9), "the ledger is closed", case.name)
+        check(abs(rest) <= 2.1*summary["max_energy_residual"] + 1e-12*size, "the rest is within the energy residual",
+              f"{case.name}: {rest} J, residual {summary['max_energy_residual']} J")
+        for loss in ("friction", "asperities", "damping", "elastic"):
+            for name, value in summary.items():
+                if name.endswith(f"cycle_work_{loss}"):
+                    check(value <= 1e-9*size, f"work of {loss} is a loss", f"{case.name}: {value}")
+        if "cycle_imep" in summary:
+            swept = summary["cycle_work_gas"]/summary["cycle_imep"]
+            left = summary["cycle_imep"] - summary["cycle_bmep"] - summary["cycle_fmep"]
+            check(abs(left*swept - (summary["cycle_energy_change"] - rest)) <= 1e-8*size, "IMEP - BMEP - FMEP is the change of energy",
+                  case.name)
+
+
+def integral(rows: list[dict[str, float]], column, begins: float, ends: float) -> float:
+    """Trapezoids over the rows between two times, which must be among the rows."""
+    inside = [row for row in rows if begins*(1 - 1e-9) <= row["time"] <= ends*(1 + 1e-9)]
+    return sum(0.5*(column(a) + column(b))*(b["time"] - a["time"]) for a, b in zip(inside, inside[1:]))
+
+
+def test_rows(program: Path, work: Path) -> None:
+    """Work and extremes against the rows of dense traces."""
+    for name, place in (("joints/both_pins_lubricated", "crank_pin_"), ("film/sim_IV_mixed", ""), ("joints/piston_slap", ""),
+                        ("flores/friction_050", ""), ("film/weighted", "")):
+        case = ROOT / "cases" / f"{name}.nml"
+        summary, rows = run(program, work, case, "output.samples_per_revolution=20000", "output.sampling=crank_angle",
+                            "output.angle_origin_deg=0", "output.ideal_twin=F", "integrator.method=auto")
+        if not rows:
+            continue
+        begins = summary["cycle_start"]
+        ends = begins + summary["cycle_duration"]
+        inside = [row for row in rows if begins <= row["time"] <= ends]
+        drive = integral(rows, lambda row: row["crank_moment"]*row["crank_speed"], begins, ends)
+        size = max(abs(value) for key, value in summary.items() if "cycle_work_" in key or key == "cycle_energy_change")
+        check(abs(summary["cycle_work_drive"] - drive) <= 2e-3*size, f"{name}: work of the drive against the rows",
+              f"{summary['cycle_work_drive']}, not {drive}")
+        if f"{place}normal_force" in rows[0] and f"{place}cycle_work_friction" in summary and f"{place}sliding_speed" in rows[0]:
+            friction = integral(rows, lambda row: row[f"{place}friction_force"]*row[f"{place}sliding_speed"], begins, ends)
+            check(abs(summary[f"{place}cycle_work_friction"] - friction) <= 2e-3*size, f"{name}: work of friction against the rows",
+                  f"{summary[f'{place}cycle_work_friction']}, not {friction}")
+        if f"{place}film_thickness" in rows[0]:
+            thinnest = min(inside, key=lambda row: row[f"{place}film_thickness"])
+            film = summary[f"{place}cycle_min_film_thickness"]
+            check(film <= thinnest[f"{place}film_thickness"] + 1e-15, f"{name}: no row has a thinner film",
+                  f"{film}, {thinnest[f'{place}film_thickness']}")
+            check(close(film, thinnest[f"{place}film_thickness"], 1e-3), f"{name}: smallest film thickness")
+            apart = summary[f"{place}cycle_min_film_thickness_angle"] - math.degrees(thinnest["crank_angle"])
+            apart = abs((apart + 180) % 360 - 180)
+            check(apart < 0.5, f"{name}: crank angle of the thinnest film", f"{apart} degrees apart")
+
+
+def test_scope(program: Path, work: Path) -> None:
+    """A run until it is periodic with a window: the answers are of the window that the trace shows, not of the start."""
+    case = ROOT / "cases" / "wear" / "flores.nml"
+    summary, rows = run(program, work, case, "run.until=periodic", "output.window=last_period", "friction.coefficient=0.1",
+                        "output.samples_per_revolution=5000")
+    if not rows:
+        return
+    largest = max(math.hypot(row["pin_force_x"], row["pin_force_y"]) for row in rows)
+    check(close(summary["cycle_max_force"], largest, 1e-2), "the largest force of the cycle is that of the window",
+          f"{summary['cycle_max_force']}, {largest}")
+    check(summary["max_pin_force"] > 2*summary["cycle_max_force"], "the whole run has the larger force of the start")
+    check(close(summary["cycle_duration"], summary["period"], 1e-9) and close(summary["cycle_start"], summary["window_start"], 1e-9),
+          "the cycle is the period in the window")
+    check(summary["cycle_is_settled"] == "yes", "a periodic motion is settled")
+    off, _ = run(program, work, case, "output.answers=F")
+    check(not any("cycle_" in name for name in off), "answers = .false. takes them out")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", type=Path)
+    options = parser.parse_args()
+    program = options.program
+    if program is None:
+        built = subprocess.run([ROOT / "scripts" / "build.sh"], capture_output=True, text=True, check=False)
+        if built.returncode:
+            sys.exit(f"{built.stderr}\n0 passed, 1 failed")
+        program = ROOT / built.stdout.strip()
+    with tempfile.TemporaryDirectory(prefix="answers") as work:
+        for test in (test_engine, test_ledger, test_rows, test_scope):
+            folder = Path(work) / test.__name__
+            folder.mkdir()
+            test(program.resolve(), folder)
+    return assertions.report()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
