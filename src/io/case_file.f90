@@ -11,6 +11,7 @@ module case_file
   use case_loader, only: load_case
   use case_rules, only: check_rules
   use case_text, only: template_text, resolved_text
+  use bearing_definition, only: bearing_schema_of
   use namelist_reader, only: namelist_t, read_namelist
   implicit none
   private
@@ -44,22 +45,36 @@ contains
     if (present(resolved) .and. .not. allocated(error)) resolved = resolved_text(values)
   end subroutine parse_case
 
-  !> Read the values of a case file and of the overrides, without checking them against each other.
-  subroutine read_case_values(path, overrides, values, error)
+  !> Read the values of a case file and of the overrides, without checking them against each other. With `is_bearing` the file may
+  !> also be a bearing case, which has the group film_history and no mechanism.
+  subroutine read_case_values(path, overrides, values, error, is_bearing)
     character(len=*), intent(in) :: path, overrides(:)
     type(case_values_t), intent(out) :: values
     type(error_t), allocatable, intent(out) :: error
+    logical, intent(out), optional :: is_bearing
     character(len=:), allocatable :: text
+    if (present(is_bearing)) is_bearing = .false.
     call read_text_file(path, largest_file, 'case file', text, error)
-    if (.not. allocated(error)) call parse_values(text, path, overrides, values, error)
+    if (.not. allocated(error)) call parse_values(text, path, overrides, values, error, is_bearing)
   end subroutine read_case_values
 
-  subroutine parse_values(text, path, overrides, values, error)
+  subroutine parse_values(text, path, overrides, values, error, is_bearing)
     character(len=*), intent(in) :: text, path, overrides(:)
     type(case_values_t), intent(out) :: values
     type(error_t), allocatable, intent(out) :: error
+    logical, intent(out), optional :: is_bearing
+    logical :: without_mechanism
     integer :: i
-    call case_schema_of(values%key_table_t)
+    without_mechanism = .false.
+    if (present(is_bearing)) then
+      call find_kind(text, is_bearing)
+      without_mechanism = is_bearing
+    end if
+    if (without_mechanism) then
+      call bearing_schema_of(values%key_table_t)
+    else
+      call case_schema_of(values%key_table_t)
+    end if
     call values%set_defaults(path)
     call take_file(values, text, error)
     if (allocated(error)) return
@@ -69,6 +84,24 @@ contains
     end do
     call values%prefer_overrides()
   end subroutine parse_values
+
+  !> Whether a text has the group of a film with memory, and no mechanism.
+  subroutine find_kind(text, is_bearing)
+    character(len=*), intent(in) :: text
+    logical, intent(out) :: is_bearing
+    type(namelist_t) :: list
+    type(error_t), allocatable :: error
+    integer :: i
+    is_bearing = .false.
+    call read_namelist(text, '', list, error)
+    if (allocated(error)) return   ! reported with the name of the file
+    do i = 1, size(list%groups)
+      if (list%groups(i)%name == 'film_history') is_bearing = .true.
+    end do
+    do i = 1, size(list%groups)
+      if (list%groups(i)%name == 'mechanism') is_bearing = .false.
+    end do
+  end subroutine find_kind
 
   !> Complete and check a case from its values; `path` gives its name. Defaults that depend on the selected laws are put into the
   !> values.
@@ -133,6 +166,7 @@ contains
         at = list%at(entry%line)
         call values%find(list%groups(entry%group_number)%name, entry%key, at, place, error)
         if (allocated(error)) return
+        if (entry%key == 'position_deg') entry%tokens%quoted = .true.   ! a list is kept as written
         call values%assign(place, entry%index, entry%tokens, at, .false., error)
         if (allocated(error)) return
       end associate

@@ -15,6 +15,7 @@ module case_runner
   use gudgeon_summary, only: build_advice
   use run_start, only: try_start
   use case_run, only: case_run_t, name_file
+  use bearing_run, only: bearing_run_t
   use result_file, only: fail_with_file
   use gudgeon_posix, only: absolute_path, make_directory, interrupted
   use gudgeon_progress, only: tell, say, clock, progress_wanted
@@ -31,6 +32,7 @@ module case_runner
     type(case_run_t) :: run, twin
     character(len=:), allocatable :: path             !! path of the case file
     logical :: has_twin = .false.                     !! the ideal twin is run too
+    type(bearing_run_t), allocatable :: bearing       !! instead of `run`: the case has no mechanism
   end type case_job_t
 
   !> All cases of a command.
@@ -66,7 +68,8 @@ contains
     end do
     if (.not. options%check) then
       do i = 1, size(cases%job)   ! uses all processors
-        if (.not. allocated(cases%job(i)%error)) call provide_films(cases%job(i), options%quiet, shows_progress)
+        if (.not. (allocated(cases%job(i)%error) .or. allocated(cases%job(i)%bearing))) &
+          call provide_films(cases%job(i), options%quiet, shows_progress)
       end do
       jobs = options%jobs
       if (jobs == 0) jobs = available_processors()
@@ -87,13 +90,19 @@ contains
     type(case_t) :: case
     type(column_list_t) :: list, ideal_list
     character(len=:), allocatable :: base, text
+    logical :: is_bearing
 
     job%path = path
     if (interrupted()) then
       call not_begun(path, '', job%error)
       return
     end if
-    call read_case_values(path, settings_of(options), values, job%error)
+    call read_case_values(path, settings_of(options), values, job%error, is_bearing)
+    if (is_bearing) then
+      allocate (job%bearing)
+      if (.not. allocated(job%error)) call job%bearing%prepare(values, path, options%out, job%error)
+      return
+    end if
     if (.not. allocated(job%error)) call complete_case(values, path, case, job%error)
     if (allocated(job%error)) return
     call choose_columns(case, .false., list, job%error)
@@ -186,7 +195,9 @@ contains
       if (.not. allocated(job%error)) then
         if (interrupted()) call not_begun(job%path, '', job%error)
       end if
-      if (.not. allocated(job%error)) then
+      if (allocated(job%bearing)) then
+        if (.not. allocated(job%error)) call job%bearing%go(job%error)
+      else if (.not. allocated(job%error)) then
         call job%run%go()
         if (job%has_twin) then
           is_interrupted = interrupted()
@@ -230,7 +241,12 @@ contains
     if (allocated(error)) then
       call tell(error%message)
       status = max(status, error%status)
-    else if (.not. options%quiet) then
+    else if (options%quiet) then
+      return
+    else if (allocated(job%bearing)) then
+      call say(job%bearing%line, status)
+      if (job%bearing%notice /= '') call tell(job%bearing%notice)
+    else
       call say(job%run%line, status)
       if (job%run%notice /= '') call tell(job%run%notice)
     end if
