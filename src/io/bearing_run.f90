@@ -49,6 +49,7 @@ contains
     type(bearing_case_t) :: case
     type(film_cells_t) :: cells
     character(len=:), allocatable :: table
+    integer :: place
 
     self%file = path
     self%base = folder//'/'//case_name(path)
@@ -75,7 +76,8 @@ contains
     call set_history(case, self%history)
     call new_film_cells(self%history%bearing, self%history%supply, self%history%around, self%history%along, cells, error)
     if (allocated(error)) error%message = values%file//': &supply: '//error%message
-    values%values(values%place_of('film_history', 'table'))%text = absolute_path(table)
+    place = values%place_of('film_history', 'table')
+    values%values(place)%text = absolute_path(table)
     self%resolved = resolved_text(values)
     self%digits = case%output%digits
   end subroutine prepare

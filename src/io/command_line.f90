@@ -15,7 +15,7 @@ module command_line
     character(len=:), allocatable :: accuracy     !! draft, standard, reference, or empty: as in the case file
     integer :: jobs = 0                           !! number of processes; 0: number of processors
     logical :: certify = .false.                  !! make certificates of the runs
-    character(len=:), allocatable :: reference    !! page of the manual to print: case, study or results; empty: none
+    character(len=:), allocatable :: reference    !! page of the manual to print: case, bearing, study or results; empty: none
     logical :: check = .false., template = .false., quiet = .false., help = .false., version = .false.
     character(len=:), allocatable :: progress     !! auto, always, never
     character(len=:), allocatable :: cases(:)     !! paths of case files or study files, padded with blanks
@@ -189,7 +189,7 @@ contains
         line%template = .true.
       case ('reference')
         line%reference = value
-        if (all(value /= ['case   ', 'study  ', 'results'])) wanted = 'must be case, study or results'
+        if (all(value /= ['case   ', 'bearing', 'study  ', 'results'])) wanted = 'must be case, bearing, study or results'
       case ('quiet')
         line%quiet = .true.
       case ('certify')
@@ -287,7 +287,7 @@ contains
       '                            and with another method; results in the summary and in CASE.certificate.csv'//n// &
       '      --check               read and validate the cases without running them'//n// &
       '      --template            print a complete, commented case file (sweep: study file) with every key'//n// &
-      '      --reference SUBJECT   print a reference page in Markdown; SUBJECT is case, study or results'//n// &
+      '      --reference SUBJECT   print a reference page in Markdown; SUBJECT is case, bearing, study or results'//n// &
       '      --progress WHEN       show progress on standard error: auto (on a terminal), always or never'//n// &
       '  -q, --quiet               print errors only'//n// &
       '      --fresh               sweep: discard the results of an earlier sweep (default: continue it)'//n// &
