@@ -3,6 +3,7 @@ program gudgeon
   use gudgeon_errors, only: error_t, fail, status_ok, status_integration
   use command_line, only: command_line_t, parse_command_line, program_arguments, help_text
   use case_file, only: template
+  use case_templates, only: short_template
   use case_runner, only: run_cases
   use study_runner, only: run_study_file
   use study_definition, only: study_schema_of
@@ -45,22 +46,31 @@ contains
 
   !> Print a template or a page of the manual.
   subroutine say_page(options, status)
-    type(command_line_t), intent(in) :: options
+    type(command_line_t), intent(inout) :: options
     integer, intent(inout) :: status
     type(key_table_t) :: table
     if (options%template .and. options%sweep) then
       call study_schema_of(table)
       call say(template_text('A parameter study of gudgeon with every key there is. Keys marked required have no default.', &
         table), status)
+    else if (options%kind /= '') then
+      call say(short_template(options%kind), status)
     else if (options%template) then
       call say(template(), status)
     else if (options%reference == 'results') then
       call say(results_reference(), status)
     else
-      if (options%reference == 'case') call case_schema_of(table)
-      if (options%reference == 'bearing') call bearing_schema_of(table)
-      if (options%reference == 'study') call study_schema_of(table)
-      call say(keys_reference(table), status)
+      if (options%reference == 'study') then
+        call study_schema_of(table)
+        call say(keys_reference(table, ''), status)
+      else if (options%reference == 'bearing') then
+        call bearing_schema_of(table)
+        call say(keys_reference(table, ''), status)
+      else
+        call case_schema_of(table)
+        if (options%reference == 'case') options%reference = ''
+        call say(keys_reference(table, options%reference), status)
+      end if
     end if
   end subroutine say_page
 

@@ -55,6 +55,7 @@ program gudgeon_tests
   use test_load_elements, only: run_test_load_elements
   use test_loose_piston, only: run_test_loose_piston
   use test_lost_force, only: run_test_lost_force
+  use test_notes, only: run_test_notes
   use test_number_text, only: run_test_number_text
   use test_number_writer, only: run_test_number_writer
   use test_oscillating_film, only: run_test_oscillating_film
@@ -141,6 +142,7 @@ program gudgeon_tests
   call run('load_elements', run_test_load_elements)
   call run('loose_piston', run_test_loose_piston)
   call run('lost_force', run_test_lost_force)
+  call run('notes', run_test_notes)
   call run('number_text', run_test_number_text)
   call run('number_writer', run_test_number_writer)
   call run('oscillating_film', run_test_oscillating_film)

@@ -242,8 +242,9 @@ contains
   subroutine conflicts(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: base = ' coefficient=0.1 stribeck_speed=1e-2 bristle_stiffness=1e4'
-    call refused("law='lugre' static_coefficient=0.05"//base, 'static_coefficient = 0.05: must be >= coefficient, or 0')
-    call refused("law='elasto_plastic' static_coefficient=0.05"//base, 'static_coefficient = 0.05: must be >= coefficient, or 0')
+    call refused("law='lugre' static_coefficient=0.05"//base, 'static_coefficient = 0.05: must be >= coefficient = 0.1, or 0')
+    call refused("law='elasto_plastic' static_coefficient=0.05"//base, &
+      'static_coefficient = 0.05: must be >= coefficient = 0.1, or 0')
     call refused("law='dahl' coefficient=0 bristle_stiffness=1", 'coefficient = 0: must be > 0 for a law with bristles')
     call refused("law='dahl' coefficient=0.1 bristle_stiffness=0", 'bristle_stiffness = 0: must be > 0 (1/m)')
     call refused("law='lugre' coefficient=0.1 bristle_stiffness=1", 'stribeck_speed: required')

@@ -7,7 +7,8 @@ module test_crank_pin
   use chain_motion, only: crank_pin, piston_pin
   use case_definition, only: case_t
   use case_file, only: read_case
-  use gudgeon_summary, only: summary_table, summary_line, summary_value
+  use gudgeon_summary, only: summary_table, summary_value
+  use run_line, only: lines_for_user
   use checks, only: checks_t
   use collecting_sink, only: trace_t, run_case, column
   implicit none
@@ -61,7 +62,7 @@ contains
       call check%relative(value_of('contact_time_fraction')*trace%report%figures%time, contact_time(piston_pin), 1e-9_dp, &
         'time in contact at the piston pin')
     end associate
-    call check%that(index(summary_line(case, trace%report, 0.0_dp, 'x'), '; crank pin: ') > 0, &
+    call check%that(index(lines_for_user(case, trace%report, 0.0_dp, 'x', ''), '; crank pin: ') > 0, &
       'the line of the run has the crank pin')
 
     call run_and_summarise(alone, trace, case, table)
@@ -72,7 +73,7 @@ contains
     call check%that(value_of('crank_pin_contacts') > 0, 'the crank pin has contacts')
     call run_and_summarise('cases/flores/dry_0500um.nml', trace, case, table)
     call check%that(index(table, 'crank_pin') == 0, 'an ideal crank pin is not in the summary')
-    call check%that(index(summary_line(case, trace%report, 0.0_dp, 'x'), 'crank pin') == 0, &
+    call check%that(index(lines_for_user(case, trace%report, 0.0_dp, 'x', ''), 'crank pin') == 0, &
       'an ideal crank pin is not in the line of the run')
 
   contains

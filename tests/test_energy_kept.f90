@@ -7,7 +7,7 @@ module test_energy_kept
   use radau, only: radau_t
   use gudgeon_solver, only: integrate, silent_observer_t, integration_done
   use case_definition, only: case_t
-  use gudgeon_summary, only: energy_warning
+  use result_notes, only: energy_warning
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private

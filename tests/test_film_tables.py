@@ -123,6 +123,20 @@ class Cache(unittest.TestCase):
             self.assertEqual(sorted(" ".join(key.split()[-2:]) for key in keys), wanted)
             shutil.rmtree(self.cache)
 
+    def test_places_that_are_not_files(self) -> None:
+        """A device is no place for a table, also for a check; a relative cache folder is ignored, as its specification says."""
+        for device in ("/dev/zero", "/dev/null", "/dev/full"):
+            for options in ((), ("--check",)):
+                done, _ = self.run_case("device", "-s", f"lubrication.table_file={device}", *options)
+                self.assertEqual(done.returncode, 3, f"{device} {options}")
+                self.assertIn(f"&lubrication table_file = {device}: not a regular file", done.stderr)
+        self.assertFalse((self.folder / "device").exists())
+        done = subprocess.run([GUDGEON, "-q", "-o", self.folder / "relative", *SMALL, CASE], capture_output=True, text=True, check=False,
+                              cwd=self.folder, env={**os.environ, "XDG_CACHE_HOME": "there", "HOME": str(self.folder / "home")})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertFalse((self.folder / "there").exists())
+        self.assertEqual(len(list((self.folder / "home" / ".cache" / "gudgeon").iterdir())), 1)
+
     def test_other_tables(self) -> None:
         self.run_case("one")
         self.run_case("same", "-s", "lubrication.viscosity=0.03", "-s", "joint.clearance=20e-6")

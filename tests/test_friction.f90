@@ -201,7 +201,7 @@ contains
 
   subroutine test_conflicts(check)
     class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: less = 'static_coefficient = 0.05: must be >= coefficient, or 0: as coefficient'
+    character(len=*), parameter :: less = 'static_coefficient = 0.05: must be >= coefficient = 0.1, or 0: as coefficient'
     call refused("law='coulomb' coefficient=0.1 static_coefficient=0.05", less)
     call refused("law='brown_mcphee' coefficient=0.1 static_coefficient=0.05 transition_speed=1", less)
     call refused("law='stribeck' coefficient=0.1 static_coefficient=0.05 transition_speed=1 stribeck_speed=1", less)

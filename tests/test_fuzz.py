@@ -4,8 +4,8 @@
     tests/test_fuzz.py [--files N] [--seed N] [--runs SHARE] [--sanitize] [--jobs N] [--keep DIR]
 
 Each file is a shipped case with one to four mutations. Most files are only checked (`--check`), a share of them is run for a short
-time. Allowed are exit status 0 with one line on standard output, or 3 (in a run also 4 or 5) with one clear line on standard error;
-anything else is a failure, and the file is kept. With --sanitize the program is also built with the address and undefined
+time. Allowed are exit status 0 with an outcome on standard output, or 3 (in a run also 4 or 5) with clear lines on standard error, each
+of which names the file; anything else is a failure, and the file is kept. With --sanitize the program is also built with the address and undefined
 behaviour sanitizers. Ends with the line "N passed, N failed", which counts kinds of mutation: a kind has passed if every file
 with such a mutation has.
 """
@@ -204,17 +204,20 @@ class Fuzz:
         outcome: dict[str, str] = {}
         worst = 0
         for line in [*out.split("\n")[:-1], *err.split("\n")[:-1]]:
-            is_message = line.startswith("gudgeon: ")
-            names = [path.name for path in files if f"/{path.name}:" in line or f"/{path.stem}.csv" in line or
-                     line.startswith(f"{path.stem}: ")]
-            if is_message and any(text in line for text in ("needs 1/", "a build for debugging", "has no effect")):
-                continue   # advice
-            if len(names) != 1 or names[0] in outcome:
-                return f"more than one line for a file: {line[:300]!r}", {}
             if len(line.encode("utf-8", "surrogateescape")) > LONGEST_MESSAGE or not is_clear(line):
                 return f"a line that is not clear: {line[:1000]!r}", {}
+            is_message = line.startswith("gudgeon: ")
+            if line.startswith("  ") or re.fullmatch("gudgeon: and [0-9]+ more errors", line) and "refused" in outcome.values():
+                continue   # belongs to the line before
+            names = [path.name for path in files if f"/{path.name}:" in line or line.startswith(f"{path.stem}: ")]
+            if is_message and (": note: " in line or any(text in line for text in ("a build for debugging", "computing the film table"))):
+                continue
+            if len(names) != 1 or outcome.get(names[0], "refused") != "refused" or names[0] in outcome and not is_message:
+                return f"a second outcome of a file: {line[:300]!r}", {}
             if not is_message:
                 outcome[names[0]] = "correct" if not is_run else "finished"
+                if " ended early; " in line:
+                    del outcome[names[0]]   # its message follows
                 continue
             outcome[names[0]] = "stopped" if " at t =" in line or "run to t =" in line else "refused"
             worst = max(worst, 4 if outcome[names[0]] == "stopped" else 3)

@@ -2,6 +2,7 @@
 module test_guide
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi, degree
+  use text_tools, only: replaced
   use checks, only: checks_t
   use gudgeon_errors, only: error_t
   use case_definition, only: case_t
@@ -504,20 +505,24 @@ contains
     character(len=*), parameter :: lost = ': must be > 0', needs = ': required with kind = ''clearance'''
     call refused(slap, 'guide.stiffness=0', 'slider_clearance.nml: &guide stiffness = 0'//lost//' (N/m^exponent)')
     call refused(slap, 'guide.skirt_top=-1', 'slider_clearance.nml: &guide skirt_top = -1'//lost//' (m)')
-    call refused(ideal, 'guide.kind=clearance', 'ideal.nml: &guide bore_clearance'//needs//' (m)')
+    call refused(ideal, 'guide.kind=clearance', 'ideal.nml: &guide bore_clearance'//needs//' (m)'//achar(10)// &
+      'ideal.nml: &guide skirt_top'//needs//' (m)'//achar(10)//'ideal.nml: &guide skirt_bottom'//needs//' (m)'//achar(10)// &
+      'ideal.nml: &guide piston_radius'//needs//' (m)'//achar(10)//'ideal.nml: &guide piston_inertia'//needs//' (kg m^2)'// &
+      achar(10)//'ideal.nml: &guide stiffness'//needs//' (N/m^exponent)')
     call refused(ideal, 'guide.bore_clearance=1e-4', 'ideal.nml: &guide bore_clearance = 1e-4: needs kind = ''clearance''; the '// &
       'default is friction (m)')
     call refused(ideal, 'guide.v1=0 guide.coefficient=0.1 guide.v0=0', 'ideal.nml: &guide v1 = 0: must be > 0: friction on the '// &
       'guide is a function of the speed (m/s)')
     call refused(ideal, 'guide.coefficient=2.2', 'ideal.nml: &guide coefficient = 2.2: friction over normal force must stay < '// &
-      '2.18174, the least of rod_length cos A/(crank_length sin q): more would jam the piston')
+      '2.18174, the least of rod_length cos A/(crank_length sin q): more would jam the piston: per cent?')
     call refused(ideal, 'initial.piston_tilt=0.1', 'ideal.nml: &initial piston_tilt = 0.1: must be 0 without clearance in the '// &
       'bore (&guide kind = ''clearance'') (rad)')
-    call refused(slap, 'initial.piston_tilt=2', 'slider_clearance.nml: &initial piston_tilt = 2: must be > -1 and < 1 (rad)')
+    call refused(slap, 'initial.piston_tilt=2', 'slider_clearance.nml: &initial piston_tilt = 2: must be > -1 and < 1 (rad): '// &
+      'degrees?')
     call refused(slap, 'initial.piston_offset=0.03', 'slider_clearance.nml: &initial piston_offset = 0.03: must be shorter '// &
-      'than bore_clearance + piston_radius (m)')
+      'than bore_clearance + piston_radius = 0.026 (m): millimetres?')
     call refused(slap, 'initial.piston_tilt=0.9', 'slider_clearance.nml: &initial piston_tilt = 0.9: must not put a corner of '// &
-      'the skirt into the bore''s wall by more than piston_radius (rad)')
+      'the skirt into the bore''s wall by more than piston_radius = 0.025 (rad): degrees?')
     call refused(ideal, 'guide.law=coulomb', 'ideal.nml: --set guide.law=coulomb: &guide law = coulomb: must be one of '// &
       'ambrosio, threlfall, brown_mcphee, stribeck')
 
@@ -541,7 +546,8 @@ contains
       call read_case(file, words(:n), case, error)
       call check%that(allocated(error), 'refused: '//overrides)
       if (.not. allocated(error)) return
-      call check%equal_text(error%message(index(file, '/', back=.true.) + 1:), message, 'message')
+      error%message = replaced(error%message, file(:index(file, '/', back=.true.)), '')
+      call check%equal_text(error%message, message, 'message')
     end subroutine refused
   end subroutine refusals
 end module test_guide

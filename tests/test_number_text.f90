@@ -1,7 +1,7 @@
 !> Single numbers as text and back, compared with formatted writes and reads of the compiler; long texts of many pieces.
 module test_number_text
   use gudgeon_kinds, only: dp
-  use number_text, only: real_text, short_text
+  use number_text, only: real_text, short_text, exact_text
   use value_reader, only: read_real, read_integer, is_within
   use growing_text, only: growing_text_t
   use checks, only: checks_t
@@ -36,16 +36,26 @@ contains
     call check%equal_text(short_text(4.0_dp), '4', 'short, whole')
     call check%equal_text(short_text(-123456.4_dp), '-123456', 'short, six digits before the point')
     call check%equal_text(short_text(9.9999996_dp), '10', 'short, rounded up to the next power')
-    call check%equal_text(short_text(1.23e6_dp), '1.23E+06', 'short, large')
+    call check%equal_text(short_text(1.23e6_dp), '1.23e6', 'short, large')
     call check%equal_text(short_text(1.25e-4_dp), '0.000125', 'short, small')
-    call check%equal_text(short_text(-1e-5_dp), '-1E-05', 'short, smaller')
-    call check%equal_text(short_text(3e105_dp), '3E+105', 'short, three digits of exponent')
+    call check%equal_text(short_text(-1e-5_dp), '-1e-5', 'short, smaller')
+    call check%equal_text(short_text(3e105_dp), '3e105', 'short, three digits of exponent')
     call check%equal_text(short_text(zero), '0', 'short, zero')
+    call check%equal_text(short_text(253.612345678_dp, 9), '253.612346', 'short, nine digits')
+    call check%equal_text(short_text(0.2536_dp), '0.2536', 'short, a digit before the point')
+    call check%equal_text(exact_text(0.0508_dp), '0.0508', 'exact')
+    call check%equal_text(exact_text(250.0_dp), '250', 'exact, whole')
+    call check%equal_text(exact_text(-2e-5_dp), '-2e-5', 'exact, small')
+    call check%equal_text(exact_text(2.07e11_dp), '2.07e11', 'exact, large')
+    call check%equal_text(exact_text(523.5987755982989_dp), '523.5987755982989', 'exact, many digits')
+    call check%equal_text(exact_text(0.1_dp + 0.2_dp), '0.30000000000000004', 'exact, 17 digits')
+    call check%equal_text(exact_text(zero), '0', 'exact, zero')
   end subroutine test_texts
 
   subroutine test_random_texts(check)
     class(checks_t), intent(inout) :: check
     character(len=24) :: ten, seventeen, plain
+    character(len=:), allocatable :: wanted
     real(dp) :: value, back
     integer :: i, wrong, wrong_short, altered
     wrong = 0
@@ -58,6 +68,8 @@ contains
       if (real_text(value) /= adjustl(ten) .or. real_text(value, 17) /= adjustl(seventeen)) wrong = wrong + 1
       read (seventeen, *) back
       if (abs(back - value) > 0) altered = altered + 1
+      call read_real(exact_text(value), back, wanted)
+      if (allocated(wanted) .or. abs(back - value) > 0) altered = altered + 1
       if (abs(value) < 100 .or. abs(value) >= 999) cycle
       write (plain, '(f24.3)') value
       read (plain, *) back

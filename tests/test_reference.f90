@@ -45,8 +45,9 @@ contains
   subroutine stiffness_is_recognised(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: got
-    character(len=60) :: overrides(1)
+    character(len=60) :: overrides(2)
     integer :: i
+    overrides(2) = 'integrator.method=adams'
     do i = 4, 10, 2
       write (overrides(1), '(a,i2.2)') 'integrator.relative_tolerance=1e-', i
       got = run_case('cases/sim_I.nml', overrides)

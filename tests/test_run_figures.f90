@@ -33,8 +33,8 @@ contains
     call revolutions_have_their_peaks(check)
   end subroutine run_test_run_figures
 
-  !> Steps are shortened by contacts, by boundaries of the gas cycle and by the end of the run: the times by method, and those by
-  !> the limit of the Adams steps, add up to the simulated time, which is that of the given number of revolutions.
+  !> Steps are shortened by contacts, by boundaries of the gas cycle and by the end of the run: the times by method add up to the
+  !> simulated time, which is that of the given number of revolutions.
   subroutine all_time_is_counted_once(check, file, revolutions)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: file, revolutions
@@ -47,11 +47,6 @@ contains
       call check%relative(sum(trace%report%time_with), time, rounding, file//': times by method and phase')
       call check%that(sum(trace%report%time_with/time) <= 1 + rounding, file//': their fractions sum to no more than 1')
       call check%that(all(trace%report%time_with >= 0), file//': no time by method is negative')
-    end associate
-    if (index(file, 'sim_IV.nml') > 0) return   ! 10^6 Adams steps
-    trace = run_case(file, [character(len=long) :: 'integrator.method=adams', 'integrator.revolutions='//revolutions])
-    associate (s => trace%report%statistics, time => trace%report%figures%time)
-      call check%relative(sum(s%time_limited_by), time, rounding, file//': times by what limited the steps')
     end associate
   end subroutine all_time_is_counted_once
 

@@ -197,7 +197,7 @@ contains
     integer :: i
     do i = 1, size(files)
       trace = run_case(trim(files(i)), [character(len=long) :: 'integrator.relative_tolerance=1e-9', &
-        'integrator.revolutions=1'])
+        'integrator.revolutions=1', 'integrator.method=adams'])
       call check%close_to(trace%report%figures%max_energy_residual/trace%report%figures%max_energy, 0.0_dp, 1e-7_dp, &
         'energy residual of '//trim(files(i)))
       associate (r => trace%values(column(trace, 'energy_residual[J]'), :))
@@ -265,12 +265,12 @@ contains
   subroutine failures_name_their_place(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace
-    trace = run_case('cases/sim_I.nml', [character(len=long) :: 'integrator.max_steps=1000'])
+    trace = run_case('cases/sim_I.nml', [character(len=long) :: 'integrator.max_steps=100'])
     call check%that(allocated(trace%error), 'too many steps end a run')
     if (.not. allocated(trace%error)) return
     call check%that(index(trace%error%message, 'max_steps') > 0 .and. index(trace%error%message, 'crank angle') > 0 &
       .and. index(trace%error%message, 'phase film') > 0, 'the message names the reason, the angle and the phase')
-    call check%that(size(trace%values, 2) > 1 .and. trace%report%statistics%accepted == 1000, 'rows of a run that stops are kept')
+    call check%that(size(trace%values, 2) > 1 .and. trace%report%statistics%accepted == 100, 'rows of a run that stops are kept')
     trace = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: 'contact.youngs_modulus=1e6, 1e6'])
     call check%that(allocated(trace%error), 'a pin that leaves its bearing ends a run')
     if (.not. allocated(trace%error)) return

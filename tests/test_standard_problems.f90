@@ -151,7 +151,6 @@ contains
       call check%that(sum(s%limited_by) == s%accepted .and. sum(s%order_count) == s%accepted, 'every step is counted once')
       call check%that(s%evaluations == 2 + 2*s%accepted + s%rejected_error + s%rejected_penetration, &
         'number of evaluations with rejected steps')
-      call check%close_to(sum(s%time_limited_by), problem%t_end, 1e-12_dp, 'times by limit add up to the whole')
     end associate
   end subroutine refused_steps_leave_no_trace
 

@@ -20,8 +20,8 @@ run sweep -j 1 -o "$work/one" "$work/grid.nml"
 check "a grid is run, status $status" [ "$status" = 0 -a "$(wc -l <"$work/out")" = 1 -a ! -s "$work/err" ]
 check "a row for each run" [ "$(wc -l <"$work/one/grid.runs.csv")" = 13 ]
 check "the last parameter varies fastest" [ "$(awk -F, 'NR == 3 { print $2, $3 }' "$work/one/grid.runs.csv")" = "1.000000000E-05 200" ]
-check "every row has every column" [ "$(awk -F, '{print NF}' "$work/one/grid.runs.csv" | sort -u)" = 19 ]
-check "number of strobes" [ "$(grep -c '^7,' "$work/one/grid.strobe.csv")" = "$(awk -F, '$1 == 7 { print $19 }' "$work/one/grid.runs.csv")" ]
+check "every row has every column" [ "$(awk -F, '{print NF}' "$work/one/grid.runs.csv" | sort -u)" = 20 ]
+check "number of strobes" [ "$(grep -c '^7,' "$work/one/grid.strobe.csv")" = "$(awk -F, '$1 == 7 { print $20 }' "$work/one/grid.runs.csv")" ]
 check "number of revolutions" [ "$(grep -c '^7,' "$work/one/grid.cycles.csv")" = "$(awk -F, '$1 == 7 { print $5 }' "$work/one/grid.runs.csv")" ]
 check "no file under a temporary name" [ -z "$(find "$work/one" -name '*.part')" ]
 run -o "$work/single" -s joint.clearance=1.000000000E-05 -s initial.crank_speed=200 "$work/base.nml"
@@ -72,7 +72,7 @@ study pins <<'END'
 END
 run sweep -j 1 -o "$work/pins" "$work/pins.nml"
 check "a study of the crank pin is run, status $status" [ "$status" = 0 ]
-check "every row with a crank pin has every column" [ "$(awk -F, '{print NF}' "$work/pins/pins.runs.csv" | sort -u)" = 25 ]
+check "every row with a crank pin has every column" [ "$(awk -F, '{print NF}' "$work/pins/pins.runs.csv" | sort -u)" = 26 ]
 check "every revolution with a crank pin has every column" [ "$(awk -F, '{print NF}' "$work/pins/pins.cycles.csv" | sort -u)" = 17 ]
 run -q -o "$work/single" -s crank_pin.joint.clearance=1e-4 "$work/both.nml"
 named() { awk -F, -v row="$2" -v name="$3" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) k = i } NR == row + 1 { print $k }' "$1"; }
@@ -222,7 +222,7 @@ END
 run sweep -j 1 -o "$work/periods" -s run.until=periodic -s output.window=last_period -s run.lyapunov_revolutions=5 \
   -s integrator.method=auto "$work/periods.nml"
 check "runs until the motion is periodic, status $status" [ "$status" = 0 ]
-check "every row has every column" [ "$(awk -F, '{print NF}' "$work/periods/periods.runs.csv" | sort -u)" = 20 ]
+check "every row has every column" [ "$(awk -F, '{print NF}' "$work/periods/periods.runs.csv" | sort -u)" = 21 ]
 for row in 1 2; do
   check "run $row: period of one revolution" [ "$(named "$work/periods/periods.runs.csv" $row 'period_revolutions[-]')" = 1 ]
   check "run $row: negative Lyapunov exponent" awk -v a="$(named "$work/periods/periods.runs.csv" $row 'lyapunov_exponent[1/revolution]')" \
@@ -246,7 +246,7 @@ same "continued" "$work/torn"
 run sweep -o "$work/torn" "$work/grid.nml"
 check "nothing is run twice" grep -q '12 runs, 12 of them already done; [^;]*csv$' "$work/out"
 same "run again" "$work/torn"
-run sweep -o "$work/torn" -a standard "$work/grid.nml"
+run sweep -o "$work/torn" -a draft "$work/grid.nml"
 check "results of another base case are refused, status $status" [ "$status" = 5 ]
 check "the message about another base case names --fresh" grep -q 'grid.runs.csv: belongs to another study.*--fresh' "$work/err"
 run sweep -o "$work/torn" -s initial.crank_angle_deg=10 --fresh "$work/grid.nml"

@@ -240,7 +240,7 @@ def warnings(run: Run) -> list[str]:
     status = run.summary.get("status", ("unknown", ""))[0]
     if status != "done":
         found.append(f"The run did not end as requested: {status}.")
-    for prefix, at in (("", ""), ("crank_pin_", " at the crank pin")):
+    for prefix, place, at in (("", "", ""), ("crank_pin_", "crank_pin.", " at the crank pin")):
         contacts = number(f"{prefix}contacts") or 0
         if (beyond := number(f"{prefix}impacts_beyond_validity") or 0) > 0:
             found.append(
@@ -251,18 +251,24 @@ def warnings(run: Run) -> list[str]:
             found.append(
                 f"{deep:.0f} of {contacts:.0f} contacts{at} penetrated deeper than the contact geometry is valid for."
             )
+        clearance = float(run.parameter(f"{place}joint", "clearance", 0.0)) if f"{prefix}film_thickness" in run else 0.0
+        if clearance and (deepest := number(f"{prefix}max_penetration") or 0) > 0.1 * clearance:
+            found.append(
+                f"The deepest penetration{at}, {1e6 * deepest:.3g} µm, is {deepest / clearance:.2g} clearances; contact "
+                "laws assume that it is small."
+            )
+        film, rough = (run.case.get(f"{place}{group}", run.case.get(group)) for group in ("lubrication", "asperities"))
+        if film and not rough and clearance and 0 < (number(f"{prefix}min_film_thickness") or 0) < 1e-6:
+            found.append(
+                f"The film{at} gets as thin as {1e6 * number(f'{prefix}min_film_thickness'):.3g} µm, the order of surface "
+                "roughness, which the film law neglects."
+            )
+        if abs(change := number(f"{prefix}film_thickness_change") or 0) > 0.05:
+            found.append(
+                f"The film{at} has not settled: its smallest thickness changed by {100 * abs(change):.2g} % in the last cycle."
+            )
     if (residual := number("max_energy_residual_relative") or 0) > 1e-6:
         found.append(f"The energy residual is {residual:.1e} of the energy: use a smaller tolerance.")
-    if run.clearance and (deepest := number("max_penetration") or 0) > 0.1 * run.clearance:
-        found.append(
-            f"The deepest penetration, {1e6 * deepest:.3g} µm, is {deepest / run.clearance:.2g} clearances; contact "
-            "laws assume that it is small."
-        )
-    if run.parameter("lubrication", "law") and run.clearance and 0 < (number("min_film_thickness") or 0) < 1e-6:
-        found.append(
-            f"The film gets as thin as {1e6 * number('min_film_thickness'):.3g} µm, the order of surface roughness, "
-            "which the film law neglects."
-        )
     if (
         run.parameter("lubrication", "law") == "oscillating_film"
         and (share := number("contact_time_fraction") or 0) > 0.5

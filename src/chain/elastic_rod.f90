@@ -79,18 +79,22 @@ contains
   subroutine parameters(self, list)
     class(elastic_rod_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('youngs_modulus', self%youngs_modulus, 'Young''s modulus of the rod', 'Pa', '> 0', default='207.0e9')
-    call list%add('section_area', self%section_area, 'cross-sectional area of the shank', 'm^2', '> 0', example='3.0e-4')
+    call list%add('youngs_modulus', self%youngs_modulus, 'Young''s modulus of the rod', 'Pa', '> 0', default='207.0e9', &
+      usual='1e9 to 1e12')
+    call list%add('section_area', self%section_area, 'cross-sectional area of the shank', 'm^2', '> 0', example='3.0e-4', &
+      usual='1e-7 to 1')
     call list%add('section_inertia', self%section_inertia, 'second moment of area for bending in the plane of motion', 'm^4', &
-      '> 0', example='1.5e-8')
+      '> 0', example='1.5e-8', usual='1e-14 to 0.1')
     call list%add('transverse_modes', self%n_bending, 'number of bending modes', '>= 0 and <= 8', '2')
     call list%add('axial_shapes', self%n_axial, &
       'number of axial shapes; 0: no stretching; 1 to 3 miss most of the waves of an impact', '>= 0 and <= 8', '4')
     call list%add('shank_mass', self%shank_mass, &
-      'mass of the uniform elastic shank; 0: the largest that rod_mass and rod_com allow', 'kg', '> 0', default='0.0')
-    call list%add('damping_ratio', self%damping_ratio, 'damping ratio of each bending mode', range='>= 0 and < 1', default='0.01')
+      'mass of the uniform elastic shank; 0: the largest that rod_mass and rod_com allow', 'kg', '> 0', default='0.0', &
+      usual='1e-4 to 1e4')
+    call list%add('damping_ratio', self%damping_ratio, 'damping ratio of each bending mode', range='>= 0 and < 1', default='0.01', &
+      usual='0 to 0.2')
     call list%add('axial_damping_ratio', self%axial_damping_ratio, &
-      'damping ratio of each axial shape', range='>= 0 and < 1', default='0.01')
+      'damping ratio of each axial shape', range='>= 0 and < 1', default='0.01', usual='0 to 0.2')
   end subroutine parameters
 
   !> Mass of the largest uniform shank with which no point mass is negative [kg].

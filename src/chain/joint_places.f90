@@ -4,7 +4,7 @@ module joint_places
   use chain_motion, only: crank_pin, piston_pin, body_crank, body_big_end, body_small_end, body_piston
   implicit none
   private
-  public :: place_t, places, n_places, in_order, name_prefix, crank_pin, piston_pin
+  public :: place_t, places, n_places, in_order, name_prefix, joint_group, crank_pin, piston_pin
 
   !> One place: its names, and how its joint enters the chain. The eccentricity of the pin in its bearing is that of the pin of the
   !> chain, the joint's force on its journal acts on the body nearer to the crank, and the opposite force on the other; the other
@@ -33,4 +33,12 @@ contains
     character(len=:), allocatable :: prefix
     prefix = trim(places(place)%prefix)
   end function name_prefix
+
+  !> Name of the group of a place's joint in cases.
+  pure function joint_group(place) result(group)
+    integer, intent(in) :: place   !! index in `places`
+    character(len=:), allocatable :: group
+    group = 'joint'
+    if (place /= in_order(1)) group = trim(places(place)%name)//'.joint'
+  end function joint_group
 end module joint_places

@@ -29,9 +29,9 @@ contains
     class(adams_impact_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%add('damping', self%full_damping, &
-      'coefficient of the damper that acts beside the elastic force', 'N s/m', '>= 0', example='100.0')
+      'coefficient of the damper that acts beside the elastic force', 'N s/m', '>= 0', example='100.0', usual='0 to 1e7')
     call list%add('full_damping_depth', self%full_damping_depth, 'penetration above which the damper acts fully', 'm', '> 0', &
-      example='1.0e-6')
+      example='1.0e-6', usual='1e-9 to 1e-3')
   end subroutine parameters
 
   subroutine prepare(self, bearing)

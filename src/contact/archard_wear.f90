@@ -38,7 +38,7 @@ contains
     class(wear_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%add('rate', self%rate, 'specific wear rates of pin and bore: volume per normal force and sliding path', &
-      'm^2/N', '>= 0 and <= 1e-6', default='0.0', example='1.0e-15')
+      'm^2/N', '>= 0 and <= 1e-6', default='0.0', example='1.0e-15', usual='1e-20 to 1e-9')
     call list%add('bins', self%bins, 'number of arcs of each surface in NAME.wear.csv', '>= 4 and <= 3600', '360')
     call list%word('bore', self%bore, 'round, worn', 'round', &
       'round: wear is only counted; worn: the worn bore acts in the contact (geometry = ''winkler'')')
@@ -46,10 +46,10 @@ contains
       '>= 1 and <= 1000000', '1')
     call list%add('extrapolation', self%extrapolation, &
       'factor by which the wear between two changes is multiplied, as if it had lasted so much longer', &
-      range='>= 1', default='1.0')
+      range='>= 1', default='1.0', usual='1 to 1e6')
     call list%add('greatest_step_ratio', self%greatest_step_ratio, &
       'largest change of depth over the clearance; also half of its limit over the mean penetration. Reduces extrapolation', &
-      range='> 0 and <= 1', default='0.05')
+      range='> 0 and <= 1', default='0.05', usual='1e-3 to 0.2')
   end subroutine parameters
 
   !> Begin with a surface that has not worn.

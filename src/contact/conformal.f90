@@ -47,7 +47,7 @@ contains
     call self%material_parameters(list)
     call list%add('housing_compliance', self%compliance, &
       'compliance of pin and housing outside the contact; the default agrees with Johnson at small loads', &
-      range='>= -0.5', default='0.386294')
+      range='>= -0.5', default='0.386294', usual='0 to 10')
   end subroutine parameters
 
   subroutine prepare(self, bearing)

@@ -67,11 +67,13 @@ contains
   subroutine material_parameters(self, list)
     class(contact_geometry_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('youngs_modulus', self%youngs_modulus, 'Young''s moduli of pin and bearing', 'Pa', '> 0', default='207.0e9')
+    call list%add('youngs_modulus', self%youngs_modulus, 'Young''s moduli of pin and bearing', 'Pa', '> 0', default='207.0e9', &
+      usual='1e8 to 1e12')
     call list%add('poissons_ratio', self%poissons_ratio, &
-      'Poisson''s ratios of pin and bearing', range='>= 0 and <= 0.5', default='0.3')
+      'Poisson''s ratios of pin and bearing', range='>= 0 and <= 0.5', default='0.3', usual='0.1 to 0.5')
     call list%add('density', self%density, &
-      'densities of pin and bearing; only for the limit of validity of the contact law', 'kg/m^3', '> 0', default='7850.0')
+      'densities of pin and bearing; only for the limit of validity of the contact law', 'kg/m^3', '> 0', default='7850.0', &
+      usual='500 to 2.5e4')
   end subroutine material_parameters
 
   !> Elastic energy of the contact at a penetration [J]: the integral of the elastic force by Gauss's formula with 16 points over

@@ -27,10 +27,11 @@ contains
   subroutine parameters(self, list)
     class(hertz_sphere_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('exponent', self%exponent, 'exponent of the penetration', range='>= 1', default='1.5', only_here=.true.)
+    call list%add('exponent', self%exponent, 'exponent of the penetration', range='>= 1', default='1.5', only_here=.true., &
+      usual='1 to 2')
     call self%material_parameters(list)
     call list%add('stiffness', self%given_stiffness, 'contact stiffness; 0: from geometry and materials', 'N/m^exponent', '> 0', &
-      default='0.0', only_here=.true.)
+      default='0.0', only_here=.true., usual='1e5 to 1e14')
   end subroutine parameters
 
   !> The stiffness given in the case, or Hertz's from (4.2) and (4.3), both corrected: K = 4/(3(sigma_i + sigma_j)) sqrt(Rb Rj/(Rb -

@@ -5,6 +5,7 @@
 !> e of the case, and therefore in the difference between e* and e.
 module restitution_law
   use gudgeon_kinds, only: dp
+  use number_text, only: short_text
   use gudgeon_parameters, only: parameter_list_t
   use gudgeon_bearing, only: bearing_t
   use contact_law, only: contact_law_t
@@ -37,12 +38,12 @@ contains
     class(restitution_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%add('restitution', self%restitution, 'coefficient of restitution', range='>= 0 and <= 1', default='0.9', &
-      family='loss')
+      family='loss', usual='0 to 1')
     call list%add('dissipation', self%dissipation, &
       'factor a in force = elastic force (1 + a rate), instead of restitution; 0: from restitution', &
-      's/m', '> 0', default='0.0', family='loss')
+      's/m', '> 0', default='0.0', family='loss', usual='1e-3 to 100')
     call list%add('least_impact_speed', self%least_impact_speed, 'impacts slower than this are damped as if they had this speed', &
-      'm/s', '>= 1e-9 and <= 1', default='1.0e-5')
+      'm/s', '>= 1e-9 and <= 1', default='1.0e-5', usual='1e-7 to 1e-3')
   end subroutine parameters
 
   subroutine prepare(self, bearing)
@@ -57,13 +58,11 @@ contains
   pure subroutine conflict(self, key, wanted)
     class(restitution_law_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
-    character(len=4) :: least
     key = ''
     wanted = ''
     if (self%restitution >= self%least_restitution() .or. self%dissipation > 0) return
     key = 'restitution'
-    write (least, '(f4.2)') self%least_restitution()
-    wanted = 'must be >= '//least//' with law = '''//trim(self%name)//''''
+    wanted = 'must be >= '//short_text(self%least_restitution())//' with law = '''//trim(self%name)//''''
   end subroutine conflict
 
   pure real(dp) function zero()

@@ -37,11 +37,13 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call self%material_parameters(list)
     call list%add('bedding_modulus', self%given_modulus, &
-      'pressure per penetration depth; 0: from the data of the liner', 'Pa/m', '> 0', default='0.0')
-    call list%add('liner_modulus', self%liner_modulus, 'Young''s modulus of a thin liner', 'Pa', '> 0', default='0.0')
+      'pressure per penetration depth; 0: from the data of the liner', 'Pa/m', '> 0', default='0.0', usual='1e9 to 1e16')
+    call list%add('liner_modulus', self%liner_modulus, 'Young''s modulus of a thin liner', 'Pa', '> 0', default='0.0', &
+      usual='1e8 to 1e12')
     call list%add('liner_poissons_ratio', self%liner_poissons_ratio, &
-      'Poisson''s ratio of the liner', range='>= 0 and <= 0.49', default='0.0')
-    call list%add('liner_thickness', self%liner_thickness, 'thickness of the liner', 'm', '> 0', default='0.0')
+      'Poisson''s ratio of the liner', range='>= 0 and <= 0.49', default='0.0', usual='0.1 to 0.49')
+    call list%add('liner_thickness', self%liner_thickness, 'thickness of the liner', 'm', '> 0', default='0.0', &
+      usual='1e-5 to 1e-2')
   end subroutine parameters
 
   !> Report that neither the stiffness of the foundation nor the liner is given, or both.

@@ -49,20 +49,22 @@ contains
     class(asperities_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%add('roughness', self%roughness, 'combined roughness of both surfaces, the root of the sum of squares', 'm', '> 0', &
-      example='0.4e-6')
+      example='0.4e-6', usual='1e-8 to 1e-5')
     call list%add('density_product', self%density_product, 'asperity density times asperity radius times roughness', &
-      range='> 0 and <= 1', default='0.05')
+      range='> 0 and <= 1', default='0.05', usual='0.01 to 0.1')
     call list%add('sharpness', self%sharpness, 'roughness over asperity radius', range='> 0 and <= 1', &
-      default='1.0e-2')
+      default='1.0e-2', usual='1e-4 to 0.1')
     call list%word('integral', self%integral, 'exact, fit', 'exact', &
       'Greenwood-Tripp integral; fit: the common approximation (4 - h/s)^6.804')
-    call list%add('youngs_modulus', self%youngs_modulus, 'Young''s moduli of pin and bearing', 'Pa', '> 0', default='207.0e9')
+    call list%add('youngs_modulus', self%youngs_modulus, 'Young''s moduli of pin and bearing', 'Pa', '> 0', default='207.0e9', &
+      usual='1e8 to 1e12')
     call list%add('poissons_ratio', self%poissons_ratio, &
-      'Poisson''s ratios of pin and bearing', range='>= 0 and <= 0.5', default='0.3')
-    call list%add('coefficient', self%coefficient, 'coefficient of boundary friction', range='>= 0 and <= 10', default='0.1')
+      'Poisson''s ratios of pin and bearing', range='>= 0 and <= 0.5', default='0.3', usual='0.1 to 0.5')
+    call list%add('coefficient', self%coefficient, 'coefficient of boundary friction', range='>= 0 and <= 10', default='0.1', &
+      usual='1e-3 to 1')
     call list%add('transition_speed', self%transition_speed, &
       'sliding speed at which friction reaches 76 % of its full value', 'm/s', &
-      '> 0', default='0.01')
+      '> 0', default='0.01', usual='1e-6 to 1')
   end subroutine parameters
 
   !> Prepare for a bearing.

@@ -103,7 +103,7 @@ contains
     class(film_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%add('viscosity', self%viscosity, 'dynamic viscosity; required unless viscosity_law gives it', 'Pa s', '> 0', &
-      default='0.0', example='0.0117')
+      default='0.0', example='0.0117', usual='1e-4 to 1')
   end subroutine add_viscosity
 
   !> Declare the parameter that limits the film thickness, for all laws that can do so.
@@ -112,7 +112,7 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%add('least_film_ratio', self%least_film_ratio, &
       'smallest thickness of an oscillating or weighted film, as a fraction of the clearance', range='>= 0.000001 and <= 0.5', &
-      default='0.001')
+      default='0.001', usual='1e-5 to 0.1')
   end subroutine add_least_film
 
   !> Moment of the film on the pin about the pin's centre [N m] from the shear u = U y/h + y (y - h) p'/(2 mu) of a film whose

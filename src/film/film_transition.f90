@@ -41,7 +41,7 @@ contains
       'from film to contact; switch: at the clearance; weighted: both share the load over transition_depth')
     call list%add('transition_depth', self%depth, &
       'weighted: penetration above which the contact alone carries the load', 'm', '> 0', &
-      default='0.0')
+      default='0.0', usual='1e-9 to 1e-4')
     call list%word('transition_shape', self%shape, 'linear, smooth', 'linear', &
       'weighted: growth of the share of the contact with the penetration')
   end subroutine parameters

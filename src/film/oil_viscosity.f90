@@ -38,17 +38,17 @@ contains
     character(len=*), parameter :: temperatures = '>= 200 and <= 700'
     call list%word('viscosity_law', self%law, 'given, walther, vogel', 'given', &
       'given: by the key viscosity; walther (ASTM D341), vogel: at the temperature of the film')
-    call list%add('temperature', self%temperature, 'temperature of the film', 'K', temperatures, default='0.0')
+    call list%add('temperature', self%temperature, 'temperature of the film', 'K', temperatures, default='0.0', usual='250 to 450')
     call list%add('known_temperatures', self%known_temperatures, &
       'two temperatures at which the viscosity of the oil is known, such as 313.15, 373.15', 'K', &
-      temperatures, default='0.0')
+      temperatures, default='0.0', usual='250 to 450')
     call list%add('known_viscosities', self%known_viscosities, 'kinematic viscosities at these two temperatures', 'm^2/s', '> 0', &
-      default='0.0')
+      default='0.0', usual='1e-7 to 1e-2')
     call list%add('density', self%density, &
-      'density of the oil at 288.15 K (15 degrees C)', 'kg/m^3', '>= 500 and <= 2000', default='0.0')
+      'density of the oil at 288.15 K (15 degrees C)', 'kg/m^3', '>= 500 and <= 2000', default='0.0', usual='600 to 1500')
     call list%add('vogel_temperature', self%vogel_temperature, &
       'vogel: temperature at which the law has infinite viscosity', 'K', '>= 0', &
-      default='178.15')
+      default='178.15', usual='100 to 250')
   end subroutine parameters
 
   !> Whether the viscosity is computed from an oil and a temperature.

@@ -44,7 +44,8 @@ contains
       'form of the film force')
     call self%add_viscosity(list)
     call list%add('kinematic_viscosity', self%kinematic_viscosity, &
-      'kinematic viscosity; required unless viscosity_law gives it', 'm^2/s', '> 0', default='0.0', example='1.38e-5')
+      'kinematic viscosity; required unless viscosity_law gives it', 'm^2/s', '> 0', default='0.0', example='1.38e-5', &
+      usual='1e-7 to 1e-3')
     call list%add('quadrature_points', self%quadrature_points, &
       'points of the integral round the film; 0: chosen from the tolerance', '>= 4 and <= 1000000', &
       default='0')

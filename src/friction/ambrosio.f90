@@ -1,6 +1,7 @@
 !> Coulomb friction with a linear ramp at small sliding speeds, after Ambrosio (4.9, 4.10).
 module ambrosio
   use gudgeon_kinds, only: dp
+  use number_text, only: short_text
   use gudgeon_parameters, only: parameter_list_t
   use friction_law, only: friction_law_t
   implicit none
@@ -26,15 +27,16 @@ contains
     class(ambrosio_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call self%add_coefficient(list)
-    call list%add('v0', self%v0, 'sliding speed below which there is no friction', 'm/s', '>= 0', example='0.001')
-    call list%add('v1', self%v1, 'sliding speed above which friction is full', 'm/s', '>= 0', example='0.010')
+    call list%add('v0', self%v0, 'sliding speed below which there is no friction', 'm/s', '>= 0', example='0.001', &
+      usual='1e-6 to 0.1')
+    call list%add('v1', self%v1, 'sliding speed above which friction is full', 'm/s', '>= 0', example='0.010', usual='1e-6 to 1')
   end subroutine parameters
 
   pure subroutine conflict(self, key, wanted)
     class(ambrosio_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
     key = ''
-    wanted = 'must be >= v0'
+    wanted = 'must be >= v0 = '//short_text(self%v0)
     if (self%v1 < self%v0) key = 'v1'
   end subroutine conflict
 

@@ -9,6 +9,7 @@
 !> 3, 14 and 9 % less; it is not offered.
 module bristle_law
   use gudgeon_kinds, only: dp
+  use number_text, only: short_text
   use gudgeon_parameters, only: parameter_list_t
   use trace_row, only: trace_row_t
   use static_friction, only: static_friction_t
@@ -63,7 +64,7 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call self%add_coefficient(list)
     call list%add('bristle_stiffness', self%bristle_stiffness, &
-      'stiffness of the bristles: friction over normal force per deflection', '1/m', '> 0', example='2.0e4')
+      'stiffness of the bristles: friction over normal force per deflection', '1/m', '> 0', example='2.0e4', usual='100 to 1e8')
   end subroutine add_common
 
   !> Declare the parameters of static friction and of its dependence on the speed.
@@ -73,9 +74,9 @@ contains
     call self%add_static(list)
     call self%add_stribeck_speed(self%stribeck_speed, list)
     call list%add('bristle_damping', self%bristle_damping, &
-      'damping of the bristles: friction over normal force per rate of deflection', 's/m', '>= 0', default='0.0')
+      'damping of the bristles: friction over normal force per rate of deflection', 's/m', '>= 0', default='0.0', usual='0 to 1e4')
     call list%add('damping_speed', self%damping_speed, 'sliding speed over which bristle_damping decreases; 0: it is constant', &
-      'm/s', '>= 0', default='0.0')
+      'm/s', '>= 0', default='0.0', usual='1e-6 to 1')
     call self%add_viscous(list)
   end subroutine add_sliding
 
@@ -93,7 +94,7 @@ contains
     else if (largest*self%bristle_damping*self%damping_speed >= static) then
       key = 'damping_speed'
       wanted = 'bristle_damping gives more than the static friction at touch-down: must be < '// &
-        'static_coefficient/(0.43 bristle_damping)'
+        'static_coefficient/(0.43 bristle_damping) = '//short_text(static/(largest*self%bristle_damping))
     end if
   end subroutine conflict
 

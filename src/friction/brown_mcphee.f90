@@ -26,7 +26,7 @@ contains
     call self%add_coefficient(list)
     call self%add_static(list)
     call list%add('transition_speed', self%transition_speed, 'sliding speed over which friction changes its sign', 'm/s', '> 0', &
-      example='0.010')
+      example='0.010', usual='1e-6 to 1')
     call self%add_viscous(list)
   end subroutine parameters
 

@@ -27,7 +27,8 @@ contains
     call self%add_common(list)
     call self%add_sliding(list)
     call list%add('breakaway_ratio', self%breakaway_ratio, &
-      'break-away deflection of the bristles over their deflection in steady sliding', range='>= 0 and < 1', default='0.7')
+      'break-away deflection of the bristles over their deflection in steady sliding', range='>= 0 and < 1', default='0.7', &
+      usual='0.1 to 1')
   end subroutine parameters
 
   pure real(dp) function bristle_rate(self, v, z)

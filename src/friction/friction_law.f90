@@ -138,6 +138,7 @@ contains
   subroutine add_coefficient(self, list)
     class(friction_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('coefficient', self%coefficient, 'coefficient of sliding friction', range='>= 0', example='0.03')
+    call list%add('coefficient', self%coefficient, 'coefficient of sliding friction', range='>= 0', example='0.03', &
+      usual='1e-3 to 1')
   end subroutine add_coefficient
 end module friction_law

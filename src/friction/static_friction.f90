@@ -1,6 +1,7 @@
 !> Common part of the friction laws in which static friction exceeds sliding friction.
 module static_friction
   use gudgeon_kinds, only: dp
+  use number_text, only: short_text
   use gudgeon_parameters, only: parameter_list_t
   use friction_law, only: friction_law_t
   implicit none
@@ -38,7 +39,7 @@ contains
     class(static_friction_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
     key = ''
-    wanted = 'must be >= coefficient, or 0: as coefficient'
+    wanted = 'must be >= coefficient = '//short_text(self%coefficient)//', or 0: as coefficient'
     if (self%holding_coefficient() < self%coefficient) key = 'static_coefficient'
   end subroutine static_conflict
 
@@ -53,7 +54,7 @@ contains
     class(static_friction_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%add('static_coefficient', self%static_coefficient, 'coefficient of friction at rest; 0: equal to coefficient', &
-      range='>= 0', default='0.0')
+      range='>= 0', default='0.0', usual='1e-3 to 1.5')
   end subroutine add_static
 
   !> Declare the viscous coefficient.
@@ -61,7 +62,7 @@ contains
     class(static_friction_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%add('viscous_coefficient', self%viscous_coefficient, 'viscous part: friction over normal force per sliding speed', &
-      's/m', '>= 0', default='0.0')
+      's/m', '>= 0', default='0.0', usual='0 to 10')
   end subroutine add_viscous
 
   !> Declare the speed scale of the decrease from static to sliding friction.
@@ -69,6 +70,7 @@ contains
     real(dp), intent(inout) :: stribeck_speed   !! [m/s]
     class(parameter_list_t), intent(inout) :: list
     call list%add('stribeck_speed', stribeck_speed, &
-      'sliding speed at which the static part of the friction has mostly vanished (Stribeck)', 'm/s', '> 0', example='0.010')
+      'sliding speed at which the static part of the friction has mostly vanished (Stribeck)', 'm/s', '> 0', example='0.010', &
+      usual='1e-6 to 1')
   end subroutine add_stribeck_speed
 end module static_friction

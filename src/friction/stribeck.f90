@@ -29,9 +29,10 @@ contains
     call self%add_coefficient(list)
     call self%add_static(list)
     call self%add_stribeck_speed(self%stribeck_speed, list)
-    call list%add('stribeck_exponent', self%stribeck_exponent, 'exponent of the Stribeck curve', '', '>= 0.1 and <= 10', '2.0')
+    call list%add('stribeck_exponent', self%stribeck_exponent, 'exponent of the Stribeck curve', '', '>= 0.1 and <= 10', '2.0', &
+      usual='0.5 to 3')
     call list%add('transition_speed', self%transition_speed, 'sliding speed over which friction changes its sign', 'm/s', '> 0', &
-      example='0.010')
+      example='0.010', usual='1e-6 to 1')
     call self%add_viscous(list)
   end subroutine parameters
 

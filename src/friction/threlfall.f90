@@ -23,7 +23,7 @@ contains
     class(threlfall_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call self%add_coefficient(list)
-    call list%add('v1', self%v1, 'sliding speed above which friction is full', 'm/s', '>= 0', example='0.010')
+    call list%add('v1', self%v1, 'sliding speed above which friction is full', 'm/s', '>= 0', example='0.010', usual='1e-6 to 1')
   end subroutine parameters
 
   pure subroutine conflict(self, key, wanted)

@@ -2,6 +2,7 @@
 !> re-expansion of the gas in the dead space.
 module compressor
   use gudgeon_kinds, only: dp
+  use number_text, only: short_text
   use gudgeon_errors, only: error_t
   use gudgeon_parameters, only: parameter_list_t
   use cylinder, only: new_cylinder
@@ -21,6 +22,8 @@ module compressor
     procedure :: parameters
     procedure :: conflict
     procedure :: prepare
+    procedure :: fastest_piston
+    procedure :: description
   end type compressor_t
 
 contains
@@ -29,13 +32,14 @@ contains
     class(compressor_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call self%add_bore(list)
-    call list%add('dead_space', self%dead_space, 'clearance volume over displacement', range='>= 1e-4 and <= 100', example='0.05')
+    call list%add('dead_space', self%dead_space, 'clearance volume over displacement', range='>= 1e-4 and <= 100', example='0.05', &
+      usual='5e-3 to 0.5')
     call list%add('suction_pressure', self%suction_pressure, &
-      'pressure while the suction valve is open', 'Pa', '> 0', default='101325.0')
+      'pressure while the suction valve is open', 'Pa', '> 0', default='101325.0', usual='2e4 to 1e7')
     call list%add('discharge_pressure', self%discharge_pressure, 'pressure while the discharge valve is open', 'Pa', '> 0', &
-      example='4.0e5')
+      example='4.0e5', usual='5e4 to 1e8')
     call list%add('polytropic_exponent', self%polytropic_exponent, 'exponent n of p V^n = const. while both valves are closed', &
-      range='>= 0.1 and <= 10', example='1.3')
+      range='>= 0.1 and <= 10', example='1.3', usual='1 to 1.67')
     call self%add_crankcase_pressure(list)
   end subroutine parameters
 
@@ -43,7 +47,7 @@ contains
     class(compressor_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
     key = ''
-    wanted = 'must be > suction_pressure'
+    wanted = 'must be > suction_pressure = '//short_text(self%suction_pressure)
     if (self%discharge_pressure <= self%suction_pressure) key = 'discharge_pressure'
   end subroutine conflict
 
@@ -64,4 +68,19 @@ contains
     gas%cylinder = valves%cylinder
     gas%crankcase_pressure = self%crankcase_pressure
   end subroutine prepare
+
+  pure real(dp) function fastest_piston(self)
+    class(compressor_t), intent(in) :: self
+    associate (unused => self)
+    end associate
+    fastest_piston = 12
+  end function fastest_piston
+
+  function description(self) result(text)
+    class(compressor_t), intent(in) :: self
+    character(len=:), allocatable :: text
+    real(dp), parameter :: bar = 1e5_dp   !! [Pa]
+    text = trim(self%name)//', '//short_text(self%suction_pressure/bar, 4)//' to '//short_text(self%discharge_pressure/bar, 4)// &
+      ' bar, dead space '//short_text(100*self%dead_space, 3)//' %'
+  end function description
 end module compressor

@@ -1,6 +1,7 @@
 !> The four-stroke cycle: 720 degrees long, with the cylinder closed from 180 to 540 degrees.
 module four_stroke
   use gudgeon_kinds, only: dp
+  use number_text, only: short_text
   use gudgeon_constants, only: pi
   use wiebe_law, only: wiebe_law_t
   implicit none
@@ -19,7 +20,7 @@ contains
     class(four_stroke_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
     key = ''
-    wanted = 'start_deg + duration_deg must be <= 540, where the cylinder opens'
+    wanted = 'must be <= 540 - start_deg = '//short_text(540 - self%start_deg)//': the cylinder opens at 540'
     if (self%start_deg + self%duration_deg > 540) key = 'duration_deg'
   end subroutine conflict
 

@@ -13,6 +13,9 @@ module gas_law
     real(dp) :: crankcase_pressure = 101325     !! below the piston [Pa]
   contains
     procedure :: revolutions => one_revolution
+    procedure :: fastest_piston
+    procedure :: heat_of_cycle
+    procedure :: description
     procedure :: add_bore
     procedure :: add_crankcase_pressure
     procedure(prepare), deferred :: prepare
@@ -40,16 +43,39 @@ contains
     revolutions = 1
   end function one_revolution
 
+  !> Mean piston speed above which no such machine is built [m/s].
+  pure real(dp) function fastest_piston(self)
+    class(gas_law_t), intent(in) :: self
+    associate (unused => self)
+    end associate
+    fastest_piston = 40
+  end function fastest_piston
+
+  !> Heat released in a cycle [J]; 0: none is known.
+  pure real(dp) function heat_of_cycle(self)
+    class(gas_law_t), intent(in) :: self
+    associate (unused => self)
+    end associate
+    heat_of_cycle = 0
+  end function heat_of_cycle
+
+  !> The gas in a few words, for the user.
+  function description(self) result(text)
+    class(gas_law_t), intent(in) :: self
+    character(len=:), allocatable :: text
+    text = trim(self%name)
+  end function description
+
   subroutine add_bore(self, list)
     class(gas_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('bore', self%bore, 'cylinder diameter', 'm', '>= 1e-6 and <= 1e3', example='0.070')
+    call list%add('bore', self%bore, 'cylinder diameter', 'm', '>= 1e-6 and <= 1e3', example='0.070', usual='5e-3 to 1.5')
   end subroutine add_bore
 
   subroutine add_crankcase_pressure(self, list)
     class(gas_law_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%add('crankcase_pressure', self%crankcase_pressure, &
-      'pressure on the crank side of the piston', 'Pa', '> 0', default='101325.0')
+      'pressure on the crank side of the piston', 'Pa', '> 0', default='101325.0', usual='2e4 to 3e6')
   end subroutine add_crankcase_pressure
 end module gas_law

@@ -3,6 +3,7 @@ module measured_pressure
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree
   use gudgeon_errors, only: error_t
+  use text_tools, only: integer_text
   use gudgeon_parameters, only: parameter_list_t
   use measured_curve, only: measured_curve_t
   use monotone_cubic, only: new_periodic_cubic
@@ -24,6 +25,7 @@ module measured_pressure
     procedure :: parameters
     procedure :: prepare
     procedure :: revolutions
+    procedure :: description
   end type measured_pressure_t
 
 contains
@@ -37,11 +39,11 @@ contains
     call list%add('period_deg', self%period_deg, &
       'period of the table: 720 (four-stroke) or 360 degrees', '>= 360 and <= 720', '720')
     call list%add('offset_deg', self%offset_deg, &
-      'crank angle of the simulation at angle 0 of the table', 'degrees', '>= -1080 and <= 1080', '0.0')
+      'crank angle of the simulation at angle 0 of the table', 'degrees', '>= -1080 and <= 1080', '0.0', usual='0 to 1080')
     call self%add_bore(list)
     call list%add('compression_ratio', self%compression_ratio, &
       'largest over smallest volume, for the column cylinder_volume only; 0: it shows the swept volume', &
-      range='> 1 and <= 1000', default='0.0')
+      range='> 1 and <= 1000', default='0.0', usual='2 to 30')
     call self%add_crankcase_pressure(list)
   end subroutine parameters
 
@@ -65,4 +67,10 @@ contains
     class(measured_pressure_t), intent(in) :: self
     revolutions = self%period_deg/360
   end function revolutions
+
+  function description(self) result(text)
+    class(measured_pressure_t), intent(in) :: self
+    character(len=:), allocatable :: text
+    text = 'measured pressure, repeated every '//integer_text(self%period_deg)//' degrees'
+  end function description
 end module measured_pressure

@@ -2,6 +2,7 @@
 !> the firing dead centre to the same angle after it.
 module two_stroke
   use gudgeon_kinds, only: dp
+  use number_text, only: short_text
   use gudgeon_constants, only: two_pi, degree
   use gudgeon_parameters, only: parameter_list_t
   use wiebe_law, only: wiebe_law_t
@@ -25,7 +26,7 @@ contains
     call self%wiebe_parameters(list)
     call list%add('port_opens_deg', self%port_opens_deg, &
       'crank angle after the firing dead centre at which the ports open; they close as much before it', 'degrees', &
-      '> 0 and <= 180', example='105.0')
+      '> 0 and <= 180', example='105.0', usual='70 to 150')
   end subroutine parameters
 
   pure subroutine conflict(self, key, wanted)
@@ -35,10 +36,11 @@ contains
     wanted = ''
     if (self%start_deg < 360 - self%port_opens_deg) then
       key = 'start_deg'
-      wanted = 'must be >= 360 - port_opens_deg, where the ports close'
+      wanted = 'must be >= 360 - port_opens_deg = '//short_text(360 - self%port_opens_deg)//', where the ports close'
     else if (self%start_deg + self%duration_deg > 360 + self%port_opens_deg) then
       key = 'duration_deg'
-      wanted = 'start_deg + duration_deg must be <= 360 + port_opens_deg, where the ports open'
+      wanted = 'must be <= 360 + port_opens_deg - start_deg = '//short_text(360 + self%port_opens_deg - self%start_deg)// &
+        ', where the ports open'
     end if
   end subroutine conflict
 

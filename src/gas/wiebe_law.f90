@@ -3,6 +3,7 @@ module wiebe_law
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree, two_pi
   use gudgeon_errors, only: error_t
+  use number_text, only: short_text, quantity_text
   use gudgeon_parameters, only: parameter_list_t
   use cylinder, only: new_cylinder
   use gas_cycle, only: gas_cycle_t, heat_release_t, new_gas_cycle
@@ -24,6 +25,8 @@ module wiebe_law
     procedure, non_overridable :: wiebe_parameters
     procedure :: prepare
     procedure :: revolutions
+    procedure :: heat_of_cycle
+    procedure :: description
     procedure(timing), deferred :: timing
   end type wiebe_law_t
 
@@ -44,17 +47,20 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call self%add_bore(list)
     call list%add('compression_ratio', self%compression_ratio, 'largest over smallest volume', range='> 1 and <= 1000', &
-      example='9.0')
+      example='9.0', usual='2 to 30')
     call list%add('heat_capacity_ratio', self%heat_capacity_ratio, &
-      'ratio of the heat capacities of the gas', range='> 1 and <= 10', example='1.4')
-    call list%add('heat', self%heat, 'heat released in each cycle', 'J', '>= 0 and <= 1e12', example='165.0')
-    call list%add('wiebe_efficiency', self%efficiency, 'parameter a of the Wiebe function', range='> 0 and <= 1000', example='5.0')
-    call list%add('wiebe_form', self%form, 'parameter n of the Wiebe function', range='>= 0.05 and <= 100', example='3.0')
+      'ratio of the heat capacities of the gas', range='> 1 and <= 10', example='1.4', usual='1.05 to 1.67')
+    call list%add('heat', self%heat, 'heat released in each cycle', 'J', '>= 0 and <= 1e12', example='165.0', usual='0.1 to 1e7')
+    call list%add('wiebe_efficiency', self%efficiency, 'parameter a of the Wiebe function', range='> 0 and <= 1000', &
+      example='5.0', usual='2 to 15')
+    call list%add('wiebe_form', self%form, 'parameter n of the Wiebe function', range='>= 0.05 and <= 100', example='3.0', &
+      usual='0.3 to 10')
     call list%add('start_deg', self%start_deg, 'crank angle at which combustion starts; the firing dead centre is 360', 'degrees', &
-      '>= 180 and < 540', example='340.0')
+      '>= 180 and < 540', example='340.0', usual='270 to 400')
     call list%add('duration_deg', self%duration_deg, 'duration of combustion; it must end before the cylinder opens', 'degrees', &
-      '> 0', example='40.0')
-    call list%add('intake_pressure', self%intake_pressure, 'pressure in the open cylinder', 'Pa', '> 0', default='101325.0')
+      '> 0', example='40.0', usual='10 to 150')
+    call list%add('intake_pressure', self%intake_pressure, 'pressure in the open cylinder', 'Pa', '> 0', default='101325.0', &
+      usual='2e4 to 1e6')
     call self%add_crankcase_pressure(list)
   end subroutine wiebe_parameters
 
@@ -87,4 +93,16 @@ contains
     call self%timing(period, half_closed)
     revolutions = nint(period/two_pi)
   end function revolutions
+
+  pure real(dp) function heat_of_cycle(self)
+    class(wiebe_law_t), intent(in) :: self
+    heat_of_cycle = self%heat
+  end function heat_of_cycle
+
+  function description(self) result(text)
+    class(wiebe_law_t), intent(in) :: self
+    character(len=:), allocatable :: text
+    text = trim(self%name)//', compression ratio '//short_text(self%compression_ratio, 3)//', '//quantity_text(self%heat, 'J')// &
+      ' a cycle from '//short_text(self%start_deg)//' to '//short_text(self%start_deg + self%duration_deg)//' degrees'
+  end function description
 end module wiebe_law

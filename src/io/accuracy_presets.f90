@@ -1,20 +1,24 @@
-!> The accuracy levels of the command line, as values of keys of the case. They were chosen by measurement:
+!> The accuracy levels of the command line, as values of keys of the case. Those with method `auto` were chosen by measurement:
 !> scripts/measure_tradeoff.py --presets reports the errors that each level has in shipped cases; scripts/record.py writes them to
-!> data/measured/presets.md.
+!> data/measured/presets.md. `dissertation` is the integration of Reis (3.8, 4.4).
 module accuracy_presets
   implicit none
   private
-  public :: with_preset
+  public :: with_preset, accuracy_levels
 
-  integer, parameter :: n_keys = 5, preset_length = 40
+  !> The names of the levels.
+  character(len=*), parameter :: accuracy_levels = 'draft, standard, reference, dissertation'
+
+  integer, parameter :: n_keys = 6, preset_length = 40
 
 contains
 
   !> The keys of an accuracy level, followed by the overrides of the command line, so that explicit values take precedence. The
-  !> method is `auto`; otherwise the cost of a level would depend more on the method of the case than on the level. The accuracy of
-  !> quadratures inside the models (the oscillating film, the gas tables) follows the tolerance. An empty level adds nothing.
+  !> method does not depend on that of the case; otherwise the cost of a level would depend more on this than on the level. The
+  !> accuracy of quadratures inside the models (the oscillating film, the gas tables) follows the tolerance. An empty level adds
+  !> nothing.
   pure function with_preset(level, overrides) result(all)
-    character(len=*), intent(in) :: level           !! draft, standard, reference or empty
+    character(len=*), intent(in) :: level           !! one of `accuracy_levels`, or empty
     character(len=*), intent(in) :: overrides(:)    !! GROUP.KEY=VALUE
     character(len=:), allocatable :: all(:)
     character(len=*), parameter :: levels(3) = ['draft    ', 'standard ', 'reference']
@@ -24,9 +28,15 @@ contains
       return
     end if
     allocate (character(len=max(preset_length, len(overrides))) :: all(n_keys + size(overrides)))
-    all(:n_keys) = [character(len=preset_length) :: 'integrator.method=auto', 'integrator.max_order=12', &
-      'integrator.contact_entry=root', 'integrator.absolute_tolerance=0', &
-      'integrator.relative_tolerance='//tolerances(findloc(levels == level, .true., 1))]
+    if (level == 'dissertation') then
+      all(:n_keys) = [character(len=preset_length) :: 'integrator.method=adams', 'integrator.max_order=12', &
+        'integrator.absolute_tolerance=0', 'integrator.relative_tolerance=1e-6', &
+        'integrator.contact_entry=step_rejection', 'integrator.max_penetration=1e-9']
+    else
+      all(:n_keys) = [character(len=preset_length) :: 'integrator.method=auto', 'integrator.max_order=12', &
+        'integrator.absolute_tolerance=0', 'integrator.relative_tolerance='//tolerances(findloc(levels == level, .true., 1)), &
+        'integrator.contact_entry=root', 'integrator.max_penetration=0']
+    end if
     all(n_keys + 1:) = overrides
   end function with_preset
 end module accuracy_presets

@@ -17,7 +17,7 @@ module bearing_run
   use gudgeon_posix, only: absolute_path
   use number_text, only: real_text, short_text
   use result_file, only: write_text
-  use text_tools, only: case_name, integer_text, path_beside, printable, quoted
+  use text_tools, only: integer_text, path_beside, printable, quoted
   use value_reader, only: read_real
   implicit none
   private
@@ -41,10 +41,10 @@ module bearing_run
 contains
 
   !> Set what is marched from the values of a file, and read its table.
-  subroutine prepare(self, values, path, folder, error)
+  subroutine prepare(self, values, path, base, error)
     class(bearing_run_t), intent(inout) :: self
     type(case_values_t), intent(inout) :: values
-    character(len=*), intent(in) :: path, folder   !! of the case; of its results
+    character(len=*), intent(in) :: path, base   !! of the case; of its results, without suffix
     type(error_t), allocatable, intent(out) :: error
     type(bearing_case_t) :: case
     type(film_cells_t) :: cells
@@ -52,13 +52,16 @@ contains
     integer :: place
 
     self%file = path
-    self%base = folder//'/'//case_name(path)
+    self%base = base
     self%line = path//': correct'
     self%notice = ''
-    call values%check(error)
-    if (allocated(error)) return
-    call load(values, case)
-    call check_case(values, case, error)
+    call values%check()
+    if (.not. values%problems%is_structural) then
+      call values%problems%settle()
+      call load(values, case)
+      call check_case(values, case)
+    end if
+    call values%problems%report(error)
     if (allocated(error)) return
     table = path_beside(path, case%march%table)
     call read_duty(table, case%march%drive == 'load', self%duty, error)
@@ -71,7 +74,8 @@ contains
         'or the table another name', status_command_line)
       return
     end if
-    call check_orbit(values, case, self%duty, error)
+    call check_orbit(values, case, self%duty)
+    call values%problems%report(error)
     if (allocated(error)) return
     call set_history(case, self%history)
     call new_film_cells(self%history%bearing, self%history%supply, self%history%around, self%history%along, cells, error)
@@ -100,53 +104,51 @@ contains
   end subroutine load
 
   !> Check that the values fit together.
-  subroutine check_case(values, case, error)
-    type(case_values_t), intent(in) :: values
+  subroutine check_case(values, case)
+    type(case_values_t), intent(inout) :: values
     type(bearing_case_t), intent(in) :: case
-    type(error_t), allocatable, intent(out) :: error
     real(dp), parameter :: thinnest_ring = 1.02_dp, most_thickening = 20
     real(dp), allocatable :: positions(:)
     call values%forbid(case%joint%bearing_radius <= case%joint%clearance, 'joint', 'bearing_radius', &
-      'must be > clearance: the pin''s radius is the difference', error)
-    call values%forbid(case%march%table == '', 'film_history', 'table', 'must be the name of a file', error)
+      'must be > clearance: the pin''s radius is the difference')
+    call values%forbid(case%march%table == '', 'film_history', 'table', 'must be the name of a file')
     if (allocated(case%bore)) call values%forbid(case%bore%outer_radius <= thinnest_ring*case%joint%bearing_radius, 'bore', &
-      'outer_radius', 'must be > 1.02 bearing_radius', error)
+      'outer_radius', 'must be > 1.02 bearing_radius')
     if (.not. allocated(case%supply)) return
     associate (supply => case%supply)
       call values%forbid(case%oil%pressure_viscosity*(supply%pressure + case%oil%ambient_over_cavitation) >= most_thickening, &
-        'supply', 'pressure', 'must be < 20/pressure_viscosity', error)
+        'supply', 'pressure', 'must be < 20/pressure_viscosity')
       select case (supply%kind)
       case ('grooves')
-        call values%demand(supply%width_deg > 0, 'supply', 'width_deg', 'with kind = ''grooves''', error)
-        call values%demand(supply%length > 0, 'supply', 'length', 'with kind = ''grooves''', error)
-        call values%forbid(supply%length > case%joint%bearing_length, 'supply', 'length', 'must be <= bearing_length', error)
+        call values%demand(supply%width_deg > 0, 'supply', 'width_deg', 'with kind = ''grooves''')
+        call values%demand(supply%length > 0, 'supply', 'length', 'with kind = ''grooves''')
+        call values%forbid(supply%length > case%joint%bearing_length, 'supply', 'length', 'must be <= bearing_length')
       case ('holes')
-        call values%demand(supply%diameter > 0, 'supply', 'diameter', 'with kind = ''holes''', error)
+        call values%demand(supply%diameter > 0, 'supply', 'diameter', 'with kind = ''holes''')
       case default
-        call values%demand(supply%groove_width > 0, 'supply', 'groove_width', 'with kind = ''circumferential_groove''', error)
+        call values%demand(supply%groove_width > 0, 'supply', 'groove_width', 'with kind = ''circumferential_groove''')
         call values%forbid(supply%groove_width >= case%joint%bearing_length, 'supply', 'groove_width', &
-          'must be < bearing_length', error)
+          'must be < bearing_length')
         call values%forbid(supply%fixed_to == 'pin', 'supply', 'fixed_to', &
-          'must be bearing with kind = ''circumferential_groove''', error)
+          'must be bearing with kind = ''circumferential_groove''')
         return
       end select
       call find_positions(supply%position_deg, positions)
-      call values%forbid(size(positions) == 0, 'supply', 'position_deg', 'must be 1 to 8 angles', error)
+      call values%forbid(size(positions) == 0, 'supply', 'position_deg', 'must be 1 to 8 angles')
     end associate
   end subroutine check_case
 
   !> Check that a given eccentricity leaves a gap in a rigid bore.
-  subroutine check_orbit(values, case, duty, error)
-    type(case_values_t), intent(in) :: values
+  subroutine check_orbit(values, case, duty)
+    type(case_values_t), intent(inout) :: values
     type(bearing_case_t), intent(in) :: case
     type(film_duty_t), intent(in) :: duty
-    type(error_t), allocatable, intent(out) :: error
     integer :: i
     if (case%march%drive == 'load' .or. allocated(case%bore)) return
     do i = 1, size(duty%time)
       if (norm2(duty%eccentricity(:, i)) < case%joint%clearance) cycle
       call values%refuse('film_history', 'table', 'the eccentricity at '//short_text(duty%time(i))// &
-        ' s must be < clearance with drive = ''orbit''', error)
+        ' s must be < clearance with drive = ''orbit''')
       return
     end do
   end subroutine check_orbit

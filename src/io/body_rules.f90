@@ -2,7 +2,6 @@
 module body_rules
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: pi, two_pi
-  use gudgeon_errors, only: error_t
   use number_text, only: short_text
   use case_definition, only: case_t
   use case_values, only: case_values_t
@@ -32,10 +31,9 @@ contains
   end function bore_reach
 
   !> Check that a guide has the keys of its kind, that its friction does not jam the piston, and that the piston starts in its bore.
-  subroutine check_guide(c, values, error)
+  subroutine check_guide(c, values)
     type(case_t), intent(in) :: c
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
+    type(case_values_t), intent(inout) :: values
     character(len=*), parameter :: sizes(6) = [character(len=14) :: 'bore_clearance', 'skirt_top', 'skirt_bottom', &
       'piston_radius', 'piston_inertia', 'stiffness']
     character(len=*), parameter :: starts(4) = [character(len=18) :: 'piston_offset', 'piston_offset_rate', 'piston_tilt', &
@@ -44,52 +42,49 @@ contains
     if (c%has_loose_guide()) then
       do i = 1, size(sizes)
         call values%demand(values%is_said(values%place_of('guide', trim(sizes(i)))), 'guide', trim(sizes(i)), &
-          'with kind = ''clearance''', error)
+          'with kind = ''clearance''')
       end do
-      if (values%is_said(values%place_of('guide', 'dissipation')) .and. .not. allocated(error)) &
-        call values%check_family('guide', 'dissipation', error)
-      if (.not. allocated(error)) call check_piston_start(c, values, error)
+      if (values%is_said(values%place_of('guide', 'dissipation'))) call values%check_family('guide', 'dissipation')
+      if (.not. values%problems%blames('guide')) call check_piston_start(c, values)
     else
       do i = 1, size(starts)
         call values%forbid(values%is_said(values%place_of('initial', trim(starts(i)))), 'initial', trim(starts(i)), &
-          'must be 0 without clearance in the bore (&guide kind = ''clearance'')', error)
+          'must be 0 without clearance in the bore (&guide kind = ''clearance'')')
       end do
       if (allocated(c%guide)) call values%forbid(values%is_said(values%place_of('guide', 'bore_clearance')) .and. &
-        .not. values%is_given('guide', 'kind'), 'guide', 'bore_clearance', 'needs kind = ''clearance''; the default is friction', &
-        error)
+        .not. values%is_given('guide', 'kind'), 'guide', 'bore_clearance', 'needs kind = ''clearance''; the default is friction')
     end if
-    if (allocated(error) .or. .not. allocated(c%guide)) return
-    if (allocated(c%guide%friction)) call check_guide_friction(c, values, error)
+    if (.not. allocated(c%guide)) return
+    if (allocated(c%guide%friction)) call check_guide_friction(c, values)
   end subroutine check_guide
 
   !> Check that the friction law has no sticking, which the guide does not support, and that friction does not jam a piston with an
   !> ideal pin: an axial force causes a side force of at most tan A times its size, where A is at most arcsin R/L.
-  subroutine check_guide_friction(c, values, error)
+  subroutine check_guide_friction(c, values)
     type(case_t), intent(in) :: c
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(inout) :: error
+    type(case_values_t), intent(inout) :: values
     real(dp) :: most, speed
     logical :: is_loose(n_pins)
     class(friction_law_t), allocatable :: law
     allocate (law, source=c%guide%friction)
     call law%prepare()
     call values%forbid(law%coefficient > 0 .and. law%set_valued, 'guide', 'v1', &
-      'must be > 0: friction on the guide is a function of the speed', error)
+      'must be > 0: friction on the guide is a function of the speed')
+    if (values%problems%blames('guide') .or. values%problems%blames('mechanism')) return
     is_loose = c%loose_pins()
-    if (allocated(error) .or. c%has_loose_guide() .or. is_loose(piston_pin)) return
+    if (c%has_loose_guide() .or. is_loose(piston_pin)) return
     associate (m => c%mechanism)
       speed = 2*m%crank_length*max(abs(c%initial%crank_speed), two_pi)
       most = sqrt((m%rod_length - m%crank_length)*(m%rod_length + m%crank_length))/m%crank_length
     end associate
     call values%forbid(c%guide%most_friction(speed) >= most, 'guide', 'coefficient', 'friction over normal force must stay < '// &
-      short_text(most)//', the least of rod_length cos A/(crank_length sin q): more would jam the piston', error)
+      short_text(most)//', the least of rod_length cos A/(crank_length sin q): more would jam the piston')
   end subroutine check_guide_friction
 
   !> Check that the piston starts in its bore, or with corners in the wall but not beyond it.
-  subroutine check_piston_start(c, values, error)
+  subroutine check_piston_start(c, values)
     type(case_t), intent(in) :: c
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(inout) :: error
+    type(case_values_t), intent(inout) :: values
     type(piston_guide_t) :: guide
     type(corner_t) :: corner(n_corners)
     type(tilting_t) :: at
@@ -101,44 +96,44 @@ contains
     call guide%place_corners(at, corner)
     if (guide%admits(at)) then
       call values%forbid(maxval(corner%depth) > c%guide%piston_radius, 'initial', 'piston_tilt', &
-        'must not put a corner of the skirt into the bore''s wall by more than piston_radius', error)
+        'must not put a corner of the skirt into the bore''s wall by more than piston_radius = '//short_text(c%guide%piston_radius))
     else if (abs(at%tilt) < 1) then
-      call values%refuse('initial', 'piston_offset', 'must be shorter than bore_clearance + piston_radius', error)
+      call values%refuse('initial', 'piston_offset', 'must be shorter than bore_clearance + piston_radius = '// &
+        short_text(c%guide%bore_clearance + c%guide%piston_radius))
     else
-      call values%refuse('initial', 'piston_tilt', 'must be > -1 and < 1', error)
+      call values%refuse('initial', 'piston_tilt', 'must be > -1 and < 1')
     end if
   end subroutine check_piston_start
 
   !> Check that an elastic rod has mass between its pins, a shank that fits between them, and a positive definite mass matrix in its
   !> undeformed state.
-  subroutine check_elastic(c, values, error)
+  subroutine check_elastic(c, values)
     type(case_t), intent(in) :: c
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
+    type(case_values_t), intent(inout) :: values
     type(elastic_rod_t) :: rod
     type(rod_t) :: rigid
     real(dp) :: own, least   ! moment of inertia about the crank pin without rod_inertia, and that of the transverse modes
-    if (.not. allocated(c%elastic_rod)) return
+    if (.not. allocated(c%elastic_rod) .or. values%problems%blames('mechanism')) return
     associate (m => c%mechanism)
       rigid = rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com)
-      call values%forbid(m%rod_mass <= 0, 'mechanism', 'rod_mass', 'must be > 0 with an elastic rod', error)
+      call values%forbid(m%rod_mass <= 0, 'mechanism', 'rod_mass', 'must be > 0 with an elastic rod')
       call values%forbid(m%rod_com(1) <= 0 .or. m%rod_com(1) >= m%rod_length, 'mechanism', 'rod_com', &
-        'must be between the pins, > 0 and < rod_length, with an elastic rod', error)
-      if (allocated(error)) return
+        'must be between the pins, > 0 and < rod_length = '//short_text(m%rod_length)//', with an elastic rod')
+      if (values%problems%blames('mechanism')) return
       call values%forbid(c%elastic_rod%shank_mass > largest_shank(rigid)*(1 + 1e-12_dp), 'elastic_rod', 'shank_mass', &
         'must be <= '//short_text(largest_shank(rigid))//': a heavier uniform shank leaves a lump of negative mass on one of '// &
-        'the pins, with this rod_mass and rod_com', error)
-      if (allocated(error)) return
+        'the pins, with this rod_mass and rod_com')
+      if (values%problems%blames('elastic_rod')) return
       rod = c%elastic_rod
       call rod%prepare(rigid)
       own = m%rod_mass*sum(m%rod_com**2)
       least = sum(rod%t(:rod%n_bending)**2)/rod%bending_mass
       call values%forbid(m%rod_inertia + own <= least, 'mechanism', 'rod_inertia', 'must be > '//short_text(least - own)// &
-        ' with an elastic rod of this shank: its transverse modes alone have more', error)
-      if (allocated(error)) return
+        ' with an elastic rod of this shank: its transverse modes alone have more')
+      if (values%problems%blames('mechanism')) return
       call values%forbid(.not. is_definite(c, rigid, rod), 'elastic_rod', 'transverse_modes', &
         'mass matrix not positive definite with these shapes: must be fewer, or rod_inertia or crank_inertia larger, or '// &
-        'rod_com nearer to the line of the pins', error)
+        'rod_com nearer to the line of the pins')
     end associate
   end subroutine check_elastic
 

@@ -1,7 +1,7 @@
 !> Reads and checks the files of measured curves that a case names, and puts the curves into the case.
 module case_curves
   use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use gudgeon_errors, only: error_t
   use gudgeon_checksum, only: checksum_t
   use gudgeon_posix, only: absolute_path
   use measured_curve, only: measured_curve_t
@@ -28,35 +28,34 @@ contains
 
   !> Read the curves that a case names, unless they have been read before. In the values each file is then named by its absolute
   !> path, and a digest of its content is added, so that the values contain everything on which a run depends.
-  subroutine provide_curves(values, into, error)
+  subroutine provide_curves(values, into)
     type(case_values_t), intent(inout) :: values
     type(case_t), intent(inout) :: into
-    type(error_t), allocatable, intent(out) :: error
     if (into%drive%table%is_wanted()) call provide(values, into%file, 'drive', 'torque_table', turning_speed, torque, &
-      into%drive%table, error)
-    if (allocated(error) .or. .not. allocated(into%measured)) return
+      into%drive%table)
+    if (.not. allocated(into%measured)) return
     associate (gas => into%measured)
       if (all(gas%period_deg /= measured_pressure_periods)) return   ! refused by the rules
-      call provide(values, into%file, 'cylinder_pressure', 'table', crank_angle, pressure, gas%curve, error, gas%period_deg)
+      call provide(values, into%file, 'cylinder_pressure', 'table', crank_angle, pressure, gas%curve, gas%period_deg)
     end associate
   end subroutine provide_curves
 
   !> Read one curve. A curve with a period is a pressure.
-  subroutine provide(values, case_file, group, key, x_is, y_is, curve, error, period)
+  subroutine provide(values, case_file, group, key, x_is, y_is, curve, period)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: case_file, group, key
     type(quantity_t), intent(in) :: x_is, y_is
     type(measured_curve_t), intent(inout) :: curve
-    type(error_t), allocatable, intent(out) :: error
     integer, intent(in), optional :: period   !! [degrees]
     character(len=:), allocatable :: path, text, message, head
+    type(error_t), allocatable :: error
     type(checksum_t) :: sum
     integer, allocatable :: lines(:)
     integer :: line, place
     logical :: is_there
 
     if (curve%file == '') then
-      call values%refuse(group, key, 'must be the name of a file', error)
+      call values%refuse(group, key, 'must be the name of a file')
       return
     end if
     path = path_beside(case_file, curve%file)
@@ -68,12 +67,14 @@ contains
       call read_text_file(path, largest_file, 'table', text, error)
       if (allocated(error)) then
         error%message = head//error%message
+        call values%problems%add_error(error, group, values%place_in_file(values%place_of(group, key)))
         return
       end if
       call parse_curve(text, x_is, y_is, curve%x, curve%y, lines, message, line)
       if (message == '' .and. present(period)) call close_period(curve, period, lines, message, line)
       if (message /= '') then
-        call fail(error, head//printable(path, 200)//':'//integer_text(line)//': '//message, status_case_file)
+        call values%problems%add(head//printable(path, 200)//':'//integer_text(line)//': '//message, group, &
+          values%place_in_file(values%place_of(group, key)))
         return
       end if
       call sum%add(text)
@@ -81,7 +82,7 @@ contains
       curve%path = absolute_path(path)
     end if
     if (curve%digest /= '' .and. curve%digest /= curve%found) then
-      call values%refuse(group, key//'_digest', printable(path, 200)//' has other content: its digest is '//curve%found, error)
+      call values%refuse(group, key//'_digest', printable(path, 200)//' has other content: its digest is '//curve%found)
       return
     end if
     place = values%place_of(group, key)

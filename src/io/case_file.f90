@@ -2,17 +2,19 @@
 !> or group and key, value as written, and what is allowed.
 module case_file
   use gudgeon_errors, only: error_t, fail, status_case_file
-  use text_tools, only: lowercase, printable, case_name
+  use text_tools, only: lowercase, printable, case_name, likely_word
   use text_file, only: read_text_file
-  use joint_places, only: places, n_places, in_order
+  use joint_places, only: places, n_places, in_order, joint_group
   use case_definition, only: case_t
-  use case_schema, only: key_table_t, case_schema_of, find_group, is_listed, shown_group
+  use case_schema, only: key_table_t, case_schema_of, find_group, shown_group
   use case_values, only: case_values_t
   use case_loader, only: load_case
   use case_rules, only: check_rules
+  use case_notes, only: note_case
   use case_text, only: template_text, resolved_text
   use bearing_definition, only: bearing_schema_of
   use namelist_reader, only: namelist_t, read_namelist
+  use problem_list, only: behind_file
   implicit none
   private
   public :: read_case, parse_case, read_case_values, complete_case, template
@@ -40,13 +42,14 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable, intent(out), optional :: resolved
     type(case_values_t) :: values
-    call parse_values(text, path, overrides, values, error)
-    if (.not. allocated(error)) call complete_case(values, path, this, error)
+    call parse_values(text, path, overrides, values)
+    call complete_case(values, path, this, error)
     if (present(resolved) .and. .not. allocated(error)) resolved = resolved_text(values)
   end subroutine parse_case
 
-  !> Read the values of a case file and of the overrides, without checking them against each other. With `is_bearing` the file may
-  !> also be a bearing case, which has the group film_history and no mechanism.
+  !> Read the values of a case file and of the overrides, without checking them against each other. What is wrong is noted in the
+  !> values. With `is_bearing` the file may also be a bearing case, which has the group film_history and no mechanism. Error: the
+  !> file cannot be read.
   subroutine read_case_values(path, overrides, values, error, is_bearing)
     character(len=*), intent(in) :: path, overrides(:)
     type(case_values_t), intent(out) :: values
@@ -55,14 +58,14 @@ contains
     character(len=:), allocatable :: text
     if (present(is_bearing)) is_bearing = .false.
     call read_text_file(path, largest_file, 'case file', text, error)
-    if (.not. allocated(error)) call parse_values(text, path, overrides, values, error, is_bearing)
+    if (.not. allocated(error)) call parse_values(text, path, overrides, values, is_bearing)
   end subroutine read_case_values
 
-  subroutine parse_values(text, path, overrides, values, error, is_bearing)
+  subroutine parse_values(text, path, overrides, values, is_bearing)
     character(len=*), intent(in) :: text, path, overrides(:)
     type(case_values_t), intent(out) :: values
-    type(error_t), allocatable, intent(out) :: error
     logical, intent(out), optional :: is_bearing
+    type(error_t), allocatable :: error
     logical :: without_mechanism
     integer :: i
     without_mechanism = .false.
@@ -76,11 +79,11 @@ contains
       call case_schema_of(values%key_table_t)
     end if
     call values%set_defaults(path)
-    call take_file(values, text, error)
-    if (allocated(error)) return
+    call take_file(values, text)
     do i = 1, size(overrides)
-      call take_override(values, trim(overrides(i)), error)
-      if (allocated(error)) return
+      call take_override(values, trim(overrides(i)), behind_file + i, error)
+      if (allocated(error)) values%problems%is_structural = .true.
+      call values%problems%add_error(error, '--set', behind_file + i)
     end do
     call values%prefer_overrides()
   end subroutine parse_values
@@ -104,20 +107,25 @@ contains
   end subroutine find_kind
 
   !> Complete and check a case from its values; `path` gives its name. Defaults that depend on the selected laws are put into the
-  !> values.
+  !> values. The error has every problem of the values, but contradictions between them only if it is clear what is wanted.
   subroutine complete_case(values, path, this, error)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: path
     type(case_t), intent(out) :: this
     type(error_t), allocatable, intent(out) :: error
-    call values%check(error)
-    if (allocated(error)) return
+    integer :: i
+    call values%check()
     this%file = path
-    call load_case(values, this, error)
-    if (allocated(error)) return
     this%name = case_name(path)
     if (this%name == '') this%name = 'case'
-    call check_rules(this, values, error)
+    if (.not. (values%problems%is_structural .or. values%problems%blames('mechanism') .or. values%problems%blames('initial') .or. &
+               any([(values%problems%blames(joint_group(i)), i=1, n_places)]))) then
+      call values%problems%settle()
+      call load_case(values, this)
+      call check_rules(this, values)
+    end if
+    call values%problems%report(error)
+    if (.not. allocated(error)) call note_case(this, values)
   end subroutine complete_case
 
   !> A complete case file with comments, which can be read back.
@@ -129,49 +137,66 @@ contains
   end function template
 
   !> Put the groups and keys of a file's text into the values.
-  subroutine take_file(values, text, error)
+  subroutine take_file(values, text)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: text
-    type(error_t), allocatable, intent(out) :: error
     type(namelist_t) :: list
-    character(len=:), allocatable :: at
-    integer :: i, group, place
-    call read_namelist(text, values%file, list, error)
-    if (allocated(error)) return
-    if (size(list%groups) == 0) then
-      call fail(error, values%file//': the file contains no group; gudgeon --template prints a case', status_case_file)
-      return
+    type(error_t), allocatable :: error, syntax
+    logical, allocatable :: is_known(:)   !! for each group of the file
+    integer :: i
+    call read_namelist(text, values%file, list, syntax)
+    if (allocated(syntax)) values%problems%is_incomplete = .true.
+    if (size(list%groups) == 0 .and. .not. allocated(syntax)) then
+      call fail(syntax, values%file//': the file contains no group; gudgeon --template prints a case', status_case_file)
+      values%problems%is_incomplete = .true.
     end if
-    at = ''
+    allocate (is_known(size(list%groups)), source=.false.)
     do i = 1, size(list%groups)
-      call name_place(values, list, i, error)
-      if (allocated(error)) return
-      at = list%at(list%groups(i)%line)
-      associate (name => list%groups(i)%name)
-        group = find_group(values%groups, name)
-        if (name == 'study' .or. name == 'parameter') then
-          call fail(error, at//'&'//name//': a study, not a case: run it with gudgeon sweep '//values%file, status_case_file)
-        else if (group == 0) then
-          call values%find(name, '', at, place, error)
-        else if (values%is_present(group)) then
-          call fail(error, at//shown_group(name)//': this group is given twice', status_case_file)
+      associate (group => list%groups(i))
+        call name_place(values, list, i, error)
+        if (.not. allocated(error)) call begin_group(values, group%name, group%line, list%at(group%line), is_known(i), error)
+        if (allocated(error)) values%problems%is_structural = .true.
+        call values%problems%add_error(error, '', group%line)
+        if (group%name == 'study' .or. group%name == 'parameter') then   ! not a case at all
+          values%problems%is_incomplete = .true.
+          return
         end if
       end associate
-      if (allocated(error)) return
-      values%is_present(group) = .true.
     end do
     do i = 1, size(list%entries)
       associate (entry => list%entries(i))
-        if (entry%key == 'place' .and. has_places(values, entry%group)) cycle
-        at = list%at(entry%line)
-        call values%find(list%groups(entry%group_number)%name, entry%key, at, place, error)
-        if (allocated(error)) return
+        if (.not. is_known(entry%group_number) .or. entry%key == 'place' .and. has_places(values, entry%group)) cycle
         if (entry%key == 'position_deg') entry%tokens%quoted = .true.   ! a list is kept as written
-        call values%assign(place, entry%index, entry%tokens, at, .false., error)
-        if (allocated(error)) return
+        call values%give(list%groups(entry%group_number)%name, entry, list%at(entry%line))
       end associate
     end do
+    if (allocated(syntax)) values%problems%is_structural = .true.
+    call values%problems%add_error(syntax, '', behind_file)
   end subroutine take_file
+
+  !> Begin a group of the file. Error: an unknown group, or one that has begun before.
+  subroutine begin_group(values, name, line, at, is_known, error)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: name   !! with its place
+    integer, intent(in) :: line
+    character(len=*), intent(in) :: at     !! file and line
+    logical, intent(out) :: is_known
+    type(error_t), allocatable, intent(out) :: error
+    integer :: group, place
+    group = find_group(values%groups, name)
+    is_known = .false.
+    if (name == 'study' .or. name == 'parameter') then
+      call fail(error, at//'&'//name//': a study, not a case: run it with gudgeon sweep '//values%file, status_case_file)
+    else if (group == 0) then
+      call values%find(name, '', at, place, error)
+    else if (values%is_present(group)) then
+      call fail(error, at//shown_group(name)//': this group is given twice', status_case_file)
+    else
+      is_known = .true.
+      values%is_present(group) = .true.
+      values%line(group) = line
+    end if
+  end subroutine begin_group
 
   !> Put the place of a joint in front of the name of its group: crank_pin.joint.
   subroutine name_place(values, list, number, error)
@@ -192,7 +217,7 @@ contains
           wanted = ''
           place = lowercase(entry%tokens(1)%text)
           if (found /= '') wanted = 'given twice'
-          if (.not. any(places%name == place)) wanted = 'must be one of '//place_names()
+          if (.not. any(places%name == place)) wanted = 'must be one of '//place_names()//likely_word(place, place_names())
         end if
         if (wanted /= '') then
           call fail(error, list%at(entry%line)//'&'//entry%group//' place = '//printable(place, 48)//': '//wanted, &
@@ -225,9 +250,10 @@ contains
 
   !> Put an override GROUP.KEY=VALUE into the values; texts need no quotes. GROUP=none removes everything that the file and earlier
   !> overrides have set in that group.
-  subroutine take_override(values, override, error)
+  subroutine take_override(values, override, line, error)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: override
+    integer, intent(in) :: line   !! for the order of messages
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: at, group, key, text
     integer :: dot, equals, place
@@ -256,6 +282,7 @@ contains
     values%is_present(find_group(values%groups, group)) = .true.
     text = trim(adjustl(override(equals + 1:)))
     call values%assign_text(place, text, .false., at, error)
+    values%values(place)%line = line
     if (allocated(error) .and. lowercase(text) == 'none') &
       error%message = error%message//'; --set '//group//'=none takes the group out'
   end subroutine take_override

@@ -1,7 +1,6 @@
 !> Builds a case from the values of a case file: a visitor that sets every parameter and selects the laws that the case names.
 module case_loader
   use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
   use gudgeon_parameters, only: parameter_list_t, has_parameters_t, law_t, key_t, word_kind
   use case_definition, only: case_t, visit_case
   use case_schema, only: find_group, find_key, is_listed
@@ -18,7 +17,6 @@ module case_loader
     logical, allocatable :: only(:)               !! groups to be set, by index in the table
     integer :: at = 0                             !! index of the group being visited in the table
     character(len=:), allocatable :: law_name     !! law that the case names in this group
-    type(error_t), allocatable :: error           !! the first error
   contains
     procedure :: visit => load_parameter
     procedure :: group => load_group
@@ -29,11 +27,10 @@ module case_loader
 contains
 
   !> Set all parameters of a case, or those of some groups. Defaults that depend on the selected law are put into the values too.
-  !> Errors: parameters of a law that contradict each other; a measured curve that cannot be read.
-  subroutine load_case(values, into, error, only)
+  !> Problems are noted there: parameters of a law that contradict each other, a measured curve that cannot be read.
+  subroutine load_case(values, into, only)
     type(case_values_t), intent(inout), target :: values   !! already checked against their limits
     type(case_t), intent(inout) :: into
-    type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: only(:)  !! groups to be set. A group of a joint may change the laws of the other joint; if one
                                               !! such group changes, set all groups of joints.
     type(loader_t) :: loader
@@ -46,12 +43,8 @@ contains
     end if
     call visit_case(into, loader)
     call read_times(into%output%film_times, into%output%snapshot_times)
-    if (allocated(loader%error)) then
-      call move_alloc(loader%error, error)
-    else
-      call provide_curves(values, into, error)
-      if (.not. allocated(error)) call provide_state(values, into, error)
-    end if
+    call provide_curves(values, into)
+    call provide_state(values, into)
   end subroutine load_case
 
   !> Set the parameters of one model, which are the keys of one group.
@@ -115,7 +108,7 @@ contains
     self%chosen%name = name
     call self%chosen%parameters(self)
     call self%chosen%conflict(key, wanted)
-    if (key /= '') call self%values%forbid(.true., trim(self%values%groups(self%at)%name), key, wanted, self%error)
+    if (key /= '') call self%values%forbid(.true., trim(self%values%groups(self%at)%name), key, wanted)
   end subroutine load_law
 
   !> Index of a key of the present group in the table; 0 if there is none.
@@ -149,6 +142,6 @@ contains
     end associate
     if (key%kind /= word_kind .or. .not. allocated(self%chosen)) return
     call self%values%forbid(.not. is_listed(text, key%words), trim(self%values%groups(self%at)%name), trim(key%name), &
-      'must be one of '//key%words//' for '//self%law_name, self%error)
+      'must be one of '//key%words//' for '//self%law_name)
   end subroutine load_parameter
 end module case_loader

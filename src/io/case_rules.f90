@@ -2,7 +2,6 @@
 module case_rules
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
-  use gudgeon_errors, only: error_t
   use number_text, only: short_text
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
@@ -13,30 +12,20 @@ module case_rules
   use friction_law, only: friction_law_t
   use body_rules, only: check_guide, check_elastic, bore_reach
   use chain_motion, only: crank_pin, piston_pin, n_pins, n_bodies, body_crank, body_big_end, body_small_end, body_piston
-  use joint_places, only: places, n_places, in_order, name_prefix
+  use joint_places, only: places, n_places, in_order, name_prefix, joint_group
   implicit none
   private
-  public :: check_rules, case_warning
+  public :: check_rules
 
   real(dp), parameter :: most_samples = 1e9_dp   !! largest number of rows that a run may ask for
   real(dp), parameter :: rounding = 1e-12_dp     !! relative difference of two times or lengths that counts as none
 
 contains
 
-  !> A warning for the user of a valid case, or an empty text.
-  pure function case_warning(c) result(text)
+  !> Note the errors of a case of which no scene can be built; `values` tells which keys the user has set.
+  subroutine check_rules(c, values)
     type(case_t), intent(in) :: c
-    character(len=:), allocatable :: text
-    text = ''
-    if (c%drive%kind == 'constant_speed' .and. abs(c%drive%torque) > 0) text = '&drive torque has no effect with kind = '// &
-      '''constant_speed'': the drive supplies the moment that holds the speed (crank_moment); with kind = ''free'' the torque acts'
-  end function case_warning
-
-  !> Report an error for a case of which no scene can be built; `values` tells which keys the user has set.
-  subroutine check_rules(c, values, error)
-    type(case_t), intent(in) :: c
-    type(case_values_t), intent(in) :: values
-    type(error_t), allocatable, intent(out) :: error
+    type(case_values_t), intent(inout) :: values
     logical :: turns   ! the crank turns at the start
     integer :: i
     turns = abs(c%initial%crank_speed) > 0
@@ -47,37 +36,42 @@ contains
     do i = 1, n_places
       call check_friction(c%joints(in_order(i)), in_order(i))
     end do
-    if (.not. allocated(error)) call check_guide(c, values, error)
+    call check_guide(c, values)
     call check_start()
-    if (.not. allocated(error)) call check_elastic(c, values, error)
+    call check_elastic(c, values)
     call check_gas()
     call check_drive()
     call check_periods()
-    if (.not. allocated(error)) call check_run()
-    if (.not. allocated(error)) call check_output()
+    call check_run()
+    call check_output()
 
   contains
 
-    !> The error for a value of the case if it is wrong; the first error is kept.
+    !> Note an error of a value of the case if it is wrong.
     subroutine forbid(is_wrong, group, name, wanted)
       logical, intent(in) :: is_wrong
       character(len=*), intent(in) :: group, name, wanted
-      call values%forbid(is_wrong, group, name, wanted, error)
+      call values%forbid(is_wrong, group, name, wanted)
     end subroutine forbid
 
     !> Check that the rod is long enough, and that the mass matrix of crank and rod is positive definite at every crank angle. With
     !> A = I_c + m_c |com_c|^2 and B = I_r + m_r |com_r|^2 its smallest determinant is A B + m_r R^2 I_r.
     subroutine check_bodies()
       character(len=*), parameter :: away = 'must be > 0 unless crank_mass is > 0 away from the axis'
-      real(dp) :: reach, crank, rod
+      character(len=:), allocatable :: key
+      real(dp) :: play, crank, rod
       logical :: is_loose(n_pins)
       associate (m => c%mechanism)
-        reach = m%crank_length + bore_reach(c)
-        do i = 1, n_places
-          if (c%joints(i)%has_clearance()) reach = reach + c%joints(i)%clearance
-        end do
-        call forbid(m%rod_length <= reach, 'mechanism', 'rod_length', &
-          'must be > crank_length'//trim(merge(' + clearance', '            ', reach > m%crank_length)))
+        play = sum(play_of(c%joints))
+        if (m%rod_length <= m%crank_length) then
+          call values%refuse('mechanism', 'rod_length', 'must be > crank_length = '//short_text(m%crank_length))
+        else if (m%rod_length <= m%crank_length + play) then
+          call values%refuse('mechanism', 'rod_length', 'must be > crank_length + clearance = '//short_text(m%crank_length + play))
+        else if (m%rod_length <= m%crank_length + play + bore_reach(c)) then
+          key = trim(merge('bore_clearance', 'piston_com    ', c%guide%bore_clearance > abs(c%guide%piston_com(2))))
+          call values%refuse('guide', key, 'lets the pin move '//short_text(bore_reach(c))//' m off the cylinder''s axis: must '// &
+            'be less than rod_length - crank_length - clearance = '//short_text(m%rod_length - m%crank_length - play))
+        end if
         crank = m%crank_inertia + c%drive%flywheel_inertia + m%crank_mass*sum(m%crank_com**2)
         rod = m%rod_inertia + m%rod_mass*sum(m%rod_com**2)
         is_loose = c%loose_pins()
@@ -87,7 +81,7 @@ contains
           call forbid(m%rod_inertia <= 0, 'mechanism', 'rod_inertia', 'must be > 0 with clearance at the crank pin')
         else if (is_loose(piston_pin)) then
           call forbid(rod <= 0, 'mechanism', 'rod_inertia', 'must be > 0 unless rod_mass is > 0 away from the crank pin')
-          call forbid(crank*rod + m%rod_mass*m%crank_length**2*m%rod_inertia <= 0, 'mechanism', 'crank_inertia', &
+          call forbid(rod > 0 .and. crank*rod + m%rod_mass*m%crank_length**2*m%rod_inertia <= 0, 'mechanism', 'crank_inertia', &
             away//', or rod_mass and rod_inertia are')
         else
           call forbid(crank + m%rod_inertia <= 0, 'mechanism', 'crank_inertia', away//', or rod_inertia is')
@@ -95,17 +89,24 @@ contains
       end associate
     end subroutine check_bodies
 
+    !> The clearance of a joint, unless it is wrong by itself [m].
+    elemental real(dp) function play_of(joint)
+      type(joint_case_t), intent(in) :: joint
+      play_of = 0
+      if (joint%has_clearance() .and. joint%clearance < joint%bearing_radius) play_of = joint%clearance
+    end function play_of
+
     !> Check that an ideal joint has neither contact nor film, and that a joint with clearance has at least one of them.
     subroutine check_joint(joint, place)
       type(joint_case_t), intent(in) :: joint
       integer, intent(in) :: place                !! index in `places`
       character(len=:), allocatable :: group      !! of the joint
       logical :: bearing_turns
-      group = 'joint'
-      if (place /= in_order(1)) group = trim(places(place)%name)//'.joint'
+      group = joint_group(place)
       if (.not. joint%has_clearance()) then
-        call forbid(allocated(joint%contact) .or. allocated(joint%friction) .or. allocated(joint%film) .or. &
-          allocated(joint%asperities) .or. allocated(joint%wear) .or. has_own_law(place), group, 'kind', &
+        call forbid(has_own_law(place) .or. place == in_order(1) .and. (allocated(joint%contact) .or. &
+          allocated(joint%friction) .or. allocated(joint%film) .or. allocated(joint%asperities) .or. allocated(joint%wear)), &
+          group, 'kind', &
           'must be clearance with contact, friction or lubrication: an ideal joint has no '// &
           'clearance; remove these groups, for example with --set contact=none')
         call forbid(joint%clearance > 0 .and. .not. values%is_given(group, 'kind'), group, 'clearance', &
@@ -113,17 +114,16 @@ contains
         return
       end if
       if (allocated(joint%film)) call check_oil(joint, law_group('lubrication', place))
-      call values%demand(joint%clearance > 0, group, 'clearance', 'with kind = ''clearance''', error)
-      call values%demand(joint%bearing_radius > 0, group, 'bearing_radius', 'with kind = ''clearance''', error)
-      call forbid(joint%bearing_radius <= joint%clearance, group, 'bearing_radius', &
-        'must be > clearance: the pin''s radius is the difference')
-      call values%demand(joint%bearing_length > 0 .or. .not. allocated(joint%film), group, 'bearing_length', &
-        'with lubrication', error)
+      call values%demand(joint%clearance > 0, group, 'clearance', 'with kind = ''clearance''')
+      call values%demand(joint%bearing_radius > 0, group, 'bearing_radius', 'with kind = ''clearance''')
+      if (joint%bearing_radius > 0) call forbid(joint%bearing_radius <= joint%clearance, group, 'clearance', &
+        'must be < bearing_radius = '//short_text(joint%bearing_radius)//': the pin''s radius is the difference')
+      call values%demand(joint%bearing_length > 0 .or. .not. allocated(joint%film), group, 'bearing_length', 'with lubrication')
       call forbid(.not. (allocated(joint%contact) .or. allocated(joint%film)), group, 'kind', &
         'needs contact or lubrication: without them no force would act on the pin')
       call forbid(allocated(joint%friction) .and. .not. allocated(joint%contact), law_group('friction', place), 'law', &
         'needs the group contact: dry friction follows the normal force')
-      if (allocated(error)) return
+      if (values%problems%blames(group)) return
       if (allocated(joint%asperities)) then
         call check_asperities(joint, law_group('asperities', place))
       else if (allocated(joint%contact)) then
@@ -131,7 +131,7 @@ contains
       end if
       bearing_turns = places(place)%bearing /= body_piston .or. c%has_loose_guide()
       if (allocated(joint%wear)) call check_wear(joint, bearing_turns, group, law_group('wear', place))
-      if (allocated(error) .or. .not. allocated(joint%film)) return
+      if (.not. allocated(joint%film)) return
       call check_transition(joint, law_group('lubrication', place))
       call check_elastic_film(joint, law_group('lubrication', place), law_group('contact', place))
     end subroutine check_joint
@@ -151,7 +151,7 @@ contains
         if (joint%oil%is_known()) then
           call forbid(is_said, group, key, 'must not be given: viscosity_law = '''//joint%oil%law//''' computes it')
         else if (values%is_used(place)) then
-          call values%demand(is_said, group, key, adjustl(values%by_law(values%keys(place))), error)
+          call values%demand(is_said, group, key, adjustl(values%by_law(values%keys(place))))
         end if
       end do
       if (joint%oil%is_known()) then
@@ -176,8 +176,8 @@ contains
         call forbid(allocated(joint%asperities), own, 'transition', &
           'must be switch with asperities: they carry with the film at every depth')
         call forbid(.not. allocated(joint%contact), own, 'transition', 'needs the group contact: film and contact share the load')
-        call values%demand(depth > 0, own, 'transition_depth', 'with transition = ''weighted''', error)
-        call forbid(depth > joint%clearance, own, 'transition_depth', 'must be <= clearance')
+        call values%demand(depth > 0, own, 'transition_depth', 'with transition = ''weighted''')
+        call forbid(depth > joint%clearance, own, 'transition_depth', 'must be <= clearance = '//short_text(joint%clearance))
       end associate
     end subroutine check_transition
 
@@ -193,7 +193,7 @@ contains
       end if
       call forbid(.not. allocated(joint%contact), own, 'elastic_film', &
         'needs the group contact, whose geometry is the stiffness of the walls')
-      if (allocated(error)) return
+      if (.not. allocated(joint%contact)) return
       call forbid(.not. joint%contact%is_elastic(), contact, 'law', 'must be hertz with elastic_film: the film dissipates, '// &
         'the walls do not')
       call forbid(allocated(joint%friction), own, 'elastic_film', &
@@ -213,7 +213,7 @@ contains
       call forbid(allocated(joint%contact), group, 'roughness', &
         'cannot be combined with the group contact: asperities are the contact of rough surfaces')
       call forbid(joint%asperities%roughness > roughest*joint%clearance, group, 'roughness', &
-        'must be <= clearance/8: a centred pin may not touch')
+        'must be <= clearance/8 = '//short_text(roughest*joint%clearance)//': a centred pin may not touch')
     end subroutine check_asperities
 
     !> Check that wear has a rate, and a contact that wears.
@@ -224,8 +224,8 @@ contains
       call forbid(.not. any(joint%wear%rate > 0), wear_group, 'rate', 'must be > 0 for the pin or the bore')
       call forbid(.not. (joint%can_touch() .or. allocated(joint%asperities)), wear_group, 'rate', &
         'needs surfaces that touch: the group contact without elastic_film, or asperities')
-      call values%demand(joint%bearing_length > 0, group, 'bearing_length', 'with wear', error)
-      if (.not. allocated(error)) call check_worn_bore(joint, wear_group, bearing_turns)
+      call values%demand(joint%bearing_length > 0, group, 'bearing_length', 'with wear')
+      call check_worn_bore(joint, wear_group, bearing_turns)
     end subroutine check_wear
 
     !> Check that a bore whose shape changes belongs to a dry joint on a foundation, in a piston that does not tilt.
@@ -241,7 +241,7 @@ contains
         return
       end if
       call forbid(allocated(joint%film), group, 'bore', 'must be round with lubrication: the films are those of round bores')
-      if (allocated(error)) return
+      if (allocated(joint%film) .or. .not. allocated(joint%contact)) return
       call forbid(.not. joint%contact%geometry%has_foundation(), group, 'bore', 'worn needs &contact geometry = ''winkler''')
       call forbid(turns, group, 'bore', 'worn is for the piston pin in a piston that does not tilt')
       call forbid(.not. joint%wear%rate(of_bore) > 0, group, 'rate', 'must be > 0 for the bore with bore = ''worn''')
@@ -261,11 +261,11 @@ contains
       character(len=*), intent(in) :: group, contact_group   !! groups of the joint and of its contact
       character(len=:), allocatable :: key, wanted
       if (values%is_said(values%place_of(contact_group, 'dissipation'))) &
-        call values%check_family(contact_group, 'dissipation', error)
+        call values%check_family(contact_group, 'dissipation')
       associate (geometry => joint%contact%geometry)
         call values%demand(joint%bearing_length > 0 .or. .not. geometry%needs_length(), group, 'bearing_length', &
-          'with contact geometry = '''//trim(geometry%name)//'''', error)
-        if (allocated(error)) return
+          'with contact geometry = '''//trim(geometry%name)//'''')
+        if (geometry%needs_length() .and. .not. joint%bearing_length > 0) return
         call geometry%bearing_conflict(joint%bearing(rod_length=0.0_dp), key, wanted)
         call forbid(key /= '', group, key, wanted)
       end associate
@@ -278,7 +278,7 @@ contains
       type(joint_case_t), intent(in) :: joint
       integer, intent(in) :: place   !! index in `places`
       real(dp) :: turning(n_bodies), speed, limit
-      if (allocated(error) .or. .not. (joint%has_clearance() .and. allocated(joint%friction))) return
+      if (.not. (joint%has_clearance() .and. allocated(joint%friction))) return
       associate (m => c%mechanism, bearing => joint%bearing(c%mechanism%rod_length))
         turning(body_crank) = 1
         turning([body_big_end, body_small_end]) = m%crank_length/m%rod_length
@@ -289,7 +289,7 @@ contains
       limit = joint%friction%touch_down_limit()
       if (speed > limit) call values%refuse(law_group('friction', place), 'damping_speed', 'a constant bristle_damping gives '// &
         'more than the static friction at touch-down from '//short_text(limit)//' m/s on, and this joint slides with '// &
-        short_text(speed)//' m/s: must be > 0', error)
+        short_text(speed)//' m/s: must be > 0')
     end subroutine check_friction
 
     !> Whether the case has a law for the joint at this place alone.
@@ -315,27 +315,32 @@ contains
       associate (start => c%initial, m => c%mechanism)
         distance = norm2(start%eccentricity, 1)
         do place = 1, n_places
-          call check_pin(c%joints(in_order(place)), name_prefix(in_order(place)), distance(in_order(place)), &
-            start%eccentricity_rate(:, in_order(place)))
+          call check_pin(c%joints(in_order(place)), joint_group(in_order(place)), name_prefix(in_order(place)), &
+            distance(in_order(place)), start%eccentricity_rate(:, in_order(place)))
         end do
+        if (values%problems%blames('mechanism') .or. values%problems%blames('initial')) return
         place = in_order(max(1, findloc(distance(in_order) > 0, .true., 1)))
         call forbid(sum(distance) >= m%rod_length - m%crank_length, 'initial', name_prefix(place)//'eccentricity', &
-          'must be shorter than rod_length - crank_length')
+          'must be shorter than rod_length - crank_length = '//short_text(m%rod_length - m%crank_length))
       end associate
     end subroutine check_start
 
     !> Check that a pin starts inside its bearing, or, with a contact law, in its wall but not beyond it.
-    subroutine check_pin(joint, prefix, distance, rate)
+    subroutine check_pin(joint, group, prefix, distance, rate)
       type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: group    !! group of the joint
       character(len=*), intent(in) :: prefix   !! prefix of the keys
       real(dp), intent(in) :: distance, rate(2)
       associate (key => prefix//'eccentricity')
         if (joint%has_clearance()) then
-          call forbid(.not. (joint%can_touch() .or. allocated(joint%asperities)) .and. &
-            distance >= joint%clearance*(1 - rounding), 'initial', key, &
-            'must be shorter than the clearance where there is no contact')
-          call forbid(distance >= joint%bearing_radius, 'initial', key, &
-            'must be shorter than bearing_radius: the pin would leave its bearing')
+          if (values%problems%blames(group)) return
+          if (distance >= joint%bearing_radius) then
+            call values%refuse('initial', key, 'must be shorter than bearing_radius = '//short_text(joint%bearing_radius)// &
+              ': the pin would leave its bearing')
+          else if (.not. (joint%can_touch() .or. allocated(joint%asperities)) .and. distance >= joint%clearance*(1 - rounding)) then
+            call values%refuse('initial', key, 'must be shorter than the clearance, '//short_text(joint%clearance)// &
+              ', where there is no contact')
+          end if
         else
           call forbid(distance > 0, 'initial', key, 'must be 0 in an ideal joint')
           call forbid(norm2(rate) > 0, 'initial', key//'_rate', 'must be 0 in an ideal joint')
@@ -355,7 +360,7 @@ contains
       call forbid(.not. allocated(c%output%snapshot_times), 'output', 'film_times', &
         'must be times >= 0 in rising order with commas, or from:to:count')
       call forbid(.not. has_film, 'output', 'film_times', 'needs a film with a pressure: pinkus_sternlicht or finite_bearing')
-      if (allocated(error)) return
+      if (.not. allocated(c%output%snapshot_times)) return
       if (maxval(c%output%snapshot_times) > known_end()*(1 + rounding)) call forbid(.true., 'output', 'film_times', &
         'must not be after the end of the run at '//short_text(known_end())//' s')
     end subroutine check_film_times
@@ -388,8 +393,8 @@ contains
     subroutine check_run()
       real(dp) :: held_end   ! time in which a held crank makes crank_revolutions [s]
       associate (run => c%integrator, is_held => c%drive%kind == 'constant_speed')
-        if (.not. c%run%is_until_periodic()) call values%check_family('integrator', 'revolutions', error)
-        call forbid(run%revolutions > 0 .and. .not. turns, 'integrator', 'revolutions', &
+        if (.not. c%run%is_until_periodic()) call values%check_family('integrator', 'revolutions')
+        call forbid(run%revolutions > 0 .and. .not. (turns .or. c%run%is_until_periodic()), 'integrator', 'revolutions', &
           'needs crank_speed other than 0; give end_time')
         call forbid(run%crank_revolutions > 0 .and. .not. turns .and. is_held, 'integrator', 'crank_revolutions', &
           'needs crank_speed other than 0: the crank is held at rest')
@@ -454,15 +459,13 @@ contains
         speed = abs(c%initial%crank_speed)
         end_time = c%integrator%end_time
         if (turns) end_time = max(end_time, max(c%integrator%revolutions, c%integrator%crank_revolutions)*two_pi/speed)
-        if (c%run%is_until_periodic()) end_time = c%run%most_revolutions*two_pi/speed
-        if (output%window == 'last_period') end_time = c%run%period_revolutions*two_pi/speed
-        if (output%interval > 0) then
-          samples = end_time/output%interval
-          call forbid(samples > most_samples, 'output', 'interval', 'asks for more than 1e9 rows')
-        else
-          samples = end_time*speed/two_pi*output%samples_per_revolution
-          call forbid(samples > most_samples, 'output', 'samples_per_revolution', 'asks for more than 1e9 rows')
-        end if
+        if (c%run%is_until_periodic() .and. turns) end_time = c%run%most_revolutions*two_pi/speed
+        if (output%window == 'last_period' .and. turns) end_time = c%run%period_revolutions*two_pi/speed
+        samples = end_time*speed/two_pi*output%samples_per_revolution
+        if (output%interval > 0) samples = end_time/output%interval
+        if (samples > most_samples) call values%refuse('output', &
+          trim(merge('interval              ', 'samples_per_revolution', output%interval > 0)), 'asks for '// &
+          short_text(samples, 2)//' rows in '//short_text(end_time)//' s: at most '//short_text(most_samples)//' are written')
       end associate
     end subroutine check_output
   end subroutine check_rules

@@ -15,12 +15,12 @@ module case_run
   use result_file, only: result_file_t, remove_result, write_text
   use certificate, only: certificate_t, make_certificate
   use certificate_text, only: certificate_table, certificate_summary, certificate_clause
-  use gudgeon_summary, only: summary_table, summary_line
-  use stability_advice, only: stability_advice_t, advice
+  use gudgeon_summary, only: summary_table
+  use run_line, only: lines_for_user
   use gudgeon_progress, only: progress_t, clock, tell
   use text_file, only: read_whole
   use gudgeon_posix, only: synchronise_folder, file_length, absolute_path, error_text, interrupted
-  use text_tools, only: printable
+  use text_tools, only: printable, replaced
   use joint_places, only: n_places
   implicit none
   private
@@ -34,7 +34,7 @@ module case_run
   !> collected in `error`.
   type :: case_run_t
     type(error_t), allocatable :: error
-    character(len=:), allocatable :: line, notice        !! texts for the user: the outcome, and remarks
+    character(len=:), allocatable :: line                !! the outcome, for the user
     character(len=:), allocatable :: base                !! path of the results without suffix
     type(case_t) :: case
     character(len=:), allocatable, private :: case_text  !! the resolved case
@@ -44,7 +44,6 @@ module case_run
     type(column_list_t), private :: list
     logical, private :: shows_progress = .false., is_quiet = .false.
     type(progress_t), private :: progress
-    type(stability_advice_t), private :: advice
     real(dp), private :: began = 0                       !! time of `clock` [s]
     type(result_file_t), private :: summary
     type(run_report_t), private :: report
@@ -65,7 +64,6 @@ contains
     character(len=*), intent(in) :: base
     type(command_line_t), intent(in) :: options
     logical, intent(in) :: shows_progress
-    self%line = case%file//': correct'
     self%case = case
     self%case_text = case_text
     self%is_twin = is_twin
@@ -74,8 +72,6 @@ contains
     self%shows_progress = shows_progress
     self%is_quiet = options%quiet
     self%certifies = options%certify .and. .not. is_twin
-    self%notice = ''
-    if (.not. (is_twin .or. options%quiet)) self%advice%case = case
   end subroutine prepare
 
   !> Integrate, and write the results and the summary to the disk. The order is such that incomplete results never have their final
@@ -162,7 +158,6 @@ contains
       do while (.not. run%is_over)
         call run%advance(huge(1.0_dp), steps_between_looks)
         call self%progress%update(run%t/run%expected_end(), run%t)
-        call self%advice%consider(run%t, run%expected_end(), clock() - self%began, run%method%statistics, self%progress)
         if (any(files%file%has_failed())) call run%stop()
         if (interrupted()) call run%stop()
         now = clock()
@@ -219,7 +214,7 @@ contains
     call collect_errors(self, files, folder_status)
   end subroutine close_files
 
-  !> Write the summary into its file, and its lines for the user into `line` and `notice`.
+  !> Write the summary into its file, and its lines for the user into `line`.
   subroutine write_summary(self, files)
     class(case_run_t), intent(inout) :: self
     type(trace_files_t), intent(inout) :: files
@@ -234,6 +229,7 @@ contains
     do i = 1, merge(n_places, 0, self%is_twin)
       case%joints(i)%kind = 'ideal'
     end do
+    if (self%is_twin .and. allocated(case%notes)) deallocate (case%notes)
     remark = ''
     if (allocated(self%certificate)) then
       if (self%certificate%is_made) then
@@ -243,9 +239,7 @@ contains
       remark = certificate_clause(self%certificate)
     end if
     wall_time = clock() - self%began
-    self%line = summary_line(case, self%report, wall_time, self%base, remark)
-    if (.not. self%advice%was_given) self%notice = advice(self%report%auto_saves)
-    if (self%notice /= '') self%notice = printable(case%file, 200)//': '//self%notice
+    self%line = lines_for_user(case, self%report, wall_time, self%base, remark)
     call self%summary%put(summary_table(case, self%report, wall_time, self%is_twin))
     if (allocated(self%certificate)) call self%summary%put(certificate_summary(self%certificate))
   end subroutine write_summary
@@ -274,10 +268,12 @@ contains
     has_events = self%case%has_contact() .and. .not. self%is_twin
   end function has_events
 
-  !> Put the name of the case file in front of an error message that does not contain it.
+  !> Put the name of the case file in front of each line of an error message that does not contain it.
   subroutine name_file(path, error)
     character(len=*), intent(in) :: path
     type(error_t), intent(inout) :: error
-    error%message = printable(path, 200)//': '//error%message
+    character(len=:), allocatable :: head
+    head = printable(path, 200)//': '
+    error%message = head//replaced(error%message, achar(10), achar(10)//head)
   end subroutine name_file
 end module case_run

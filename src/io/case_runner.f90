@@ -5,12 +5,12 @@ module case_runner
   use gudgeon_errors, only: error_t, fail, keep_first, status_ok, status_command_line, status_integration
   use case_definition, only: case_t
   use accuracy_presets, only: with_preset
+  use case_description, only: description
   use case_file, only: read_case_values, complete_case
   use case_text, only: resolved_text
   use case_values, only: case_values_t
-  use case_rules, only: case_warning
   use command_line, only: command_line_t
-  use film_files, only: provide_tables
+  use film_files, only: provide_tables, tell_tables
   use gudgeon_columns, only: column_list_t, choose_columns
   use gudgeon_summary, only: build_advice
   use run_start, only: try_start
@@ -21,10 +21,10 @@ module case_runner
   use gudgeon_progress, only: tell, say, clock, progress_wanted
   use measured_curve, only: measured_curve_t
   use process_pool, only: tasks_t, note_t, share, available_processors
-  use text_tools, only: printable, integer_text, path_beside
+  use text_tools, only: case_name, printable, integer_text, path_beside, replaced
   implicit none
   private
-  public :: run_cases, tell_warning
+  public :: run_cases, tell_notes
 
   !> A case with its results.
   type :: case_job_t
@@ -89,7 +89,7 @@ contains
     type(case_values_t) :: values
     type(case_t) :: case
     type(column_list_t) :: list, ideal_list
-    character(len=:), allocatable :: base, text
+    character(len=:), allocatable :: base, text, tables
     logical :: is_bearing
 
     job%path = path
@@ -100,11 +100,14 @@ contains
     call read_case_values(path, settings_of(options), values, job%error, is_bearing)
     if (is_bearing) then
       allocate (job%bearing)
-      if (.not. allocated(job%error)) call job%bearing%prepare(values, path, options%out, job%error)
+      base = options%out//'/'//options%name
+      if (options%name == '') base = base//case_name(path)
+      if (.not. allocated(job%error)) call job%bearing%prepare(values, path, base, job%error)
       return
     end if
     if (.not. allocated(job%error)) call complete_case(values, path, case, job%error)
     if (allocated(job%error)) return
+    if (options%name /= '') case%name = options%name
     call choose_columns(case, .false., list, job%error)
     if (.not. allocated(job%error)) call choose_columns(case, .true., ideal_list, job%error)
     if (.not. allocated(job%error)) call try_start(case, job%error)
@@ -112,7 +115,7 @@ contains
       call name_file(path, job%error)
       return
     end if
-    if (.not. options%quiet) call tell_warning(case)
+    if (.not. options%quiet) call tell_notes(case)
     base = options%out//'/'//case%name
     call keep_tables(case, base, job%error)
     if (allocated(job%error)) return
@@ -120,6 +123,13 @@ contains
     job%has_twin = case%output%ideal_twin .and. (case%has_clearance() .or. case%is_elastic())
     call job%run%prepare(case, text, .false., list, base, options, shows_progress)
     if (job%has_twin) call job%twin%prepare(case, text, .true., ideal_list, base//'.ideal', options, shows_progress)
+    if (.not. options%check) return
+    call tell_tables(case, tables, job%error)
+    if (allocated(job%error)) then
+      call name_file(path, job%error)
+    else
+      job%run%line = description(case, size(list%id), job%has_twin, base, tables)
+    end if
   end subroutine prepare
 
   !> The overrides of the command line, with those for which an option stands.
@@ -172,13 +182,13 @@ contains
     end subroutine refuse_table
   end subroutine keep_tables
 
-  !> Warn about values of a case that are valid but have no effect.
-  subroutine tell_warning(case)
+  !> Tell the notes on a case.
+  subroutine tell_notes(case)
     type(case_t), intent(in) :: case
-    character(len=:), allocatable :: warning
-    warning = case_warning(case)
-    if (warning /= '') call tell(printable(case%file, 200)//': '//warning)
-  end subroutine tell_warning
+    character(len=:), allocatable :: head
+    head = printable(case%file, 200)//': note: '
+    if (allocated(case%notes)) call tell(head//replaced(case%notes, achar(10), achar(10)//head))
+  end subroutine tell_notes
 
   !> Run a case and its ideal twin, and print the outcome.
   subroutine carry_out(self, task, note)
@@ -238,17 +248,13 @@ contains
     call keep_first(job%error, error)
     call keep_first(job%run%error, error)
     call keep_first(job%twin%error, error)
-    if (allocated(error)) then
-      call tell(error%message)
-      status = max(status, error%status)
-    else if (options%quiet) then
-      return
-    else if (allocated(job%bearing)) then
-      call say(job%bearing%line, status)
+    if (allocated(job%bearing) .and. .not. options%quiet) then
+      if (.not. allocated(error)) call say(job%bearing%line, status)
       if (job%bearing%notice /= '') call tell(job%bearing%notice)
-    else
-      call say(job%run%line, status)
-      if (job%run%notice /= '') call tell(job%run%notice)
     end if
+    if (allocated(job%run%line) .and. .not. options%quiet) call say(job%run%line, status)
+    if (.not. allocated(error)) return
+    call tell(error%message)
+    status = max(status, error%status)
   end subroutine say_outcome
 end module case_runner

@@ -209,7 +209,8 @@ contains
   pure logical function same_meaning(a, b)
     type(key_t), intent(in) :: a, b
     same_meaning = a%kind == b%kind .and. a%count == b%count .and. (a%required .eqv. b%required) .and. a%unit == b%unit .and. &
-      a%range == b%range .and. (a%default == b%default .or. a%kind == word_kind .or. a%kind == logical_kind)
+      a%range == b%range .and. a%usual == b%usual .and. &
+      (a%default == b%default .or. a%kind == word_kind .or. a%kind == logical_kind)
   end function same_meaning
 
   !> Add the words of a list to another list.

@@ -1,7 +1,8 @@
 !> Cases as text: the template with every key and its default, and the resolved case.
 module case_text
+  use gudgeon_kinds, only: dp
   use text_tools, only: integer_text, quoted
-  use number_text, only: real_text, most_digits
+  use number_text, only: exact_text
   use gudgeon_parameters, only: key_t, real_kind, integer_kind, logical_kind
   use case_schema, only: group_definition_t, key_table_t, find_key, is_listed
   use case_values, only: case_values_t, value_t
@@ -42,7 +43,7 @@ contains
     end do
   end function template_text
 
-  !> `  key = value   ! unit, range, default: description`
+  !> `  key = value   ! unit, range, usual sizes, default: description`
   function template_line(keys, group, key) result(line)
     type(key_t), intent(in) :: keys(:)   !! of the schema
     type(group_definition_t), intent(in) :: group
@@ -57,6 +58,7 @@ contains
     note = ''
     if (key%unit /= '') note = note//', '//trim(key%unit)
     if (key%range /= '') note = note//', '//trim(key%range)
+    if (key%usual /= '') note = note//', usually '//trim(key%usual)
     if (allocated(key%words)) note = note//', one of '//key%words
     if (key%required) note = note//', required'
     if (.not. key%required .and. key%example /= '' .and. key%default /= '') note = note//', default '//trim(key%default)
@@ -86,7 +88,8 @@ contains
     list = list(3:)
   end function others
 
-  !> A case file with all keys of the models of the case, in every group that is present. Reals have 17 significant digits.
+  !> A case file with all keys of the models of the case, in every group that is present. Reals have as many digits as read
+  !> back exactly.
   function resolved_text(values) result(text)
     type(case_values_t), intent(in) :: values
     character(len=:), allocatable :: text
@@ -113,9 +116,9 @@ contains
     line = '  '//trim(key%name)//' = '
     select case (key%kind)
     case (real_kind)
-      line = line//real_text(value%reals(1), most_digits)
+      line = line//real_literal(value%reals(1))
       do element = 2, key%count
-        line = line//', '//real_text(value%reals(element), most_digits)
+        line = line//', '//real_literal(value%reals(element))
       end do
     case (integer_kind)
       line = line//integer_text(value%whole)
@@ -126,4 +129,12 @@ contains
     end select
     if (key%unit /= '') line = line//'  ! '//trim(key%unit)
   end function resolved_line
+
+  !> A real that cannot be taken for a whole number: 0.0508, 250.0, 2e-5.
+  pure function real_literal(value) result(text)
+    real(dp), intent(in) :: value
+    character(len=:), allocatable :: text
+    text = exact_text(value)
+    if (scan(text, '.e') == 0) text = text//'.0'
+  end function real_literal
 end module case_text

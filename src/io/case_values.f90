@@ -3,22 +3,33 @@
 module case_values
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_case_file
-  use text_tools, only: printable, integer_text, suggestion
-  use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, real_kind, integer_kind, text_kind
-  use namelist_reader, only: token_t, read_values
-  use value_reader, only: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals, is_within
+  use text_tools, only: printable, integer_text, nearest_word, allowed
+  use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, real_kind, integer_kind, &
+    word_kind, text_kind
+  use namelist_reader, only: entry_t, token_t, read_values
+  use unit_hints, only: likely_unit
+  use problem_list, only: problem_list_t, behind_file
+  use value_reader, only: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals, is_within, &
+    read_bounds
   implicit none
   private
   public :: case_values_t, value_t
 
+  integer, parameter :: name_length = 32   !! of keys and groups
+
   type, extends(key_table_t) :: case_values_t
     character(len=:), allocatable :: file          !! name of the case file in messages
     logical, allocatable :: is_present(:)          !! for each group
+    integer, allocatable :: line(:)                !! of the file on which each group begins
     type(value_t), allocatable :: values(:)        !! for each key
+    type(problem_list_t) :: problems               !! errors found so far
   contains
     procedure :: set_defaults
     procedure :: find         !! index of a key, or an error
+    procedure :: list_keys
+    procedure :: excuse
     procedure :: place_of     !! index of a key
+    procedure :: give         !! assign the values of an entry of the file
     procedure :: assign       !! give a key its values as written
     procedure :: assign_text  !! the same, from a text of the user, as an override
     procedure :: take_out     !! remove a group, as if the file did not contain it
@@ -31,9 +42,10 @@ module case_values
     procedure :: by_law       !! text that names the laws that have a key
     procedure :: is_used      !! whether the selected law has this key
     procedure :: check_range  !! range of one key
-    procedure :: refuse       !! error for a value
+    procedure :: refuse       !! note an error of a value
     procedure :: forbid       !! the same if a condition holds
-    procedure :: demand       !! error for a value that is missing or 0
+    procedure :: demand       !! the same for a value that is missing or 0
+    procedure :: place_in_file   !! line of a value
     procedure :: is_given
   end type case_values_t
 
@@ -46,6 +58,7 @@ contains
     integer :: i
     self%file = printable(file, 200)
     allocate (self%is_present(size(self%groups)), source=.false.)
+    allocate (self%line(size(self%groups)), source=behind_file)
     allocate (self%values(size(self%keys)))
     do i = 1, size(self%keys)
       call set_to_default(self%keys(i), self%values(i))
@@ -95,10 +108,9 @@ contains
 
   !> Check that exactly one key of the family of this key is given, or two that are allowed together. A key set to its default, 0,
   !> counts as not given.
-  subroutine check_family(self, group, name, error)
-    class(case_values_t), intent(in) :: self
+  subroutine check_family(self, group, name)
+    class(case_values_t), intent(inout) :: self
     character(len=*), intent(in) :: group, name
-    type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: others, earlier
     integer :: place, i, k, first, last
     logical :: is_ended
@@ -118,14 +130,13 @@ contains
         if (.not. is_relative(self%keys(k), self%keys(i)) .or. may_stand_beside(self%keys(k), self%keys(i))) cycle
         if (.not. self%is_said(k)) cycle
         earlier = trim(self%keys(k)%name)
-        call fail(error, self%file//': '//shown_group(group)//' '//trim(self%keys(i)%name)//' = '// &
-          trim(self%values(i)%written(1))//': must not be given together with '//earlier//' = '// &
+        call self%refuse(group, trim(self%keys(i)%name), 'must not be given together with '//earlier//' = '// &
           trim(self%values(k)%written(1))//'; '//group//'.'//earlier//'='//short_default(self%keys(k))//' takes that back', &
-          status_case_file)
+          unit='')
         return
       end do
     end do
-    if (.not. is_ended) call self%refuse(group, name, others//' is required, > 0', error)
+    if (.not. is_ended) call self%refuse(group, name, others//' is required, > 0')
   end subroutine check_family
 
   !> A default as a user would write it: 0 for 0.0.
@@ -172,24 +183,72 @@ contains
     character(len=*), intent(in) :: group, key, at
     integer, intent(out) :: place
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: text
+    character(len=name_length), allocatable :: names(:)
+    character(len=:), allocatable :: text, near
     integer :: i
+    near = ''
     place = self%place_of(group, key)
     if (place > 0) return
     if (find_group(self%groups, group) == 0) then
-      text = '&'//printable(group, 40)//': unknown group'
-      associate (names => [(self%groups(i)%name, i=1, size(self%groups))])
-        call fail(error, at//text//suggestion(group, pack(names, index(names, '.') == 0)), status_case_file)
-      end associate
+      names = [character(len=name_length) :: (self%groups(i)%name, i=1, size(self%groups))]
+      near = nearest_word(group, names)
+      if (near /= '') near = '; did you mean '//near//'?'
+      call fail(error, at//'&'//printable(group, 40)//': unknown group'//near//allowed(pack(names, index(names, '.') == 0)), &
+        status_case_file)
       return
     end if
     text = shown_group(group)//' '//printable(key, 40)//': unknown key'
     i = findloc(self%keys%name == key, .true., 1)
     if (i > 0) text = text//' of this group; it belongs to '//shown_group(trim(self%keys(i)%group))
-    associate (names => [(self%keys(i)%name, i=1, size(self%keys))])
-      call fail(error, at//text//suggestion(key, pack(names, self%keys%group == group)), status_case_file)
-    end associate
+    call self%list_keys(group, names)
+    near = nearest_word(key, names)
+    if (near /= '' .and. i == 0) text = text//'; did you mean '//near//'?'
+    call fail(error, at//text//allowed(names), status_case_file)
   end subroutine find
+
+  !> The names of the keys of a group.
+  pure subroutine list_keys(self, group, names)
+    class(case_values_t), intent(in) :: self
+    character(len=*), intent(in) :: group   !! a group of the table
+    character(len=name_length), allocatable, intent(out) :: names(:)
+    integer :: i
+    associate (range => self%groups(find_group(self%groups, group)))
+      allocate (names(range%last - range%first + 1))
+      do i = 1, size(names)
+        names(i) = self%keys(range%first + i - 1)%name
+      end do
+    end associate
+  end subroutine list_keys
+
+  !> Count the key of a group that a misspelt name probably means as given, so that it is not demanded too.
+  subroutine excuse(self, group, misspelt)
+    class(case_values_t), intent(inout) :: self
+    character(len=*), intent(in) :: group, misspelt
+    character(len=name_length), allocatable :: names(:)
+    integer :: place
+    if (find_group(self%groups, group) == 0) return
+    call self%list_keys(group, names)
+    place = self%place_of(group, nearest_word(misspelt, names))
+    if (place > 0) self%values(place)%given = .true.
+  end subroutine excuse
+
+  !> Give a key of a group the values of an entry of the file; `at` names file and line. What is wrong is noted.
+  subroutine give(self, group, entry, at)
+    class(case_values_t), intent(inout) :: self
+    character(len=*), intent(in) :: group, at   !! group with its place
+    type(entry_t), intent(in) :: entry
+    type(error_t), allocatable :: error
+    integer :: place
+    call self%find(group, entry%key, at, place, error)
+    if (allocated(error)) then
+      call self%excuse(group, entry%key)
+    else
+      call self%assign(place, entry%index, entry%tokens, at, .false., error)
+      self%values(place)%line = entry%line
+      if (allocated(error) .and. self%keys(place)%kind == word_kind) self%problems%is_structural = .true.
+    end if
+    call self%problems%add_error(error, group, entry%line)
+  end subroutine give
 
   !> Give the key at `place` its values as written, from element `index` on; 0 means all elements. An override replaces the value of
   !> the file; within the file an element may be given once. `at` names file and line.
@@ -228,6 +287,7 @@ contains
           end if
           call convert(key, tokens(i), value, element, wanted)
           if (allocated(wanted)) then
+            value%given = .true.   ! but unreadable: it is not demanded too
             call fail(error, name//' = '//printable(tokens(i)%text, 48)//': '//wanted//unit_of(key), status_case_file)
             return
           end if
@@ -264,40 +324,37 @@ contains
   end subroutine assign_text
 
   !> Check that required keys are given, that all numbers are in their ranges, and that no key is given that only another law has.
-  subroutine check(self, error)
-    class(case_values_t), intent(in) :: self
-    type(error_t), allocatable, intent(out) :: error
+  subroutine check(self)
+    class(case_values_t), intent(inout) :: self
     integer :: i, group
     do i = 1, size(self%keys)
       group = find_group(self%groups, trim(self%keys(i)%group))
       if (self%groups(group)%is_model .and. .not. self%is_present(group)) cycle
       if (self%is_used(i)) then
-        call self%check_required(i, error)
-        if (.not. allocated(error)) call self%check_range(i, error)
+        if (.not. self%problems%is_incomplete) call self%check_required(i)
+        call self%check_range(i)
       else if (self%keys(i)%only_here) then   ! other keys of the group may belong to other laws
         associate (key => self%keys(i))
           if (self%is_said(i)) call self%refuse(trim(key%group), trim(key%name), 'is for '//key%choice//' = '''//key%laws// &
-            ''' alone and must not be given with '''//self%values(self%place_of(trim(key%group), key%choice))%text//'''', error)
+            ''' alone and must not be given with '''//self%values(self%place_of(trim(key%group), key%choice))%text//'''')
         end associate
       end if
-      if (allocated(error)) return
     end do
   end subroutine check
 
   !> Check that the key at `place` is given if its group is present and requires it.
-  subroutine check_required(self, place, error)
-    class(case_values_t), intent(in) :: self
+  subroutine check_required(self, place)
+    class(case_values_t), intent(inout) :: self
     integer, intent(in) :: place
-    type(error_t), allocatable, intent(out) :: error
     integer :: group
     associate (key => self%keys(place))
       if (.not. key%required .or. self%values(place)%given(1)) return
       group = find_group(self%groups, trim(key%group))
       if (self%is_present(group)) then
-        call fail(error, self%file//': '//shown_group(trim(key%group))//' '//trim(key%name)//': required'//self%by_law(key)// &
-                  unit_of(key), status_case_file)
-      else if (.not. self%groups(group)%is_model) then
-        call fail(error, self%file//': '//shown_group(trim(key%group))//': this group is required', status_case_file)
+        call self%refuse(trim(key%group), trim(key%name), 'required'//self%by_law(key))
+      else if (.not. (self%groups(group)%is_model .or. self%problems%blames(''))) then
+        call self%problems%add(self%file//': '//shown_group(trim(key%group))//': this group is required', trim(key%group), &
+          behind_file)
       end if
     end associate
   end subroutine check_required
@@ -325,28 +382,39 @@ contains
   end function by_law
 
   !> Check that the numbers of the key at `place` are in its range, or equal its default.
-  subroutine check_range(self, place, error)
-    class(case_values_t), intent(in) :: self
+  subroutine check_range(self, place)
+    class(case_values_t), intent(inout) :: self
     integer, intent(in) :: place
-    type(error_t), allocatable, intent(out) :: error
     integer :: element
     associate (key => self%keys(place), value => self%values(place))
-      if (key%kind > integer_kind) return
+      if (key%kind > integer_kind .or. key%required .and. value%written(1) == '') return   ! not given, or unreadable
       do element = 1, key%count
         if (is_within(merge(value%reals(element), real(value%whole, dp), key%kind == real_kind), key%range)) cycle
         if (is_default(key, value, element)) cycle
-        call self%refuse(trim(key%group), trim(key%name), 'must be '//trim(key%range), error, element)
+        call self%refuse(trim(key%group), trim(key%name), 'must be '//trim(key%range), element)
         return
       end do
     end associate
   end subroutine check_range
 
-  !> The error for a value: file, group, key, value as written, allowed values, unit.
-  subroutine refuse(self, group, name, wanted, error, element)
-    class(case_values_t), intent(in) :: self
+  !> Text that guesses the unit of a real that is not of a usual size.
+  pure function meant(key, value) result(text)
+    type(key_t), intent(in) :: key
+    real(dp), intent(in) :: value
+    character(len=:), allocatable :: text
+    real(dp) :: least, most
+    text = ''
+    if (key%usual == '' .or. .not. abs(value) > 0 .or. value < 0 .and. key%unit /= 'degrees') return
+    call read_bounds(trim(key%usual), least, most)
+    if (abs(value) < least .or. abs(value) > most) text = likely_unit(trim(key%unit), value, least, most)
+  end function meant
+
+  !> Note an error of a value: file, group, key, value as written, allowed values, unit.
+  subroutine refuse(self, group, name, wanted, element, unit)
+    class(case_values_t), intent(inout) :: self
     character(len=*), intent(in) :: group, name, wanted
-    type(error_t), allocatable, intent(out) :: error
     integer, intent(in), optional :: element
+    character(len=*), intent(in), optional :: unit   !! instead of the unit of the key in parentheses
     character(len=:), allocatable :: text
     integer :: place, shown
     place = self%place_of(group, name)
@@ -355,29 +423,41 @@ contains
     text = self%file//': '//shown_group(group)//' '//name
     if (self%keys(place)%count > 1 .and. self%keys(place)%kind == real_kind) text = text//'('//integer_text(shown)//')'
     if (self%values(place)%given(shown)) text = text//' = '//trim(self%values(place)%written(shown))
-    call fail(error, text//': '//wanted//unit_of(self%keys(place)), status_case_file)
+    text = text//': '//wanted
+    if (present(unit)) then
+      text = text//unit
+    else
+      text = text//unit_of(self%keys(place))//meant(self%keys(place), self%values(place)%reals(min(shown, most_reals)))
+    end if
+    call self%problems%add(text, group, self%place_in_file(place))
   end subroutine refuse
 
-  !> The error for a value if it is wrong, unless there is an error already.
-  subroutine forbid(self, is_wrong, group, name, wanted, error)
+  !> Line of the file on which the key at `place` is given, or else on which its group begins.
+  pure integer function place_in_file(self, place)
     class(case_values_t), intent(in) :: self
+    integer, intent(in) :: place
+    place_in_file = self%values(place)%line
+    if (place_in_file == 0) place_in_file = self%line(find_group(self%groups, trim(self%keys(place)%group)))
+  end function place_in_file
+
+  !> Note an error of a value if it is wrong.
+  subroutine forbid(self, is_wrong, group, name, wanted)
+    class(case_values_t), intent(inout) :: self
     logical, intent(in) :: is_wrong
     character(len=*), intent(in) :: group, name, wanted
-    type(error_t), allocatable, intent(inout) :: error
-    if (is_wrong .and. .not. allocated(error)) call self%refuse(group, name, wanted, error)
+    if (is_wrong) call self%refuse(group, name, wanted)
   end subroutine forbid
 
-  !> The error for a number that is missing, or given as 0, unless there is an error already. `why` says when it is required.
-  subroutine demand(self, is_there, group, name, why, error)
-    class(case_values_t), intent(in) :: self
+  !> Note an error of a number that is missing, or given as 0. `why` says when it is required.
+  subroutine demand(self, is_there, group, name, why)
+    class(case_values_t), intent(inout) :: self
     logical, intent(in) :: is_there
     character(len=*), intent(in) :: group, name, why
-    type(error_t), allocatable, intent(inout) :: error
-    if (is_there .or. allocated(error)) return
+    if (is_there) return
     if (self%is_given(group, name)) then
-      call self%refuse(group, name, 'must be > 0', error)
+      call self%refuse(group, name, 'must be > 0')
     else
-      call self%refuse(group, name, trim('required '//why), error)
+      call self%refuse(group, name, trim('required '//why))
     end if
   end subroutine demand
 

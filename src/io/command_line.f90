@@ -1,7 +1,10 @@
 !> Reads the command line: options, overrides and case files. The arguments are passed as an array so that it can be tested.
 module command_line
   use gudgeon_errors, only: error_t, fail, status_command_line
-  use text_tools, only: printable, lowercase, nearest_word, case_name
+  use text_tools, only: printable, lowercase, nearest_word, likely_word, case_name
+  use case_templates, only: template_kinds
+  use accuracy_presets, only: accuracy_levels
+  use case_schema, only: key_table_t, case_schema_of, find_group, is_listed
   implicit none
   private
   public :: command_line_t, parse_command_line, program_arguments, help_text
@@ -11,11 +14,14 @@ module command_line
     integer, private :: option_count = 0
     character(len=:), allocatable :: out          !! folder for results
     character(len=:), allocatable :: overrides(:) !! GROUP.KEY=VALUE or GROUP=none in the given order, padded with blanks
+    character(len=:), allocatable :: name         !! of the results, instead of that of the case file; empty: not given
     character(len=:), allocatable :: from         !! path of a state from which the cases start; empty: none
-    character(len=:), allocatable :: accuracy     !! draft, standard, reference, or empty: as in the case file
+    character(len=:), allocatable :: accuracy     !! one of `accuracy_levels`, or empty: as in the case file
     integer :: jobs = 0                           !! number of processes; 0: number of processors
     logical :: certify = .false.                  !! make certificates of the runs
-    character(len=:), allocatable :: reference    !! page of the manual to print: case, bearing, study or results; empty: none
+    character(len=:), allocatable :: reference    !! page of the manual to print: case, bearing, study, results or a group
+                                                  !! of cases; empty: none
+    character(len=:), allocatable :: kind         !! of a short template; empty: the complete one
     logical :: check = .false., template = .false., quiet = .false., help = .false., version = .false.
     character(len=:), allocatable :: progress     !! auto, always, never
     character(len=:), allocatable :: cases(:)     !! paths of case files or study files, padded with blanks
@@ -29,16 +35,18 @@ module command_line
     character(len=10) :: long = ''
     character(len=1) :: short = ''
     logical :: takes_value = .false.
+    logical :: may_take_value = .false.   !! in the form --NAME=VALUE alone
   end type option_t
 
-  type(option_t), parameter :: options(15) = [ &
+  type(option_t), parameter :: options(16) = [ &
     option_t('out', 'o', .true.), option_t('set', 's', .true.), option_t('accuracy', 'a', .true.), &
     option_t('jobs', 'j', .true.), option_t('progress', '', .true.), option_t('check', '', .false.), &
-    option_t('certify', '', .false.), &
-    option_t('template', '', .false.), option_t('quiet', 'q', .false.), option_t('help', 'h', .false.), &
+    option_t('certify', '', .false.), option_t('name', '', .true.), &
+    option_t('template', '', .false., .true.), option_t('quiet', 'q', .false.), option_t('help', 'h', .false.), &
     option_t('version', 'V', .false.), option_t('fresh', '', .false.), option_t('rows', '', .true.), &
     option_t('reference', '', .true.), option_t('from', '', .true.)]
 
+  character(len=*), parameter :: standard_input = '/dev/stdin'
   integer, parameter :: most_jobs = 1024
 
 contains
@@ -56,6 +64,8 @@ contains
     line%from = ''
     line%progress = 'auto'
     line%reference = ''
+    line%name = ''
+    line%kind = ''
     allocate (character(len=len(arguments)) :: line%overrides(0), line%cases(0))
     only_cases = .false.
     i = 0
@@ -66,8 +76,10 @@ contains
         call refuse('an empty argument is no case file')
       else if (text == 'sweep' .and. .not. (line%sweep .or. only_cases) .and. size(line%cases) == 0) then
         line%sweep = .true.
+      else if (text == '-') then
+        line%cases = [character(len=max(len(arguments), len(standard_input))) :: line%cases, standard_input]
       else if (only_cases .or. index(text, '-') /= 1) then
-        line%cases = [character(len=len(arguments)) :: line%cases, text]
+        line%cases = [character(len=max(len(arguments), len(standard_input))) :: line%cases, text]
       else if (text == '--') then
         only_cases = .true.
       else if (index(text, '--') == 1) then
@@ -78,12 +90,17 @@ contains
     end do
     if (allocated(error) .or. line%help .or. line%version) return
     if (line%template .or. line%reference /= '') then
-      if (line%option_count > 1 .or. size(line%cases) > 0) &
+      if (line%option_count > 1 .or. size(line%cases) > 0) then
         call refuse('--template and --reference are not combined with other options or with files')
+      else if (line%sweep .and. line%kind /= '') then
+        call refuse('gudgeon sweep --template has no kinds')
+      end if
       return
     end if
     if (size(line%cases) == 0) then
       call refuse('no '//trim(merge('study', 'case ', line%sweep))//' file given')
+    else if (line%name /= '' .and. (line%sweep .or. size(line%cases) > 1)) then
+      call refuse('--name is for one case')
     else if (line%sweep .and. line%certify) then
       call refuse('--certify is not for gudgeon sweep')
     else if (line%sweep .and. line%from /= '') then
@@ -119,8 +136,8 @@ contains
         call refuse('--'//printable(name, 40)//': unknown option'//near)
       else if (equals == 0) then
         call take_option(options(place), '--'//name)
-      else if (options(place)%takes_value) then
-        call take(options(place)%long, text(equals + 1:))
+      else if (options(place)%takes_value .or. options(place)%may_take_value) then
+        call take(options(place)%long, text(equals + 1:), has_value=.true.)
       else
         call refuse('--'//name//': takes no value')
       end if
@@ -129,7 +146,6 @@ contains
     !> `-s VALUE`, `-sVALUE`, `-q`, or several options without values together, such as `-qh`.
     subroutine take_short()
       integer :: k, place
-      if (len(text) == 1) call refuse('-: a case is read from a file, not from standard input')
       do k = 2, len(text)
         place = findloc(options%short == text(k:k) .and. options%short /= '', .true., 1)
         if (place == 0) then
@@ -159,9 +175,11 @@ contains
     end subroutine take_option
 
     !> Carry out one option.
-    subroutine take(name, value)
+    subroutine take(name, value, has_value)
       character(len=*), intent(in) :: name, value
+      logical, intent(in), optional :: has_value   !! of an option that may do without
       character(len=:), allocatable :: wanted
+      type(key_table_t) :: table
       line%option_count = line%option_count + 1
       select case (name)
       case ('out')
@@ -175,7 +193,8 @@ contains
         if (value == '') wanted = 'must name a file'
       case ('accuracy')
         line%accuracy = value
-        if (all(value /= ['draft    ', 'standard ', 'reference'])) wanted = 'must be draft, standard or reference'
+        if (.not. is_listed(value, accuracy_levels)) &
+          wanted = 'must be one of '//accuracy_levels//likely_word(value, accuracy_levels)
       case ('jobs')
         line%jobs = 0
         if (value /= '' .and. verify(value, '0123456789') == 0 .and. len(value) < 6) read (value, *) line%jobs
@@ -187,9 +206,18 @@ contains
         line%check = .true.
       case ('template')
         line%template = .true.
+        line%kind = value
+        if (present(has_value) .and. .not. is_listed(value, template_kinds)) &
+          wanted = 'must be one of '//template_kinds//likely_word(value, template_kinds)
+      case ('name')
+        line%name = value
+        if (value == '' .or. index(value, '/') > 0 .or. value == '.' .or. value == '..') &
+          wanted = 'must be a name without folder; --out gives the folder'
       case ('reference')
         line%reference = value
-        if (all(value /= ['case   ', 'bearing', 'study  ', 'results'])) wanted = 'must be case, bearing, study or results'
+        call case_schema_of(table)
+        if (all(value /= ['case   ', 'bearing', 'study  ', 'results']) .and. find_group(table%groups, value) == 0) &
+          wanted = 'must be case, bearing, study, results or a group of cases'
       case ('quiet')
         line%quiet = .true.
       case ('certify')
@@ -272,14 +300,16 @@ contains
     character(len=*), parameter :: n = achar(10)
     text = 'gudgeon [options] CASE.nml [CASE.nml ...]'//n// &
       'gudgeon sweep [options] STUDY.nml [STUDY.nml ...]'//n// &
-      'Simulates the slider-crank mechanism with clearance in its joints. sweep runs parameter studies.'//n//n// &
+      'Simulates the slider-crank mechanism with clearance in its joints. sweep runs parameter studies.'//n// &
+      'CASE.nml is a case file, or - for standard input.'//n//n// &
       '  -o, --out DIR             folder for the results (default: results)'//n// &
       '  -s, --set GROUP.KEY=VALUE change a value of the case; repeatable, the last one counts. A new end of the run'//n// &
       '                            (revolutions, crank_revolutions or end_time) replaces the one in the file'//n// &
       '      --set GROUP=none      remove a group from the case; a later --set of one of its keys starts an empty group'//n// &
       '  -a, --accuracy LEVEL      draft, standard or reference: about 3, 5 or 8 digits of a motion without impacts. Sets'//n// &
       '                            method auto, contact entry root and the tolerance 1e-4, 1e-6 or 1e-10; --set has'//n// &
-      '                            priority'//n// &
+      '                            priority. dissertation: Adams, tolerance 1e-6, contact entry by step rejection'//n// &
+      '      --name NAME           name of the results of a case, instead of that of its file'//n// &
       '      --from STATE.nml      go on from the state that another run has reached; with --set initial.goes_on=.false.'//n// &
       '                            begin at t = 0 with its motion'//n// &
       '  -j, --jobs N              number of processes for cases and studies (default: number of processors)'//n// &
@@ -287,7 +317,9 @@ contains
       '                            and with another method; results in the summary and in CASE.certificate.csv'//n// &
       '      --check               read and validate the cases without running them'//n// &
       '      --template            print a complete, commented case file (sweep: study file) with every key'//n// &
-      '      --reference SUBJECT   print a reference page in Markdown; SUBJECT is case, bearing, study or results'//n// &
+      '      --template=KIND       print a short case that runs; KIND is one of '//template_kinds//n// &
+      '      --reference SUBJECT   print a reference page in Markdown; SUBJECT is case, bearing, study,'//n// &
+      '                            results or a group of cases'//n// &
       '      --progress WHEN       show progress on standard error: auto (on a terminal), always or never'//n// &
       '  -q, --quiet               print errors only'//n// &
       '      --fresh               sweep: discard the results of an earlier sweep (default: continue it)'//n// &

@@ -16,18 +16,28 @@ module film_files
   use joint_case, only: joint_case_t
   use film_snapshots, only: film_field_t
   use film_law, only: film_law_t, table_watch_t
-  use gudgeon_posix, only: make_directory, interrupted
+  use gudgeon_posix, only: make_directory, interrupted, error_text, error_no_entry
   use growing_text, only: growing_text_t
-  use number_text, only: real_text, short_text
+  use number_text, only: real_text, short_text, quantity_text
   use gudgeon_progress, only: progress_t, clock, tell
   use result_file, only: write_text
   use text_tools, only: path_beside, printable
   use text_file, only: read_whole
   implicit none
   private
-  public :: provide_tables, write_film_file
+  public :: provide_tables, tell_tables, write_film_file
 
   character(len=*), parameter :: newline = achar(10), title = 'gudgeon film table'//newline
+
+  real(dp), parameter :: trial = 0.3_dp   !! longest time that a check spends to find out how long a table takes [s]
+
+  !> Stops the computation of a table after a while, to find out how long all of it takes.
+  type, extends(table_watch_t) :: trial_watch_t
+    real(dp) :: began = 0, took = 0   !! [s]
+    real(dp) :: share = 0             !! of the rows done
+  contains
+    procedure :: row_done => time_row
+  end type trial_watch_t
 
   !> Shows the progress of a table, and ends its computation if the user interrupts.
   type, extends(table_watch_t) :: progress_watch_t
@@ -59,7 +69,7 @@ contains
     type(progress_watch_t) :: watch
     type(bearing_t) :: bearing
     character(len=:), allocatable :: key, path
-    logical :: is_there, is_named, is_foreign
+    logical :: is_there, is_named
     real(dp) :: began   ! [s]
     if (.not. (allocated(joint%film) .and. joint%has_clearance())) return
     bearing = joint%bearing(case%mechanism%rod_length)
@@ -67,16 +77,8 @@ contains
       key = joint%film%table_key(bearing, tolerance)
       if (key == joint%film%table_of) return
       began = clock()
-      is_named = .false.
-      if (allocated(joint%film%table_file)) is_named = joint%film%table_file /= ''
-      if (is_named) then
-        path = path_beside(case%file, joint%film%table_file)
-      else
-        path = path_for(key)
-      end if
-      call load(path, key, joint%film, is_there, is_foreign)
-      if (is_named .and. is_foreign) call fail(error, '&lubrication table_file = '//joint%film%table_file// &
-        ': is not a film table of this program: name another file', status_case_file)
+      call find_file(joint%film, case, key, .true., path, is_named)
+      call load(path, key, joint%film, is_named, is_there, error)
       if (.not. (is_there .or. allocated(error))) then
         if (announces) call tell(printable(case%file, 200)//': computing the film table of a bearing with L/D = '// &
                                  short_text(0.5_dp*bearing%length/bearing%pin_radius())//place_of(path))
@@ -94,6 +96,76 @@ contains
     end associate
   end subroutine provide_table
 
+  !> Whether the tables of films are there or how long it takes to compute them, for the user; empty if the films need none. Error:
+  !> the file that the case names is not a table (status_case_file).
+  subroutine tell_tables(case, text, error)
+    type(case_t), intent(in) :: case
+    character(len=:), allocatable, intent(out) :: text
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: more
+    integer :: i
+    text = ''
+    do i = 1, n_places
+      call tell_table(case%joints(in_order(i)), case, more, error)
+      if (allocated(error)) return
+      if (more == '') cycle
+      if (text /= '') text = text//'; '
+      text = text//trim(places(in_order(i))%title)//': '//more
+    end do
+  end subroutine tell_tables
+
+  !> The same for one joint.
+  subroutine tell_table(joint, case, text, error)
+    type(joint_case_t), intent(in) :: joint
+    type(case_t), intent(in) :: case
+    character(len=:), allocatable, intent(out) :: text
+    type(error_t), allocatable, intent(out) :: error
+    class(film_law_t), allocatable :: film
+    type(trial_watch_t) :: watch
+    type(bearing_t) :: bearing
+    character(len=:), allocatable :: key, path
+    logical :: is_there, is_named
+    text = ''
+    if (.not. (allocated(joint%film) .and. joint%has_clearance())) return
+    allocate (film, source=joint%film)
+    bearing = joint%bearing(case%mechanism%rod_length)
+    key = film%table_key(bearing, case%integrator%relative_tolerance)
+    if (key == '') return
+    call find_file(film, case, key, .false., path, is_named)
+    call load(path, key, film, is_named, is_there, error)
+    if (allocated(error)) return
+    text = 'stored in '//printable(path, 200)
+    if (is_there) return
+    watch%began = clock()
+    call film%make_table(bearing, case%integrator%relative_tolerance, watch)
+    text = 'must be computed, in about '//quantity_text(watch%took/watch%share, 's', 1)
+  end subroutine tell_table
+
+  !> The file that keeps a table; an empty path if there is none.
+  subroutine find_file(film, case, key, makes_folder, path, is_named)
+    class(film_law_t), intent(in) :: film
+    type(case_t), intent(in) :: case
+    character(len=*), intent(in) :: key
+    logical, intent(in) :: makes_folder   !! the cache folder is made if it is not there
+    character(len=:), allocatable, intent(out) :: path
+    logical, intent(out) :: is_named   !! the case names it
+    is_named = .false.
+    if (allocated(film%table_file)) is_named = film%table_file /= ''
+    if (is_named) then
+      path = path_beside(case%file, film%table_file)
+    else
+      path = path_for(key, makes_folder)
+    end if
+  end subroutine find_file
+
+  subroutine time_row(self, done, rows)
+    class(trial_watch_t), intent(inout) :: self
+    integer, intent(in) :: done, rows
+    self%took = clock() - self%began
+    self%share = real(done, dp)/rows
+    self%wants_to_stop = self%took > trial
+  end subroutine time_row
+
   subroutine row_done(self, done, rows)
     class(progress_watch_t), intent(inout) :: self
     integer, intent(in) :: done, rows
@@ -110,19 +182,21 @@ contains
   end function place_of
 
   !> Path of a stored table; empty if there is no cache folder.
-  function path_for(key) result(path)
+  function path_for(key, makes_folder) result(path)
     character(len=*), intent(in) :: key
+    logical, intent(in) :: makes_folder
     character(len=:), allocatable :: path
     type(checksum_t) :: sum
     integer :: status
     call get_variable('XDG_CACHE_HOME', path)
-    if (path == '') then
+    if (index(path, '/') /= 1) then   ! relative paths are to be ignored
       call get_variable('HOME', path)
       if (path == '') return
       path = path//'/.cache'
     end if
     path = path//'/gudgeon'
-    call make_directory(path, status)
+    status = 0
+    if (makes_folder) call make_directory(path, status)
     call sum%add(key)
     path = path//'/film-'//sum%hexadecimal()//'.table'
     if (status /= 0) path = ''
@@ -138,24 +212,29 @@ contains
     if (length > 0) call get_environment_variable(name, value)
   end subroutine get_variable
 
-  !> Read a table from its file, if there is a complete one. `is_foreign`: the file is not a table of a film.
-  subroutine load(path, key, film, is_there, is_foreign)
+  !> Read a table from its file, if there is a complete one. Error: the file that the case names is there, but is not a table of a
+  !> film (status_case_file).
+  subroutine load(path, key, film, is_named, is_there, error)
     character(len=*), intent(in) :: path, key
     class(film_law_t), intent(inout) :: film
-    logical, intent(out) :: is_there, is_foreign
-    character(len=:), allocatable :: bytes, head
+    logical, intent(in) :: is_named
+    logical, intent(out) :: is_there
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: bytes, head, fault
     real(dp) :: numbers(0)
     integer :: status, last
 
     is_there = .false.
-    is_foreign = .false.
     if (path == '') return
     call read_whole(path, bytes, status)
-    if (status /= 0) return
-    is_foreign = index(bytes, title) /= 1 .and. bytes /= ''
+    fault = ''
+    if (status /= 0 .and. status /= error_no_entry) fault = error_text(status)
+    if (index(bytes, title) /= 1 .and. bytes /= '') fault = 'is not a film table of this program: name another file'
+    if (is_named .and. fault /= '') call fail(error, '&lubrication table_file = '//printable(film%table_file, 200)//': '//fault, &
+      status_case_file)
     head = title//key//newline
     last = len(bytes) - mark_length
-    if (last < len(head)) return
+    if (status /= 0 .or. last < len(head)) return
     if (bytes(:len(head)) /= head) return
     if (bytes(last + 1:) /= mark_of(bytes(:last))) return
     film%table_of = ''

@@ -3,7 +3,7 @@
 module gudgeon_progress
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
-  use text_tools, only: printable, integer_text
+  use text_tools, only: printable, integer_text, replaced
   use number_text, only: short_text
   use gudgeon_errors, only: status_output
   use gudgeon_posix, only: is_terminal, write_all, error_text, error_broken_pipe
@@ -27,7 +27,6 @@ module gudgeon_progress
     procedure :: update
     procedure :: update_runs
     procedure :: finish
-    procedure :: tell => tell_above
   end type progress_t
 
 contains
@@ -112,19 +111,12 @@ contains
     self%has_shown = .false.
   end subroutine finish
 
-  !> Write a message for the user in place of the progress line.
-  subroutine tell_above(self, line)
-    class(progress_t), intent(inout) :: self
-    character(len=*), intent(in) :: line
-    call clear_line(self)
-    call tell(line)
-  end subroutine tell_above
-
-  !> Write one line to standard error, in one call.
-  subroutine tell(line)
-    character(len=*), intent(in) :: line
+  !> Write one or more lines to standard error, in one call.
+  subroutine tell(lines)
+    character(len=*), intent(in) :: lines
+    character(len=*), parameter :: newline = achar(10), name = 'gudgeon: '
     integer :: done, ignored
-    call write_all(standard_error, 'gudgeon: '//line//achar(10), done, ignored)
+    call write_all(standard_error, name//replaced(lines, newline, newline//name)//newline, done, ignored)
   end subroutine tell
 
   !> Print one line on standard output. If that fails, `status` is raised, unless the reader has closed the pipe.

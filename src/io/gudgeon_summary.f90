@@ -1,10 +1,11 @@
-!> The summary of a run: NAME.summary.csv, and one line for the user.
+!> The summary of a run: NAME.summary.csv.
 module gudgeon_summary
   use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
   use gudgeon_simulation, only: run_report_t
+  use cycle_answers, only: answer_t
   use run_figures, only: pin_figures_t, elastic_figures_t
   use piston_guide, only: n_corners, corner_names
   use period_watch, only: period_watch_t
@@ -12,15 +13,15 @@ module gudgeon_summary
   use archard_wear, only: of_pin, of_bore
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
-  use number_text, only: real_text, short_text
-  use text_tools, only: integer_text, quoted
+  use result_notes, only: notes_on_results, relative_residual, energy_warning, no_exponent
+  use number_text, only: real_text
+  use text_tools, only: integer_text, quoted, next_line
   use gudgeon_version, only: program_version
   implicit none
   private
-  public :: summary_table, summary_value, summary_line, energy_warning, build_advice, relative_residual
+  public :: summary_table, summary_value, build_advice
 
   character(len=*), parameter :: newline = achar(10)
-  character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: '
 
 contains
 
@@ -76,7 +77,6 @@ contains
           call add('steps_of_'//integer_text(2*order + 1)//'_stages', integer_text(s%stage_count(order)), '1')
         end do
       end if
-      if (report%auto_saves > 0) call add('evaluations_over_those_of_auto', real_text(report%auto_saves), '1')
       call add('max_pin_force', peak(f%pin(in_order(1))%max_force), 'N')
       call add('crank_revolutions', real_text(f%crank_travel/two_pi), '1')
       if (f%time > 0) call add('mean_crank_speed', real_text(f%crank_travel/f%time), 'rad/s')
@@ -91,6 +91,7 @@ contains
       call add('max_energy_residual', peak(max(f%max_energy_residual, f%row_energy_residual)), 'J')
       call add('max_energy_residual_relative', real_text(relative_residual(report)), '1')
       if (report%energy_is_poor) call add('energy_warning', quoted(energy_warning(case, report), '"'), '')
+      call add_notes()
       do i = 1, n_places
         if (.not. case%joints(in_order(i))%has_clearance()) cycle
         if (i > 1) call add(name_prefix(in_order(i))//'max_pin_force', peak(f%pin(in_order(i))%max_force), 'N')
@@ -106,22 +107,28 @@ contains
       end if
       if (case%is_elastic()) call add_elastic(f%elastic)
     end associate
-    do i = 1, size(report%answers)
-      associate (it => report%answers(i))
-        if (it%unit == '') then
-          call add(trim(it%name), trim(it%text), '')
-        else if (it%name == 'cycle_revolutions') then
-          call add(trim(it%name), integer_text(nint(it%value)), '1')
-        else
-          call add(trim(it%name), peak(it%value), trim(it%unit))
-        end if
-      end associate
-    end do
+    if (allocated(report%answers)) call add_answers(report%answers)
     call add('version', program_version, '')
     call add('compiler', quoted(compiler_version(), '"'), '')
     call add('compiler_options', quoted(compiler_options(), '"'), '')
 
   contains
+
+    !> Rows of the notes on the case and on the results. The ideal twin has those on its own results.
+    subroutine add_notes()
+      character(len=:), allocatable :: notes, line
+      integer :: at, number
+      notes = notes_on_results(case, report)
+      if (allocated(case%notes)) notes = case%notes//newline//notes
+      at = 1
+      number = 0
+      do while (at <= len(notes))
+        call next_line(notes, at, line)
+        if (line == '') cycle
+        number = number + 1
+        call add('note_'//integer_text(number), quoted(line, '"'), '')
+      end do
+    end subroutine add_notes
 
     !> Rows about the period of the motion, of a run until it is periodic.
     subroutine add_period(periods)
@@ -150,6 +157,8 @@ contains
         end if
       end if
       call add(prefix//'min_film_thickness', peak(pin%min_film_thickness), 'm')
+      if (allocated(joint%film) .and. abs(pin%film_change) > 0) &
+        call add(prefix//'film_thickness_change', real_text(pin%film_change), '1')
       call add_contacts(prefix, pin)
       call add(prefix//'max_entry_penetration', peak(pin%max_entry_penetration), 'm')
       call add(prefix//'impacts_beyond_validity', integer_text(pin%impacts_beyond_validity), '1')
@@ -214,6 +223,23 @@ contains
       call add('max_crankshaft_twist', peak(largest%twist), 'rad')
     end subroutine add_elastic
 
+    !> Rows of the last whole cycle.
+    subroutine add_answers(answers)
+      type(answer_t), intent(in) :: answers(:)
+      integer :: i
+      do i = 1, size(answers)
+        associate (it => answers(i))
+          if (it%unit == '') then
+            call add(trim(it%name), trim(it%text), '')
+          else if (it%name == 'cycle_revolutions') then
+            call add(trim(it%name), integer_text(nint(it%value)), '1')
+          else
+            call add(trim(it%name), peak(it%value), trim(it%unit))
+          end if
+        end associate
+      end do
+    end subroutine add_answers
+
     !> A peak or a time, with as many digits as the trace.
     function peak(value) result(number)
       real(dp), intent(in) :: value
@@ -265,13 +291,6 @@ contains
     text = text(:index(text, ',', back=.true.) - 1)
   end function summary_value
 
-  !> Largest energy residual at the ends of steps divided by the largest energy [-]; 0 if there is no energy.
-  pure real(dp) function relative_residual(report)
-    type(run_report_t), intent(in) :: report
-    relative_residual = 0
-    if (report%figures%max_energy > 0) relative_residual = report%figures%max_energy_residual/report%figures%max_energy
-  end function relative_residual
-
   !> Advice for the user of a program that was compiled without optimisation, or an empty text.
   pure function build_advice(flags, seconds) result(text)
     character(len=*), intent(in) :: flags   !! compiler options, separated by blanks
@@ -282,79 +301,4 @@ contains
     if (seconds > patience .and. index(' '//flags, ' -O2') + index(' '//flags, ' -O3') + index(' '//flags, ' -Ofast') == 0) &
       text = 'this is a build for debugging, several times slower than the fast program: scripts/install.sh installs that'
   end function build_advice
-
-  !> Warning about a completed run with a large energy residual.
-  function energy_warning(case, report) result(text)
-    type(case_t), intent(in) :: case
-    type(run_report_t), intent(in) :: report
-    character(len=:), allocatable :: text
-    text = 'the energy is conserved only to '//short_text(relative_residual(report))//', that is '// &
-      short_text(relative_residual(report)/case%integrator%relative_tolerance)// &
-      ' relative tolerances: compare with a run with a tenth of &integrator relative_tolerance'
-  end function energy_warning
-
-  !> The line for the user.
-  function summary_line(case, report, wall_time, path, remark) result(text)
-    type(case_t), intent(in) :: case
-    type(run_report_t), intent(in) :: report
-    real(dp), intent(in) :: wall_time
-    character(len=*), intent(in) :: path   !! path of the results without suffix
-    character(len=*), intent(in), optional :: remark   !! text about the certificate, or empty
-    character(len=:), allocatable :: text
-    integer :: i
-    associate (s => report%statistics, f => report%figures)
-      text = case%name//': '//report%status//'; '
-      if (present(remark)) then
-        if (remark /= '') text = text//remark//'; '
-      end if
-      if (report%periods%is_on .and. report%status == 'done') text = text//period_text(report%periods)//'; '
-      if (report%exponent%is_known) then
-        text = text//'Lyapunov exponent '//short_text(report%exponent%mean)//' per revolution; '
-      else if (allocated(report%exponent%reason)) then
-        text = text//no_exponent//report%exponent%reason//'; '
-      end if
-      text = text//short_text(f%time)//' s in '//short_text(wall_time)//' s, '// &
-        integer_text(s%accepted)//' steps, '//integer_text(s%evaluations)//' evaluations; '
-      do i = 1, n_places
-        associate (place => in_order(i))
-          if (i > 1 .and. .not. case%joints(place)%has_clearance()) cycle
-          if (i > 1) text = text//'; '//trim(places(place)%title)//': '
-          text = text//pin_text(case%joints(place), f%pin(place))
-        end associate
-      end do
-      if (case%has_loose_guide()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
-        ' contacts, largest force '//short_text(maxval(f%corner%max_force))//' N'
-      text = text//', relative energy residual '//short_text(relative_residual(report))
-      if (report%energy_is_poor) text = text//' ('//energy_warning(case, report)//')'
-      text = text//'; '//path//'.csv'
-    end associate
-  end function summary_line
-
-  !> Text about the period of the motion.
-  function period_text(periods) result(text)
-    type(period_watch_t), intent(in) :: periods
-    character(len=:), allocatable :: text
-    text = 'not periodic within '//integer_text(periods%most_revolutions)//' revolutions'
-    if (periods%period == 0) return
-    text = 'repeats every revolution'
-    if (periods%period > 1) text = 'repeats every '//integer_text(periods%period)//' revolutions'
-    text = text//', recognised after '//integer_text(periods%found_after)
-  end function period_text
-
-  !> Text about one pin.
-  function pin_text(joint, pin) result(text)
-    type(joint_case_t), intent(in) :: joint
-    type(pin_figures_t), intent(in) :: pin
-    character(len=:), allocatable :: text
-    text = ''
-    if (joint%has_clearance()) then
-      if (joint%can_touch()) text = integer_text(pin%contacts)//' contacts, '
-      if (pin%min_film_thickness < 0) then
-        text = text//'deepest penetration '//short_text(-pin%min_film_thickness)//' m, '
-      else
-        text = text//'smallest film thickness '//short_text(pin%min_film_thickness)//' m, '
-      end if
-    end if
-    text = text//'largest pin force '//short_text(pin%max_force)//' N'
-  end function pin_text
 end module gudgeon_summary

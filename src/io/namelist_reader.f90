@@ -7,7 +7,7 @@ module namelist_reader
   use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, digits, shown
   implicit none
   private
-  public :: namelist_t, token_t, read_namelist, read_values
+  public :: namelist_t, entry_t, token_t, read_namelist, read_values
 
   !> One value as written, `repeat` times.
   type :: token_t
@@ -47,7 +47,7 @@ module namelist_reader
 
 contains
 
-  !> Read the text of the file at `path`. Error: a mistake in the syntax (status_case_file).
+  !> Read the text of the file at `path`. Error: a mistake in the syntax (status_case_file); `list` has what comes before it.
   subroutine read_namelist(text, path, list, error)
     character(len=*), intent(in) :: text, path
     type(namelist_t), intent(out) :: list
@@ -137,6 +137,7 @@ contains
         entry%group_number = list%n_groups
         call read_entry(scan, entry)
       end associate
+      if (allocated(scan%message)) list%n_entries = list%n_entries - 1   ! not understood
       if (allocated(scan%message)) return
     end do
   end subroutine read_group

@@ -52,20 +52,23 @@ module reference_pages
 
 contains
 
-  !> Page of all groups and keys of a kind of file: a section for each group, with a table row for each key.
-  function keys_reference(table) result(text)
+  !> Page of all groups and keys of a kind of file, or of one group: a section for each group, with a table row for each key.
+  function keys_reference(table, only_group) result(text)
     type(key_table_t), intent(in) :: table
+    character(len=*), intent(in) :: only_group   !! empty: all groups
     character(len=:), allocatable :: text
     integer :: group, i
     text = ''
     do group = 1, size(table%groups)
       associate (it => table%groups(group))
-        if (index(it%name, '.') > 0) cycle   ! copies of groups for another joint
+        if (only_group /= '' .and. it%name /= only_group) cycle
+        if (only_group == '' .and. index(it%name, '.') > 0) cycle   ! copies of groups for another joint
         text = text//'## &'//trim(it%name)//newline//newline//sentence(trim(it%description))//newline
         if (it%instead_of /= '') text = text//'Cannot be combined with `&'//trim(it%instead_of)//'`.'//newline
         if (it%place /= '' .or. it%is_law) &
           text = text//'`place = ''crank_pin''` in a second group of this name makes it that of the crank pin.'//newline
-        text = text//newline//'| key | unit | limits | default | meaning |'//newline//'|---|---|---|---|---|'//newline
+        text = text//newline//'| key | unit | limits | usual | default | meaning |'//newline// &
+          '|---|---|---|---|---|---|'//newline
         do i = it%first, it%last
           text = text//key_row(table%keys, it, table%keys(i))//newline
         end do
@@ -94,7 +97,8 @@ contains
         if (key%laws /= all_laws) meaning = meaning//' Only with `'//key%choice//'` '//key%laws//'.'
       end associate
     end if
-    row = '| `'//trim(key%name)//'` | '//trim(key%unit)//' | '//trim(key%range)//' | '//default//' | '//escaped(meaning)//' |'
+    row = '| `'//trim(key%name)//'` | '//trim(key%unit)//' | '//trim(key%range)//' | '// &
+      trim(key%usual)//' | '//default//' | '//escaped(meaning)//' |'
   end function key_row
 
   !> Page of all columns and quantities that a result file can have.

@@ -56,11 +56,11 @@ contains
   end function state_text
 
   !> Read the state from which a case starts, unless it has been read before. In the values its file is then named by its absolute
-  !> path. Error: the file cannot be read, or is no file of a state.
-  subroutine provide_state(values, into, error)
+  !> path. If the file cannot be read, or is no file of a state, this is noted in the values.
+  subroutine provide_state(values, into)
     type(case_values_t), intent(inout) :: values
     type(case_t), intent(inout) :: into
-    type(error_t), allocatable, intent(out) :: error
+    type(error_t), allocatable :: error
     type(run_state_t), allocatable :: state
     character(len=:), allocatable :: path, text
     type(namelist_t) :: list
@@ -81,6 +81,7 @@ contains
     end if
     if (allocated(error)) then
       error%message = values%file//': '//shown_group('initial')//' from: '//error%message
+      call values%problems%add_error(error, 'initial', values%place_in_file(place))
     else
       call move_alloc(state, into%initial%state)
     end if

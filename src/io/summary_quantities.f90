@@ -36,9 +36,7 @@ module summary_quantities
       'share of the time in this phase (free, film or contact) integrated by this method (method auto)'), &
     quantity_t('jacobians', '1', 'Jacobian matrices that Radau evaluated'), &
     quantity_t('steps_rejected_convergence', '1', 'steps rejected because the Newton iteration of Radau did not converge'), &
-    quantity_t('steps_of_N_stages', '1', 'accepted steps of Radau with N stages'), &
-    quantity_t('evaluations_over_those_of_auto', '1', &
-      'evaluations of this run over those that `method = ''auto''` would need; written where auto needs fewer')]
+    quantity_t('steps_of_N_stages', '1', 'accepted steps of Radau with N stages')]
 
   type(quantity_t), parameter :: of_motion(*) = [ &
     quantity_t('max_pin_force', 'N', 'largest force at the pin'), &
@@ -55,11 +53,11 @@ module summary_quantities
       'largest Lyapunov exponent: growth rate of the distance of neighbouring motions'), &
     quantity_t('lyapunov_exponent_error', '1/revolution', 'its standard error'), &
     quantity_t('lyapunov_revolutions', '1', 'revolutions over which it was measured'), &
-    quantity_t('lyapunov_warning', '', 'why there is no exponent'), &
     quantity_t('max_energy_residual', 'J', 'largest size of the energy residual, at the ends of steps and in the rows'), &
     quantity_t('max_energy_residual_relative', '1', &
       'that at the ends of steps over the largest energy: a measure of the integration error'), &
-    quantity_t('energy_warning', '', 'written where that is larger than the tolerance explains')]
+    quantity_t('energy_warning', '', 'written where that is larger than the tolerance explains'), &
+    quantity_t('note_N', '', 'values of the case or results that are implausible or beyond a model')]
 
   type(quantity_t), parameter :: of_joints(*) = [ &
     quantity_t('viscosity', 'Pa s', 'dynamic viscosity of the oil at the temperature of the film'), &
@@ -68,6 +66,8 @@ module summary_quantities
     quantity_t('film_table_mean_error', '1', 'root mean square of the same'), &
     quantity_t('film_table_time', 's', 'time that computing or reading the table took, not part of `wall_time`'), &
     quantity_t('min_film_thickness', 'm', 'smallest film thickness; negative: deepest penetration'), &
+    quantity_t('film_thickness_change', '1', &
+      'change of the smallest film thickness of a cycle in the last cycle, over that of the cycle before; large: not settled'), &
     quantity_t('contacts', '1', 'contacts that began'), &
     quantity_t('contact_time_fraction', '1', 'share of the simulated time in contact'), &
     quantity_t('max_penetration', 'm', 'deepest penetration; 0 without contact'), &

@@ -4,7 +4,7 @@ module text_file
   use text_tools, only: printable, integer_text
   use growing_text, only: growing_text_t
   use gudgeon_posix, only: open_file, to_read, open_standard_input, wait_for_input, interrupted, read_bytes, close_file, &
-    error_text, error_interrupted
+    error_text, error_interrupted, error_no_entry, file_length
   implicit none
   private
   public :: read_text_file, read_whole
@@ -31,6 +31,9 @@ contains
     call read_all(descriptor, is_input, most*1000000, text, status, was_interrupted)
     if (status /= 0) then
       call fail(error, printable(path, 200)//': '//error_text(status), status_case_file)
+      if (status == error_no_entry) then
+        if (file_length(path//'.nml') >= 0) error%message = error%message//'; did you mean '//printable(path, 200)//'.nml?'
+      end if
     else if (was_interrupted) then
       call fail(error, path//': interrupted before it began', status_integration)
     else if (len(text) > most*1000000) then

@@ -3,13 +3,13 @@
 module value_reader
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp
-  use text_tools, only: lowercase, printable, is_clean, whole_number
+  use text_tools, only: lowercase, printable, is_clean, whole_number, likely_word
   use case_schema, only: key_t, is_listed, real_kind, integer_kind, logical_kind, word_kind
   use namelist_reader, only: token_t
   implicit none
   private
   public :: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals
-  public :: read_real, read_times, read_integer, is_within
+  public :: read_real, read_times, read_integer, is_within, read_bounds
 
   integer, parameter :: most_reals = 2   !! longest array of reals in the schema
   integer, parameter :: longest_text = 4000
@@ -28,6 +28,7 @@ module value_reader
     logical :: switch = .false.
     character(len=:), allocatable :: text
     character(len=48) :: written(most_reals) = ''   !! as the user wrote it, for messages
+    integer :: line = 0                      !! line of the file on which it is given
   end type value_t
 
 contains
@@ -67,7 +68,7 @@ contains
     case (word_kind)
       value%text = trim(lowercase(token%text))
       if (.not. is_listed(value%text, key%words) .and. value%text /= key%default) wanted = 'must be one of '// &
-        key%words
+        key%words//likely_word(value%text, key%words)
     case default
       if (.not. is_clean(token%text)) wanted = 'must not contain control characters or bytes that are not UTF-8'
       if (element > 1 .and. key%count > 1 .and. token%quoted) then
@@ -256,6 +257,18 @@ contains
     within = meets(value, trim(range(:length)))
     if (within) within = is_within(value, range(length + 6:))
   end function is_within
+
+  !> The bounds in a text such as `1e-6 to 1e-3`.
+  pure subroutine read_bounds(text, least, most)
+    character(len=*), intent(in) :: text
+    real(dp), intent(out) :: least, most
+    character(len=*), parameter :: to = ' to '
+    character(len=:), allocatable :: wanted
+    integer :: at
+    at = index(text, to)
+    call read_real(text(:at - 1), least, wanted)
+    call read_real(text(at + len(to):), most, wanted)
+  end subroutine read_bounds
 
   !> Whether a value meets one condition: an operator and a number, separated by a blank.
   pure logical function meets(value, condition) result(met)

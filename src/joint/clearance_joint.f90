@@ -590,7 +590,7 @@ contains
       if (.not. allocated(element%film)) then
         rates(of_contact) = -joint%normal_force*(joint%normal(1)*joint%eccentricity_rate(1) &
           + joint%normal(2)*joint%eccentricity_rate(2))
-        rates(of_friction) = joint%friction_force*joint%sliding_speed
+        if (element%has_friction) rates(of_friction) = joint%friction_force*joint%sliding_speed
       else if (element%rubs .or. allocated(element%walls)) then
         whole = joint
         whole%states(:element%n_states) = y(element%states%first:element%states%last)

@@ -116,11 +116,12 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%word('kind', self%kind, 'ideal, clearance', 'ideal', 'ideal: no clearance', example='clearance')
     call list%add('clearance', self%clearance, 'radial clearance: bearing radius minus pin radius', 'm', '> 0', default='0.0', &
-      example='2.0e-5')
-    call list%add('bearing_radius', self%bearing_radius, 'radius of the bearing', 'm', '> 0', default='0.0', example='0.010')
+      example='2.0e-5', usual='1e-6 to 1e-3')
+    call list%add('bearing_radius', self%bearing_radius, 'radius of the bearing', 'm', '> 0', default='0.0', example='0.010', &
+      usual='5e-4 to 1')
     call list%add('bearing_length', self%bearing_length, &
       'width of the bearing; needed with a film and with contact geometries other than hertz_sphere', &
-      'm', '> 0', default='0.0', example='0.015')
+      'm', '> 0', default='0.0', example='0.015', usual='5e-4 to 1')
   end subroutine joint_parameters
 
   subroutine wall_parameters(self, list)
@@ -130,7 +131,7 @@ contains
       'elastic walls in series with the film; &contact with law = ''hertz'' gives their stiffness', '.false.')
     call list%add('pressure_viscosity', self%pressure_viscosity, &
       'elastic_film: exponential growth of the viscosity with the mean pressure (Barus)', &
-      '1/Pa', '>= 0 and <= 1e-6', default='0.0')
+      '1/Pa', '>= 0 and <= 1e-6', default='0.0', usual='1e-9 to 1e-7')
   end subroutine wall_parameters
 
   !> Remove laws that were given for all joints from an ideal joint.

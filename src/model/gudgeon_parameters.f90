@@ -24,6 +24,8 @@ module gudgeon_parameters
     character(len=24) :: example = ''        !! value in the template, if the default is not suitable there
     character(len=12) :: unit = ''
     character(len=24) :: range = ''          !! '> 0', '>= 0 and <= 1'
+    character(len=16) :: usual = ''          !! '1e-6 to 1e-3': sizes of a real in real machines, without its sign; 0 is never
+                                             !! unusual
     character(len=:), allocatable :: words   !! allowed words, separated by a comma and a blank
     character(len=:), allocatable :: choice  !! key that names the laws with this parameter; not allocated: all laws have it
     character(len=:), allocatable :: laws    !! those laws, separated by a comma and a blank
@@ -121,7 +123,7 @@ contains
   end subroutine pass_law
 
   !> Declare a real. It is required if it has no default.
-  subroutine add_real(self, key, value, says, unit, range, default, example, family, beside, only_here)
+  subroutine add_real(self, key, value, says, unit, range, default, example, family, beside, only_here, usual)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, says                               !! key and short description
     real(dp), intent(inout) :: value
@@ -129,11 +131,12 @@ contains
     character(len=*), intent(in), optional :: family   !! alternative keys of which only one may be given
     character(len=*), intent(in), optional :: beside   !! exception to that
     logical, intent(in), optional :: only_here         !! must not be given if the selected law does not have it
+    character(len=*), intent(in), optional :: usual    !! usual sizes
     type(key_t) :: new
     real(dp) :: values(1)
     if (self%passes) return
     values = value
-    new = described(key, real_kind, says, unit, range, default, example)
+    new = described(key, real_kind, says, unit, range, default, example, usual)
     if (self%amount /= '' .and. new%required) then
       new%required = .false.
       new%default = new%example
@@ -147,14 +150,14 @@ contains
   end subroutine add_real
 
   !> Declare two reals; a default is that of both, and so is an example without a comma.
-  subroutine add_pair(self, key, value, says, unit, range, default, example)
+  subroutine add_pair(self, key, value, says, unit, range, default, example, usual)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, says
     real(dp), intent(inout) :: value(2)
-    character(len=*), intent(in), optional :: unit, range, default, example
+    character(len=*), intent(in), optional :: unit, range, default, example, usual
     type(key_t) :: new
     if (self%passes) return
-    new = described(key, real_kind, says, unit, range, default, example)
+    new = described(key, real_kind, says, unit, range, default, example, usual)
     new%count = size(value)
     call self%visit(new, reals=value)
   end subroutine add_pair
@@ -220,10 +223,10 @@ contains
     is_absent = self%sets .and. .not. self%is_present
   end function is_absent
 
-  pure type(key_t) function described(name, kind, says, unit, range, default, example) result(key)
+  pure type(key_t) function described(name, kind, says, unit, range, default, example, usual) result(key)
     character(len=*), intent(in) :: name, says
     integer, intent(in) :: kind
-    character(len=*), intent(in), optional :: unit, range, default, example
+    character(len=*), intent(in), optional :: unit, range, default, example, usual
     key%name = name
     key%kind = kind
     key%description = says
@@ -232,6 +235,7 @@ contains
     if (present(range)) key%range = range
     if (present(default)) key%default = default
     if (present(example)) key%example = example
+    if (present(usual)) key%usual = usual
   end function described
 
   !> Find a contradiction between the parameters: the key of the wrong one, and what is required of it. An empty key means that

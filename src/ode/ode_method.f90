@@ -62,7 +62,6 @@ module ode_method
     real(dp) :: smallest_step = huge(1.0_dp)    !! shortest accepted step
     integer :: order_count(highest_order) = 0   !! accepted steps of each order
     integer :: limited_by(n_limits) = 0         !! accepted steps for each reason of their limit
-    real(dp) :: time_limited_by(n_limits) = 0   !! duration of these steps
     integer :: switches = 0                     !! number of changes between Adams and Radau
     real(dp) :: stiffness = 0     !! integral of rho dt, where rho is the estimated rate of the fastest mode; 0: not estimated
   end type step_statistics_t
@@ -209,11 +208,7 @@ contains
     real(dp) :: share
     share = 1
     if (t_to < self%t) share = (t_to - self%t_old)/(self%t - self%t_old)
-    associate (count => self%statistics)
-      count%stiffness = count%stiffness + share*self%stiffness_done
-      if (self%limit_done > 0) count%time_limited_by(self%limit_done) = count%time_limited_by(self%limit_done) &
-        + (t_to - self%t_old)
-    end associate
+    self%statistics%stiffness = self%statistics%stiffness + share*self%stiffness_done
   end subroutine count_time
 
   !> Statistics of the whole integration so far.

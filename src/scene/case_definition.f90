@@ -84,6 +84,7 @@ module case_definition
     character(len=:), allocatable :: name    !! file name without folder and .nml: the NAME of its results
     character(len=:), allocatable :: file    !! path as given by the user, for messages
     character(len=:), allocatable :: title
+    character(len=:), allocatable :: notes   !! on values that are not of usual sizes, one line each; not allocated: none
     type(mechanism_case_t) :: mechanism
     type(drive_case_t) :: drive
     type(initial_case_t) :: initial
@@ -177,24 +178,28 @@ contains
   subroutine mechanism_parameters(self, list)
     class(mechanism_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('crank_length', self%crank_length, 'distance from the crank axis to the crank pin', 'm', '> 0', example='0.0508')
-    call list%add('crank_mass', self%crank_mass, 'mass of the crank', 'kg', '>= 0', example='0.80')
+    call list%add('crank_length', self%crank_length, 'distance from the crank axis to the crank pin', 'm', '> 0', &
+      example='0.0508', usual='2e-3 to 2')
+    call list%add('crank_mass', self%crank_mass, 'mass of the crank', 'kg', '>= 0', example='0.80', usual='1e-3 to 1e5')
     call list%add('crank_inertia', self%crank_inertia, 'moment of inertia of the crank about its centre of mass', 'kg m^2', &
-      '>= 0', example='0.006')
+      '>= 0', example='0.006', usual='1e-8 to 1e6')
     call list%add('crank_com', self%crank_com, &
-      'centre of mass of the crank from the crank axis, along and across the crank', 'm', default='0.0')
-    call list%add('rod_length', self%rod_length, 'distance from the crank pin to the piston pin', 'm', '> 0', example='0.2032')
-    call list%add('rod_mass', self%rod_mass, 'mass of the connecting rod', 'kg', '>= 0', example='1.36')
+      'centre of mass of the crank from the crank axis, along and across the crank', 'm', default='0.0', usual='0 to 2')
+    call list%add('rod_length', self%rod_length, 'distance from the crank pin to the piston pin', 'm', '> 0', example='0.2032', &
+      usual='5e-3 to 1000')
+    call list%add('rod_mass', self%rod_mass, 'mass of the connecting rod', 'kg', '>= 0', example='1.36', usual='1e-4 to 1e4')
     call list%add('rod_inertia', self%rod_inertia, 'moment of inertia of the rod about its centre of mass', 'kg m^2', '>= 0', &
-      example='0.010')
+      example='0.010', usual='1e-9 to 1e5')
     call list%add('rod_com', self%rod_com, &
-      'centre of mass of the rod from the crank pin, along and across the rod', 'm', default='0.0', example='0.0508, 0.0')
-    call list%add('piston_mass', self%piston_mass, 'mass of the piston', 'kg', '> 0', example='0.91')
+      'centre of mass of the rod from the crank pin, along and across the rod', 'm', default='0.0', example='0.0508, 0.0', &
+      usual='0 to 10')
+    call list%add('piston_mass', self%piston_mass, 'mass of the piston', 'kg', '> 0', example='0.91', usual='1e-4 to 1e4')
     call list%add('gravity', self%gravity, &
       'acceleration of gravity; acts from the cylinder towards the crank unless gravity_angle_deg turns it', 'm/s^2', &
-      default='9.80665')
+      default='9.80665', usual='0.1 to 30')
     call list%add('gravity_angle_deg', self%gravity_angle_deg, &
-      'direction of gravity: 0 from piston to crank along the cylinder; 90 across it, along -y', 'degrees', default='0.0')
+      'direction of gravity: 0 from piston to crank along the cylinder; 90 across it, along -y', 'degrees', default='0.0', &
+      usual='0 to 360')
   end subroutine mechanism_parameters
 
   subroutine drive_parameters(self, list)
@@ -203,18 +208,20 @@ contains
     call list%word('kind', self%kind, 'free, constant_speed', 'free', &
       'free: the forces accelerate the crank; constant_speed: the crank is held at crank_speed')
     call list%add('torque', self%torque, &
-      'constant moment on a free crank, positive in the sense of the crank angle', 'N m', default='0.0')
+      'constant moment on a free crank, positive in the sense of the crank angle', 'N m', default='0.0', usual='0 to 1e6')
     call list%add('damping', self%damping, &
       'damping moment per crank speed; with constant_speed it only adds to the column crank_moment', &
-      'N m s/rad', '>= 0', default='0.0')
+      'N m s/rad', '>= 0', default='0.0', usual='0 to 1e3')
     call list%add('flywheel_inertia', self%flywheel_inertia, &
-      'moment of inertia of a flywheel fixed to the crank, added to crank_inertia', 'kg m^2', '>= 0', default='0.0')
+      'moment of inertia of a flywheel fixed to the crank, added to crank_inertia', 'kg m^2', '>= 0', default='0.0', &
+      usual='1e-7 to 1e6')
     call self%table%parameters(list, 'torque_table', &
       'CSV file with columns speed[rad/s],torque[N.m], path relative to the case file; added to torque', &
       default='')
     call list%add('ramp_time', self%ramp_time, 'time in which the held speed rises to crank_speed; 0: crank_speed from the start', &
-      's', '> 0', default='0.0')
-    call list%add('ramp_from', self%ramp_from, 'held speed at the start of the ramp (ramp_time)', 'rad/s', default='0.0')
+      's', '> 0', default='0.0', usual='1e-4 to 1e3')
+    call list%add('ramp_from', self%ramp_from, 'held speed at the start of the ramp (ramp_time)', 'rad/s', default='0.0', &
+      usual='0 to 2100')
   end subroutine drive_parameters
 
   subroutine initial_parameters(self, list)
@@ -222,20 +229,23 @@ contains
     class(parameter_list_t), intent(inout) :: list
     character(len=:), allocatable :: name
     integer :: i
-    call list%add('crank_angle_deg', self%crank_angle_deg, 'crank angle from the cylinder axis', 'degrees', default='0.0')
+    call list%add('crank_angle_deg', self%crank_angle_deg, 'crank angle from the cylinder axis', 'degrees', default='0.0', &
+      usual='0 to 720')
     call list%add('crank_speed', self%crank_speed, &
-      'crank speed; with drive kind constant_speed it is held', 'rad/s', example='250.0')
+      'crank speed; with drive kind constant_speed it is held', 'rad/s', example='250.0', usual='0 to 2100')
     do i = 1, n_places
       name = name_prefix(in_order(i))//'eccentricity'
       call list%add(name, self%eccentricity(:, in_order(i)), 'centre of the '//trim(places(in_order(i))%title)// &
-        ' from the centre of its bearing (x, y); in contact if longer than the clearance', 'm', default='0.0')
-      call list%add(name//'_rate', self%eccentricity_rate(:, in_order(i)), 'rate of '//name, 'm/s', default='0.0')
+        ' from the centre of its bearing (x, y); in contact if longer than the clearance', 'm', default='0.0', usual='0 to 1e-2')
+      call list%add(name//'_rate', self%eccentricity_rate(:, in_order(i)), 'rate of '//name, 'm/s', default='0.0', &
+        usual='0 to 100')
     end do
     call list%add('piston_offset', self%piston_offset, &
-      'centre of mass of the piston from the cylinder axis along y (guide with clearance)', 'm', default='0.0')
-    call list%add('piston_offset_rate', self%piston_offset_rate, 'rate of piston_offset', 'm/s', default='0.0')
-    call list%add('piston_tilt', self%piston_tilt, 'tilt of the piston in its bore, positive from x to y', 'rad', default='0.0')
-    call list%add('piston_tilt_rate', self%piston_tilt_rate, 'rate of piston_tilt', 'rad/s', default='0.0')
+      'centre of mass of the piston from the cylinder axis along y (guide with clearance)', 'm', default='0.0', usual='0 to 1e-2')
+    call list%add('piston_offset_rate', self%piston_offset_rate, 'rate of piston_offset', 'm/s', default='0.0', usual='0 to 100')
+    call list%add('piston_tilt', self%piston_tilt, 'tilt of the piston in its bore, positive from x to y', 'rad', default='0.0', &
+      usual='0 to 0.2')
+    call list%add('piston_tilt_rate', self%piston_tilt_rate, 'rate of piston_tilt', 'rad/s', default='0.0', usual='0 to 200')
     call list%text('from', self%from, &
       'start from the state in this file, a NAME.state.nml, path relative to the case file; crank_speed remains the held '// &
       'speed and the natural size of speeds, the other values are those of the file', '')
@@ -250,23 +260,26 @@ contains
       'adams: Shampine and Gordon; radau: implicit, for stiff films; auto: Radau in stiff phases, else Adams')
     call list%add('revolutions', self%revolutions, &
       'end of the run: time of this many revolutions at crank_speed; a crank that slows down makes fewer', range='> 0', &
-      default='0.0', example='4.0', family='end')
+      default='0.0', example='4.0', family='end', usual='1e-3 to 1e5')
     call list%add('crank_revolutions', self%crank_revolutions, &
       'end of the run: revolutions that the crank itself has made; exit status 4 if it stops or turns back', range='> 0', &
-      default='0.0', family='end', beside='end_time')
+      default='0.0', family='end', beside='end_time', usual='1e-3 to 1e5')
     call list%add('end_time', self%end_time, &
       'end of the run; with crank_revolutions an upper limit (default: when one takes as long as 100 at crank_speed)', 's', '> 0', &
-      default='0.0', family='end')
+      default='0.0', family='end', usual='1e-6 to 1e4')
     call list%add('relative_tolerance', self%relative_tolerance, &
-      'relative error allowed in each step; values above 1e-3 act as 1e-3', range='> 0 and <= 0.1', default='1.0e-6')
+      'relative error allowed in each step; values above 1e-3 act as 1e-3', range='> 0 and <= 0.1', default='1.0e-6', &
+      usual='1e-13 to 1e-3')
     call list%add('absolute_tolerance', self%absolute_tolerance, &
-      'absolute error allowed in each step; 0: relative_tolerance times natural scales', range='> 0 and <= 0.1', default='0.0')
-    call list%add('max_step', self%max_step, 'largest step; 0: no limit', 's', '> 0', default='0.0')
+      'absolute error allowed in each step; 0: relative_tolerance times natural scales', range='> 0 and <= 0.1', default='0.0', &
+      usual='1e-16 to 1e-3')
+    call list%add('max_step', self%max_step, 'largest step; 0: no limit', 's', '> 0', default='0.0', usual='1e-9 to 1')
     call list%add('max_order', self%max_order, 'highest order of the method', '>= 1 and <= 12', '12')
     call list%word('contact_entry', self%contact_entry, 'root, step_rejection', 'root', &
       'how the beginning of a contact is found: root of the film thickness, or rejection of deep steps')
     call list%add('max_penetration', self%max_penetration, &
-      'largest penetration at the beginning of a contact; required by step_rejection', 'm', '> 0', default='0.0')
+      'largest penetration at the beginning of a contact; required by step_rejection', 'm', '> 0', default='0.0', &
+      usual='1e-12 to 1e-4')
     call list%add('max_steps', self%max_steps, 'largest number of steps; 0: no limit', '> 0', '0')
     call list%add('max_evaluations', self%max_evaluations, &
       'largest number of evaluations of the right-hand side; a run that needs more ends with exit status 4', &
@@ -283,9 +296,10 @@ contains
     call list%add('samples_per_revolution', self%samples_per_revolution, &
       'number of rows for each revolution', '>= 1 and <= 1000000', '720')
     call list%add('angle_origin_deg', self%angle_origin_deg, &
-      'one of the crank angles at which sampling = ''crank_angle'' takes rows', 'degrees', default='0.0')
-    call list%add('interval', self%interval, 'time between rows; 0: given by samples_per_revolution', 's', '> 0', default='0.0')
-    call list%add('start_time', self%start_time, 'time of the first row', 's', '>= 0', default='0.0')
+      'one of the crank angles at which sampling = ''crank_angle'' takes rows', 'degrees', default='0.0', usual='0 to 720')
+    call list%add('interval', self%interval, 'time between rows; 0: given by samples_per_revolution', 's', '> 0', default='0.0', &
+      usual='1e-9 to 1')
+    call list%add('start_time', self%start_time, 'time of the first row', 's', '>= 0', default='0.0', usual='0 to 1e4')
     call list%text('columns', self%columns, &
       'columns of the trace: ''standard'', names without units, or both, separated by commas', 'standard', many=.true.)
     call list%add('digits', self%digits, 'significant digits of the numbers in a trace; 17 keep every bit', '>= 9 and <= 17', '10')

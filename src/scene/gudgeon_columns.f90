@@ -2,6 +2,7 @@
 module gudgeon_columns
   use gudgeon_kinds, only: dp
   use gudgeon_errors, only: error_t, fail, status_case_file
+  use text_tools, only: nearest_word, allowed
   use trace_row, only: trace_row_t, column_list_t, name_length
   use chain_motion, only: motion_t, accelerations_t, piston_pin
   use chain_reactions, only: reactions_t
@@ -43,7 +44,8 @@ contains
     list%id = pack([(i, i=1, row%n)], wanted)
   end subroutine choose_columns
 
-  !> Mark the columns named in a text such as 'time, crank_angle' or 'standard, film_power'.
+  !> Mark the columns named in a text such as 'time, crank_angle' or 'standard, film_power'. Error: each name that the scene does
+  !> not have.
   subroutine read_names(text, names, on_request, ignores_missing, wanted, error)
     character(len=*), intent(in) :: text
     character(len=name_length), intent(in) :: names(:)   !! names of the columns of the scene
@@ -51,10 +53,17 @@ contains
     logical, intent(in) :: ignores_missing
     logical, intent(out) :: wanted(:)
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: rest, name, known
+    character(len=name_length) :: known(size(names) + 1)   !! names without units
+    character(len=:), allocatable :: rest, name, near, message
     integer :: i, comma
     logical :: found
 
+    known(1) = 'standard'
+    do i = 1, size(names)
+      known(i + 1) = names(i)(:scan(names(i), '[') - 1)
+    end do
+    message = ''
+    near = ''
     wanted = .false.
     rest = text//','
     do
@@ -65,19 +74,17 @@ contains
       found = ignores_missing .or. name == 'standard'
       if (name == 'standard') wanted = wanted .or. .not. on_request
       do i = 1, size(names)
-        if (name /= names(i) .and. name /= names(i)(:scan(names(i), '[') - 1)) cycle
+        if (name /= names(i) .and. name /= known(i + 1)) cycle
         found = .true.
         wanted(i) = .true.
       end do
-      if (.not. found) then
-        known = ''
-        do i = 1, size(names)
-          known = known//' '//names(i)(:scan(names(i), '[') - 1)
-        end do
-        call fail(error, "&output columns = '"//name//"': no such column in this scene; it has:"//known, status_case_file)
-        return
-      end if
+      if (found) cycle
+      if (message /= '') message = message//achar(10)
+      near = nearest_word(name, known)
+      if (near /= '') near = '; did you mean '//near//'?'
+      message = message//"&output columns = '"//name//"': no such column in this scene"//near//allowed(known)
     end do
+    if (message /= '') call fail(error, message, status_case_file)
   end subroutine read_names
 
   !> Name and unit of column i of the list.

@@ -362,6 +362,8 @@ contains
         associate (figures => f%pin(self%pins(i)%pin), joint => scene%joints(self%pins(i)%joint))
           if (self%pins(i)%is_touching(scene)) figures%contact_time = figures%contact_time + (t - f%time)
           if (joint%integrates_friction) figures%friction_work = joint%work_of_friction(y)
+          call self%pins(i)%settling%take(f%crank_travel, -now%joint(self%pins(i)%joint)%penetration)
+          figures%film_change = self%pins(i)%settling%change()
         end associate
       end do
       call self%guide%take_time(scene, t - f%time, f)

@@ -4,7 +4,7 @@ module gudgeon_simulation
   use gudgeon_errors, only: error_t, fail, status_integration
   use run_state, only: run_state_t
   use case_definition, only: case_t
-  use ode_method, only: ode_method_t, step_statistics_t, limit_stability, left_domain
+  use ode_method, only: ode_method_t, step_statistics_t, left_domain
   use gudgeon_methods, only: new_method
   use gudgeon_solver, only: integrate, integration_t, silent_observer_t, integration_done, integration_stopped, &
     integration_interrupted, step_limit_reached, evaluation_limit_reached
@@ -27,7 +27,7 @@ module gudgeon_simulation
   use gudgeon_constants, only: two_pi, degree
   implicit none
   private
-  public :: simulate, run_t, try_auto, run_report_t, interrupted_text
+  public :: simulate, run_t, run_report_t, interrupted_text
 
   !> The results of a run that are known when it has ended.
   type :: run_report_t
@@ -42,7 +42,6 @@ module gudgeon_simulation
     type(period_watch_t) :: periods              !! search for a periodic motion that ends the run
     type(answer_t), allocatable :: answers(:)    !! of the last whole cycle, if the case asks for them
     type(exponent_t) :: exponent                 !! Lyapunov exponent, if it is requested
-    real(dp) :: auto_saves = 0  !! > 0: evaluations of this run divided by those that method auto needs, as measured
   end type run_report_t
 
   !> A run under way. Call `begin`, `advance` until `is_over` or as far as wanted, and `finish`. Copies continue independently of
@@ -273,8 +272,6 @@ contains
     if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, self%recorder%periods)
     if (allocated(self%recorder%films)) report%films = self%recorder%films%fields(self%scene)
     associate (case => self%case, scene => self%scene, t => self%integration%t, y => self%integration%y)
-      if (self%status == integration_done .and. case%integrator%method == 'adams' .and. &
-          .not. (self%ideal_joint .or. self%has_cycles)) call measure_auto(case, report)
       report%status = 'done'
       if (self%status /= integration_done) then
         report%status = reason(self%status, scene, self%method%settings, t, y)//' at '//place(scene, t, y)
@@ -322,46 +319,4 @@ contains
     real(dp), intent(in) :: crank_travel   !! [rad]
     energy_limit = min(0.05_dp, max(1e-10_dp, 1e3_dp*tolerance*max(1.0_dp, abs(crank_travel)/(100*two_pi))))
   end function energy_limit
-
-  !> After an Adams run that was limited by stability for most of its time: measure how many more evaluations it took than method
-  !> auto.
-  subroutine measure_auto(case, report)
-    type(case_t), intent(in) :: case
-    type(run_report_t), intent(inout) :: report
-    integer :: needed
-    real(dp) :: time
-    if (report%statistics%time_limited_by(limit_stability) < 0.5_dp*report%figures%time) return
-    time = latest_end(case)
-    if (report%periods%is_on) time = report%figures%time
-    call try_auto(case, time, report%statistics%accepted/10 + 1, needed)
-    if (needed > 0) report%auto_saves = real(report%statistics%evaluations, dp)/needed
-  end subroutine measure_auto
-
-  !> Number of evaluations that method auto needs to run a case up to a time [s], measured by a run without output; 0 if it does not
-  !> reach that time in `max_steps` steps.
-  subroutine try_auto(case, time, max_steps, evaluations)
-    type(case_t), intent(in) :: case
-    real(dp), intent(in) :: time
-    integer, intent(in) :: max_steps
-    integer, intent(out) :: evaluations
-    type(scene_t), allocatable :: scene
-    class(ode_method_t), allocatable :: method
-    type(error_t), allocatable :: error
-    type(silent_observer_t) :: observer
-    type(step_statistics_t) :: needed
-    real(dp), allocatable :: y(:)
-    real(dp) :: t
-    integer :: status
-
-    evaluations = 0
-    call build_scene(case, .false., scene, error)
-    if (.not. allocated(error)) call new_method('auto', method, error)
-    if (allocated(error)) return
-    method%settings = settings_for(case, scene)
-    call find_start(case, .false., scene, t, y, error)
-    if (allocated(error)) return
-    call integrate(scene, method, t, y, time, max_steps, observer, status)
-    needed = method%totals()
-    if (status == integration_done .or. status == integration_stopped) evaluations = needed%evaluations
-  end subroutine try_auto
 end module gudgeon_simulation

@@ -34,22 +34,23 @@ contains
     call list%word('kind', self%kind, guide_friction//', '//guide_clearance, guide_friction, &
       'friction: piston on the cylinder axis; clearance: piston moves across its bore and tilts (slap)')
     call list%add('viscous', self%viscous, &
-      'viscous friction force per piston velocity, such as that of piston rings', 'N s/m', '>= 0', default='0.0')
+      'viscous friction force per piston velocity, such as that of piston rings', 'N s/m', '>= 0', default='0.0', usual='0 to 1e4')
     call list%add('bore_clearance', self%bore_clearance, &
       'half of bore diameter minus piston diameter; required with kind = ''clearance'', as the next five keys', &
-      'm', '> 0', default='0.0')
+      'm', '> 0', default='0.0', usual='1e-6 to 1e-3')
     call list%add('skirt_top', self%skirt_top, 'height of the upper corners of the skirt above the pin, along the piston', 'm', &
-      '> 0', default='0.0')
+      '> 0', default='0.0', usual='1e-3 to 1')
     call list%add('skirt_bottom', self%skirt_bottom, &
-      'depth of the lower corners of the skirt below the pin, along the piston', 'm', '> 0', default='0.0')
+      'depth of the lower corners of the skirt below the pin, along the piston', 'm', '> 0', default='0.0', usual='1e-3 to 1')
     call list%add('piston_radius', self%piston_radius, 'distance of the skirt corners from the piston axis', &
-      'm', '> 0', default='0.0')
+      'm', '> 0', default='0.0', usual='2e-3 to 1')
     call list%add('piston_inertia', self%piston_inertia, &
-      'moment of inertia of the piston about its centre of mass', 'kg m^2', '> 0', default='0.0')
-    call list%add('stiffness', self%stiffness, 'contact stiffness of a corner of the skirt', 'N/m^exponent', '> 0', default='0.0')
+      'moment of inertia of the piston about its centre of mass', 'kg m^2', '> 0', default='0.0', usual='1e-9 to 1e4')
+    call list%add('stiffness', self%stiffness, 'contact stiffness of a corner of the skirt', 'N/m^exponent', '> 0', default='0.0', &
+      usual='1e5 to 1e13')
     call list%add('piston_com', self%piston_com, &
-      'centre of mass of the piston from the pin, along and across the piston (pin offset)', 'm', default='0.0')
-    call list%add('exponent', self%exponent, 'exponent of the penetration', range='>= 1', default='1.0')
+      'centre of mass of the piston from the pin, along and across the piston (pin offset)', 'm', default='0.0', usual='0 to 0.5')
+    call list%add('exponent', self%exponent, 'exponent of the penetration', range='>= 1', default='1.0', usual='1 to 2')
   end subroutine parameters
 
   !> Largest ratio of friction to normal force [-] at sliding speeds up to a given one [m/s], within 2 %: the law is evaluated at

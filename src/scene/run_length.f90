@@ -32,7 +32,8 @@ contains
     call list%add('period_revolutions', self%period_revolutions, 'longest period that is recognised, in revolutions', &
       '>= 1 and <= 16', '16')
     call list%add('periodic_tolerance', self%periodic_tolerance, &
-      'allowed change of the state after one period, over the range of each component', range='> 0 and <= 0.1', default='1.0e-4')
+      'allowed change of the state after one period, over the range of each component', range='> 0 and <= 0.1', default='1.0e-4', &
+      usual='1e-8 to 1e-2')
     call list%add('most_revolutions', self%most_revolutions, 'upper limit of revolutions of a run until = ''periodic''', &
       '>= 1 and <= 1000000', '1000')
     call list%add('lyapunov_revolutions', self%lyapunov_revolutions, &

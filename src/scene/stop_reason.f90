@@ -2,6 +2,7 @@
 module stop_reason
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: degree
+  use number_text, only: short_text
   use ode_method, only: ode_settings_t, step_too_small, tolerance_too_small, start_outside, left_domain
   use gudgeon_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached
   use gudgeon_scene, only: scene_t, evaluation_t, phase_free
@@ -66,22 +67,9 @@ contains
     class(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     character(len=:), allocatable :: text
-    text = decimal_text(scene%turns%made(scene%crank_angle(t, y)))//' of '//decimal_text(scene%turns%wanted)// &
+    text = short_text(scene%turns%made(scene%crank_angle(t, y)), 4)//' of '//short_text(scene%turns%wanted, 4)// &
       ' revolutions ('//trim(scene%turns%key)//')'
   end function turns_text
-
-  !> A number >= 0 with at most four decimals.
-  function decimal_text(number) result(text)
-    real(dp), intent(in) :: number
-    character(len=:), allocatable :: text
-    character(len=60) :: digits
-    integer :: last
-    write (digits, '(f0.4)') number
-    last = verify(trim(digits), '0', back=.true.)
-    if (digits(last:last) == '.') last = last - 1
-    text = digits(:last)
-    if (index(digits, '.') == 1) text = '0'//text
-  end function decimal_text
 
   function ill_posed_text(scene, y) result(text)
     type(scene_t), intent(in) :: scene
@@ -173,13 +161,12 @@ contains
     real(dp), intent(in) :: t, y(:)
     character(len=:), allocatable :: text
     character(len=*), parameter :: phase_names(0:2) = [character(len=13) :: 'free flight', 'film', 'contact']
-    character(len=80) :: figures
+    integer, parameter :: digits = 9
     type(evaluation_t) :: now
     logical :: inside
     integer :: i
     call scene%evaluate(t, y, now, inside)
-    write (figures, '(a,es15.8,a,f0.4,a)') 't =', t, ' s, crank angle ', now%motion%crank_angle/degree, ' deg'
-    text = trim(figures)//', phase '
+    text = 't = '//short_text(t, digits)//' s, crank angle '//short_text(now%motion%crank_angle/degree, digits)//' deg, phase '
     if (scene%n_joints == 0) text = text//trim(phase_names(phase_free))
     do i = 1, scene%n_joints
       if (i > 1) text = text//', '

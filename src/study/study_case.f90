@@ -8,6 +8,7 @@ module study_case
   use case_file, only: complete_case
   use case_loader, only: load_case
   use case_rules, only: check_rules
+  use case_notes, only: note_case
   use value_reader, only: read_value => convert
   use namelist_reader, only: token_t
   implicit none
@@ -23,7 +24,6 @@ module study_case
     logical, allocatable :: is_number(:)             !! whether each parameter is one number, real or whole
     logical, allocatable :: is_whole(:)              !! whether each parameter is one whole number
     logical, private :: varies_words = .false.       !! a parameter is a word, which may name a law with keys of its own
-    type(error_t), allocatable, private :: wrong     !! error in the parameters of the laws of the present run
   contains
     procedure :: prepare
     procedure :: put
@@ -70,11 +70,12 @@ contains
     do i = 1, size(keys)   ! a parameter replaces the base case's values of other keys of its family
       if (values%keys(self%places(i))%family /= '') call self%values%prefer(self%places(i))
     end do
-    call load_case(self%values, self%case, self%wrong, self%groups)
+    call load_case(self%values, self%case, self%groups)
+    call self%values%problems%clear()   ! of parameters without values
     do i = 1, size(values%keys)   ! keys of models that the parameters add
-      if (self%values%is_used(i)) call self%values%check_required(i, error)
-      if (allocated(error)) return
+      if (self%values%is_used(i)) call self%values%check_required(i)
     end do
+    call self%values%problems%report(error)
   end subroutine prepare
 
   !> Set the values of a run, without checking ranges. Error: see `convert`.
@@ -83,11 +84,12 @@ contains
     character(len=*), intent(in) :: texts(:)
     type(error_t), allocatable, intent(out) :: error
     integer :: i
+    call self%values%problems%clear()
     do i = 1, size(texts)
       call self%convert(i, trim(texts(i)), error)
       if (allocated(error)) return
     end do
-    call load_case(self%values, self%case, self%wrong, self%groups)
+    call load_case(self%values, self%case, self%groups)
   end subroutine put
 
   !> Convert the value of parameter i, which `put` sets in the case. Error: a text that is not a value of its key; the message does
@@ -111,16 +113,19 @@ contains
     end associate
   end subroutine convert
 
-  !> Check the ranges of the values set last and the rules between them. An error concerns this run, not the study.
+  !> Check the ranges of the values set last and the rules between them, and put the notes on them into the case. An error concerns
+  !> this run, not the study: the first one.
   subroutine check(self, error)
     class(study_case_t), intent(inout) :: self
     type(error_t), allocatable, intent(out) :: error
     integer :: i
     do i = 1, size(self%places)
-      if (self%values%is_used(self%places(i)) .and. .not. allocated(error)) call self%values%check_range(self%places(i), error)
+      if (self%values%is_used(self%places(i))) call self%values%check_range(self%places(i))
     end do
-    if (self%varies_words .and. .not. allocated(error)) call self%values%check(error)
-    if (.not. allocated(error) .and. allocated(self%wrong)) error = self%wrong
-    if (.not. allocated(error)) call check_rules(self%case, self%values, error)
+    if (self%varies_words) call self%values%check()
+    if (self%values%problems%n == 0) call check_rules(self%case, self%values)
+    call self%values%problems%report(error)
+    if (.not. allocated(error)) call note_case(self%case, self%values)
+    if (allocated(error)) error%message = error%message(:index(error%message//achar(10), achar(10)) - 1)
   end subroutine check
 end module study_case

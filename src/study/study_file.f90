@@ -9,6 +9,7 @@ module study_file
   use case_schema, only: key_table_t, is_group_of_cases
   use case_loader, only: load_model
   use case_text, only: resolved_text
+  use problem_list, only: problem_list_t, behind_file
   use study_definition, only: study_t, parameter_t, text_t, study_schema_of
   implicit none
   private
@@ -54,6 +55,7 @@ contains
     type(case_values_t), allocatable, intent(out) :: groups(:)
     type(error_t), allocatable, intent(out) :: error
     type(key_table_t) :: table
+    type(problem_list_t) :: problems
     character(len=:), allocatable :: at
     integer :: place(size(list%groups)), i, n, key
 
@@ -72,38 +74,37 @@ contains
         if (groups(1)%is_present(1)) call fail(error, at//'&study: this group is given twice', status_case_file)
         place(i) = 1
         groups(1)%is_present(1) = .true.
+        groups(1)%line(1) = list%groups(i)%line
       case ('parameter')
         n = n + 1
         place(i) = n
         groups(n)%is_present(2) = .true.
+        groups(n)%line(2) = list%groups(i)%line
       case default
         if (is_group_of_cases(list%groups(i)%name)) then
           call fail(error, at//'&'//list%groups(i)%name//': a case, not a study: run it with gudgeon '//list%file// &
             ', without sweep', status_case_file)
+          return
         else
           call groups(1)%find(list%groups(i)%name, '', at, key, error)
         end if
       end select
-      if (allocated(error)) return
+      call problems%add_error(error, '', list%groups(i)%line)
     end do
-    if (.not. groups(1)%is_present(1)) then
-      call fail(error, list%file//': &study: this group is required', status_case_file)
-      return
-    end if
+    if (.not. (groups(1)%is_present(1) .or. problems%blames(''))) &
+      call problems%add(list%file//': &study: this group is required', 'study', behind_file)
     do i = 1, size(list%entries)
-      associate (entry => list%entries(i), group => groups(place(list%entries(i)%group_number)))
-        at = list%at(entry%line)
-        call group%find(entry%group, entry%key, at, key, error)
-        if (allocated(error)) return
+      associate (entry => list%entries(i))
+        if (place(entry%group_number) == 0) cycle
         if (entry%key == 'values') entry%tokens%quoted = .true.   ! a list is kept as written, numbers and words alike
-        call group%assign(key, entry%index, entry%tokens, at, .false., error)
-        if (allocated(error)) return
+        call groups(place(entry%group_number))%give(entry%group, entry, list%at(entry%line))
       end associate
     end do
     do i = 1, size(groups)
-      call groups(i)%check(error)
-      if (allocated(error)) return
+      call groups(i)%check()
+      call problems%absorb(groups(i)%problems)
     end do
+    call problems%report(error)
   end subroutine take_groups
 
   !> Set the values of &study.
@@ -137,20 +138,21 @@ contains
 
   !> Check that the values of &study fit together and fit the number of parameters.
   subroutine check_study(values, study, n_parameters, error)
-    type(case_values_t), intent(in) :: values
+    type(case_values_t), intent(inout) :: values
     type(study_t), intent(in) :: study
     integer, intent(in) :: n_parameters
     type(error_t), allocatable, intent(out) :: error
     call forbid(study%case == '', 'case', 'must name a case file')
     call forbid(study%table /= '' .and. n_parameters > 0, 'table', 'must not be given together with &parameter')
     call forbid(study%table == '' .and. n_parameters == 0, 'table', 'this or &parameter is required')
+    call values%problems%report(error)
 
   contains
 
     subroutine forbid(is_wrong, key, wanted)
       logical, intent(in) :: is_wrong
       character(len=*), intent(in) :: key, wanted
-      call values%forbid(is_wrong, 'study', key, wanted, error)
+      call values%forbid(is_wrong, 'study', key, wanted)
     end subroutine forbid
   end subroutine check_study
 
@@ -159,6 +161,7 @@ contains
     type(case_values_t), intent(inout) :: groups(:)
     type(study_t), intent(inout) :: study
     type(error_t), allocatable, intent(out) :: error
+    type(problem_list_t) :: problems
     integer :: i, k
     allocate (study%varied(size(groups)))
     do i = 1, size(groups)
@@ -167,23 +170,21 @@ contains
         p%key = lowercase(p%key)
         call split(p%values, p%list)
       end associate
-      call check_parameter(groups(i), study%varied(i), error)
-      if (allocated(error)) return
+      call check_parameter(groups(i), study%varied(i))
       do k = 1, i - 1
-        if (study%varied(k)%key /= study%varied(i)%key) cycle
-        call groups(i)%refuse('parameter', 'key', 'is varied twice', error)
-        return
+        if (study%varied(k)%key == study%varied(i)%key) call groups(i)%refuse('parameter', 'key', 'is varied twice')
       end do
+      call problems%absorb(groups(i)%problems)
       study%resolved = study%resolved//resolved_text(groups(i))
       study%identity = study%identity//resolved_text(groups(i))
     end do
+    call problems%report(error)
   end subroutine take_parameters
 
   !> Check that a parameter has either a range or a list.
-  subroutine check_parameter(values, p, error)
-    type(case_values_t), intent(in) :: values
+  subroutine check_parameter(values, p)
+    type(case_values_t), intent(inout) :: values
     type(parameter_t), intent(in) :: p
-    type(error_t), allocatable, intent(out) :: error
     logical :: has_from, has_to
     has_from = values%is_given('parameter', 'from')
     has_to = values%is_given('parameter', 'to')
@@ -192,7 +193,7 @@ contains
       return
     end if
     call forbid(.not. has_from, 'from', 'from and to, or values, are required')
-    call forbid(.not. has_to, 'to', 'required with from')
+    call forbid(has_from .and. .not. has_to, 'to', 'required with from')
     call forbid(p%scale == 'log' .and. .not. (p%from > 0 .and. p%to > 0), 'scale', 'from and to must be > 0 for scale = ''log''')
     call forbid(p%count == 0, 'count', 'required with from and to')
 
@@ -201,7 +202,7 @@ contains
     subroutine forbid(is_wrong, key, wanted)
       logical, intent(in) :: is_wrong
       character(len=*), intent(in) :: key, wanted
-      call values%forbid(is_wrong, 'parameter', key, wanted//'; &parameter key = '''//printable(p%key, 60)//'''', error)
+      call values%forbid(is_wrong, 'parameter', key, wanted//'; &parameter key = '''//printable(p%key, 60)//'''')
     end subroutine forbid
   end subroutine check_parameter
 

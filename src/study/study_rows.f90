@@ -9,7 +9,7 @@ module study_rows
   use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt
   use cycle_watch, only: cycle_watch_t
   use gudgeon_simulation, only: run_report_t
-  use gudgeon_summary, only: relative_residual
+  use result_notes, only: relative_residual
   use archard_wear, only: of_pin, of_bore
   use number_text, only: number_writer_t
   use row_text, only: row_text_t
@@ -93,7 +93,7 @@ contains
     type(case_t) :: no_case
     row%is_header = .true.
     call row%choose(keys, base, has_strobes)
-    call put_run(row, 0, keys, 'status', .false., no_watch, no_report, no_case)
+    call put_run(row, 0, keys, 'status', .false., 0, no_watch, no_report, no_case)
     text = row%text(:row%used)
   end function run_header
 
@@ -124,12 +124,13 @@ contains
 
   !> Append the row of a run: its outcome if it began, and its statistics if it is done and has at least one revolution. The columns
   !> of all studies are followed by the number of strobes, if the study has any, and by those of further pins.
-  subroutine put_run(row, run, values, outcome, has_begun, watch, report, case)
+  subroutine put_run(row, run, values, outcome, has_begun, notes, watch, report, case)
     class(study_row_t), intent(inout) :: row
     integer, intent(in) :: run
     character(len=*), intent(in) :: values(:)   !! values of the parameters; their keys in a header
     character(len=*), intent(in) :: outcome     !! done, or the reason of the failure
     logical, intent(in) :: has_begun
+    integer, intent(in) :: notes                !! number of notes on values and results
     type(cycle_watch_t), intent(in) :: watch
     type(run_report_t), intent(in) :: report
     type(case_t), intent(in) :: case
@@ -151,6 +152,7 @@ contains
     call row%put('energy_residual[-]', relative_residual(report), has_begun)
     call row%put('rhs_evaluations[-]', report%statistics%evaluations, has_begun)
     call row%put('simulated_time[s]', report%figures%time, has_begun)
+    call row%put('notes[-]', notes, has_begun)
     if (row%has_strobes) call row%put('strobes[-]', watch%strobes, is_done)
     call put_further_joints(row, s, case, is_done, .true.)
     if (row%has_motion) then

@@ -11,7 +11,7 @@ module study_runner
   use result_file, only: result_file_t, write_text, fail_with_file
   use command_line, only: command_line_t
   use gudgeon_progress, only: progress_t, rate_text, clock
-  use case_runner, only: tell_warning
+  use case_runner, only: tell_notes
   use process_pool, only: tasks_t, note_t, share, available_processors
   use gudgeon_posix, only: make_directory, remove_folder, list_folder, longest_name, remove_file, file_length, synchronise_folder, &
     wait_for_input, interrupted, signal_set_t, hold_interrupts, restore_interrupts
@@ -43,6 +43,7 @@ module study_runner
     logical :: has_kind(n_kinds) = .false.
     type(study_worker_t), allocatable :: worker        !! of this process
     integer :: done = 0, began = 0                     !! number of runs done, now and at the start
+    integer :: noted = 0                               !! number of runs of this sweep with notes on values or results
     type(progress_t) :: progress
     type(error_t), allocatable :: error
   contains
@@ -71,7 +72,7 @@ contains
     line = ''
     allocate (tasks)
     call read_sweep(path, options, tasks%sweep, error)
-    if (.not. (allocated(error) .or. options%quiet)) call tell_warning(tasks%sweep%base%case)
+    if (.not. (allocated(error) .or. options%quiet)) call tell_notes(tasks%sweep%base%case)
     if (.not. allocated(error) .and. options%check) call check_rows(tasks%sweep, line, error)
     call hold_interrupts()
     if (allocated(error) .or. options%check) return
@@ -270,6 +271,7 @@ contains
         call file(of_cycles)%put(worker%cycle_rows%text(:worker%cycle_rows%used))
         call file(of_strobes)%put(worker%strobe_rows%text(:worker%strobe_rows%used))
         call file(of_runs)%put(worker%run_row%text(:worker%run_row%used))
+        if (worker%notes > 0) note%numbers(2) = note%numbers(2) + 1
       end do
       do kind = 1, n_kinds
         if (is_whole .and. .not. allocated(error)) call file(kind)%close(error)
@@ -284,6 +286,7 @@ contains
     class(study_tasks_t), intent(inout) :: self
     type(note_t), intent(in) :: note
     self%done = self%done + note%numbers(1)
+    if (note%numbers(1) > 0) self%noted = self%noted + note%numbers(2)
     if (note%text /= '' .and. .not. allocated(self%error)) call fail(self%error, trim(note%text), status_output)
     self%is_over = allocated(self%error)
     call self%progress%update_runs(self%done, self%sweep%last - self%sweep%first + 1, self%began)
@@ -413,6 +416,7 @@ contains
       line = sweep%study%name//': '//integer_text(total)//' runs'
       if (began > 0) line = line//', '//integer_text(began)//' of them already done'
       if (done > began) line = line//'; '//short_text(wall_time)//' s, '//rate_text((done - began)/max(wall_time, 1e-6_dp))
+      if (tasks%noted > 0) line = line//'; '//integer_text(tasks%noted)//' with notes (column notes)'
       is_joined = file_length(sweep%path//trim(suffixes(of_runs))) >= 0
       if (total == sweep%design%runs .and. done == total .and. .not. is_joined) then
         call join(tasks, tasks%error)

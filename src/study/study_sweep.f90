@@ -50,6 +50,7 @@ contains
     call read_study(path, sweep%study, error)
     if (allocated(error)) return
     call read_case_values(sweep%study%case, with_preset(options%accuracy, options%overrides), values, error)
+    if (.not. allocated(error)) call values%problems%report(error)
     if (allocated(error)) then
       error%message = printable(path, 200)//': &study case: '//error%message
       return
@@ -210,9 +211,10 @@ contains
     character(len=:), allocatable, intent(out) :: line
     type(error_t), allocatable, intent(out) :: error
     real(dp), parameter :: golden = 0.61803398874989485_dp   !! its multiples are spread evenly, and follow no period of a grid
-    integer :: i, total, failed
+    integer :: i, total, failed, noted
     total = sweep%last - sweep%first + 1
     failed = 0
+    noted = 0
     line = printable(sweep%study%file, 200)//': '
     if (total <= most_checked .or. sweep%study%table /= '') then
       do i = sweep%first, sweep%last
@@ -233,6 +235,7 @@ contains
     if (total > most_checked .and. sweep%study%table == '') &
       line = line//' ('//integer_text(most_checked)//' of them checked)'
     if (failed > 0) line = line//', '//integer_text(failed)//' would fail'
+    if (noted > 0) line = line//', '//integer_text(noted)//' with notes'
 
   contains
 
@@ -243,7 +246,10 @@ contains
       call sweep%design%get_values(run, values)
       call sweep%base%put(values, problem)
       if (.not. allocated(problem)) call sweep%base%check(problem)
-      if (.not. allocated(problem)) return
+      if (.not. allocated(problem)) then
+        if (allocated(sweep%base%case%notes)) noted = noted + 1
+        return
+      end if
       failed = failed + 1
       if (allocated(error)) return
       call fail(error, printable(sweep%study%file, 200)//': run '//integer_text(run)//': '//problem%message, status_integration)

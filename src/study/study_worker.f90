@@ -14,6 +14,8 @@ module study_worker
   use study_definition, only: study_t
   use study_design, only: study_design_t
   use study_case, only: study_case_t
+  use case_notes, only: count_lines
+  use result_notes, only: notes_on_results
   use study_rows, only: study_row_t, put_run, put_cycles, put_strobes
   implicit none
   private
@@ -22,6 +24,7 @@ module study_worker
   type :: study_worker_t
     type(study_row_t) :: run_row, cycle_rows, strobe_rows  !! rows of the last run
     logical :: is_done = .false.                           !! the last run reached its end
+    integer :: notes = 0                                   !! number of notes on values and results of the last run
     logical :: was_interrupted = .false.                   !! the last run was abandoned, and has no row
     type(error_t), allocatable :: output_error             !! reason why its trace could not be written
     type(study_case_t), private :: base
@@ -106,7 +109,12 @@ contains
       outcome = 'no whole revolution after settle_cycles'
     end if
     self%is_done = outcome == 'done'
-    call put_run(self%run_row, number, self%values, outcome, has_begun, self%watch, report, self%base%case)
+    self%notes = 0
+    if (has_begun) then
+      self%notes = count_lines(notes_on_results(self%base%case, report))
+      if (allocated(self%base%case%notes)) self%notes = self%notes + count_lines(self%base%case%notes)
+    end if
+    call put_run(self%run_row, number, self%values, outcome, has_begun, self%notes, self%watch, report, self%base%case)
     if (.not. self%is_done) return
     if (self%watch%keeps_cycles) call put_cycles(self%cycle_rows, number, self%watch, self%base%case)
     call put_strobes(self%strobe_rows, number, self%watch)

@@ -10,10 +10,11 @@ module number_text
   use, intrinsic :: iso_fortran_env, only: int64
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
   use gudgeon_kinds, only: dp
-  use text_tools, only: whole_number
+  use text_tools, only: whole_number, integer_text
   implicit none
   private
-  public :: real_text, short_text, exact_text, number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
+  public :: real_text, short_text, exact_text, quantity_text, number_writer_t, append_formatted, longest_number, &
+    fewest_digits, most_digits
 
   integer, parameter :: fewest_digits = 6, most_digits = 17   !! significant digits
   integer, parameter :: longest_number = most_digits + 9      !! characters, as -1.2345678901234567E-100, with trailing blanks
@@ -224,43 +225,72 @@ contains
     if (abs(value) > huge(value)) text = trim(merge('-inf', 'inf ', value < 0))
   end function real_text
 
-  !> The shortest text of a real, as 0.0508 or 1.25E-05, that reads back as the same number.
+  !> A real for messages: at most 6 (or `digits`) significant digits, without trailing zeros, as 0.0125, 36000.5 or 1.5e-7.
+  pure function short_text(value, digits) result(text)
+    real(dp), intent(in) :: value
+    integer, intent(in), optional :: digits
+    character(len=:), allocatable :: text
+    integer :: wanted
+    wanted = fewest_digits
+    if (present(digits)) wanted = digits
+    text = plain_text(real_text(value, wanted))
+  end function short_text
+
+  !> A value with a unit that makes it readable, in three (or `digits`) digits: 4.22 um, 3.61 kN, 100 ms.
+  pure function quantity_text(value, unit, digits) result(text)
+    real(dp), intent(in) :: value
+    character(len=*), intent(in) :: unit   !! of the value
+    integer, intent(in), optional :: digits
+    character(len=:), allocatable :: text
+    character(len=1), parameter :: prefixes(-4:4) = ['p', 'n', 'u', 'm', ' ', 'k', 'M', 'G', 'T']
+    integer :: power, wanted
+    wanted = 3
+    if (present(digits)) wanted = digits
+    power = 0
+    if (abs(value) > 0) power = floor(log10(abs(value)*(1 + 0.5_dp*10.0_dp**(-wanted)))/3)
+    if (power < lbound(prefixes, 1) .or. power > ubound(prefixes, 1)) power = 0
+    text = short_text(value/10.0_dp**(3*power), wanted)//' '//trim(prefixes(power))//unit
+  end function quantity_text
+
+  !> A real with as few digits as read back as the same bits: 0.0508, 250, 2e-5.
   pure function exact_text(value) result(text)
     real(dp), intent(in) :: value
     character(len=:), allocatable :: text
     real(dp) :: back
-    integer :: wanted, status
-    do wanted = 15, most_digits
-      text = short_text(value, wanted)
-      read (text, *, iostat=status) back
-      if (status == 0 .and. .not. abs(back - value) > 0) exit
+    integer :: digits
+    do digits = 1, most_digits
+      text = real_text(value, digits)
+      if (scan(text, '0123456789') == 0) return   ! not finite
+      read (text, *) back
+      if (.not. abs(back - value) > 0) exit
     end do
+    text = plain_text(text)
   end function exact_text
 
-  !> A real for messages: 6 significant digits, or as many as wanted, without trailing zeros, as 0.0125 or 36000.5 if that is short.
-  pure function short_text(value, wanted) result(text)
-    real(dp), intent(in) :: value
-    integer, intent(in), optional :: wanted
+  !> A number of `real_text` as people write it: with an exponent only if it is small or large, without trailing zeros.
+  pure function plain_text(number) result(text)
+    character(len=*), intent(in) :: number
     character(len=:), allocatable :: text
     character(len=:), allocatable :: digits
+    integer, parameter :: least_power = -4, largest_power = 5
     integer :: first, exponent, power
-    text = real_text(value, fewest_digits)
-    if (present(wanted)) text = real_text(value, wanted)
-    exponent = index(text, 'E')
+    text = number
+    exponent = index(number, 'E')
     if (exponent == 0) return
-    power = int(whole_number(text(exponent + 1:)))
-    if (power < -4 .or. power > 5) then
-      text = without_zeros(text(:exponent - 1))//text(exponent:)
+    power = int(whole_number(number(exponent + 1:)))
+    if (power < least_power .or. power > largest_power) then
+      text = without_zeros(number(:exponent - 1))//'e'//integer_text(power)
       return
     end if
-    first = scan(text, '0123456789')
-    digits = text(first:first)//text(first + 2:exponent - 1)
+    first = scan(number, '0123456789')
+    digits = number(first:first)//number(first + 2:exponent - 1)
     if (power < 0) then
-      text = text(:first - 1)//without_zeros('0.'//repeat('0', -power - 1)//digits)
+      text = number(:first - 1)//without_zeros('0.'//repeat('0', -power - 1)//digits)
     else
-      text = text(:first - 1)//without_zeros(digits(:power + 1)//'.'//digits(power + 2:))
+      digits = digits//repeat('0', max(0, power + 1 - len(digits)))
+      text = number(:first - 1)//without_zeros(digits(:power + 1)//'.'//digits(power + 2:))
     end if
-  end function short_text
+  end function plain_text
 
   !> A number with a decimal point, without trailing zeros and without a trailing point.
   pure function without_zeros(number) result(text)

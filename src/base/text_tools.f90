@@ -3,8 +3,8 @@ module text_tools
   use, intrinsic :: iso_fortran_env, only: int64
   implicit none
   private
-  public :: lowercase, printable, is_clean, integer_text, whole_number, quoted, nearest_word, suggestion, case_name, &
-    path_beside, replaced, next_line
+  public :: lowercase, printable, is_clean, integer_text, whole_number, quoted, nearest_word, likely_word, allowed, &
+    case_name, path_beside, replaced, next_line
 
   !> Ranges of characters that are blanks beyond ASCII, have no width or change the direction of writing: U+00A0, U+00AD,
   !> U+2000-200F, U+2028-202F, U+205F-206F, U+3000, U+FEFF.
@@ -125,10 +125,11 @@ contains
     if (code >= least(n) .and. code <= 1114111 .and. code/2048 /= 27) bytes = n   ! 27: halves of a pair of UTF-16
   end subroutine take_character
 
-  !> The word of a list that is most similar to a misspelt one; empty if none is similar.
+  !> The word of a list that is most similar to a misspelt one, or else the shortest that begins with it; empty if there is none.
   pure function nearest_word(word, list) result(nearest)
     character(len=*), intent(in) :: word, list(:)
     character(len=:), allocatable :: nearest
+    integer, parameter :: least_beginning = 3   !! letters
     integer :: i, distance, least
     nearest = ''
     least = max(1, min(3, len_trim(word)/2)) + 1
@@ -139,21 +140,43 @@ contains
         nearest = trim(list(i))
       end if
     end do
+    if (nearest /= '' .or. len_trim(word) < least_beginning) return
+    do i = 1, size(list)
+      if (index(list(i), trim(word)) == 1 .and. (nearest == '' .or. len_trim(list(i)) < len(nearest))) nearest = trim(list(i))
+    end do
   end function nearest_word
 
-  !> For a misspelt word, `; did you mean x? (allowed: ...)`.
-  pure function suggestion(word, allowed) result(text)
-    character(len=*), intent(in) :: word, allowed(:)
+  !> For a misspelt word, `; did you mean x?`, if one in a list of words separated by commas and blanks is similar.
+  pure function likely_word(word, list) result(text)
+    character(len=*), intent(in) :: word, list
+    character(len=:), allocatable :: text
+    character(len=len(list)) :: words(len(list)/2 + 1)
+    integer :: first, length, n
+    n = 0
+    first = 1
+    do while (first <= len(list))
+      length = scan(list(first:)//',', ', ') - 1
+      if (length > 0) then
+        n = n + 1
+        words(n) = list(first:first + length - 1)
+      end if
+      first = first + length + 1
+    end do
+    text = nearest_word(word, words(:n))
+    if (text /= '') text = '; did you mean '//text//'?'
+  end function likely_word
+
+  !> ` (allowed: x, y, z)`.
+  pure function allowed(words) result(text)
+    character(len=*), intent(in) :: words(:)
     character(len=:), allocatable :: text
     integer :: i
-    text = nearest_word(word, allowed)
-    if (text /= '') text = '; did you mean '//text//'?'
-    text = text//' (allowed: '//trim(allowed(1))
-    do i = 2, size(allowed)
-      text = text//', '//trim(allowed(i))
+    text = ' (allowed: '//trim(words(1))
+    do i = 2, size(words)
+      text = text//', '//trim(words(i))
     end do
     text = text//')'
-  end function suggestion
+  end function allowed
 
   !> Number of letters to insert, remove or replace to turn one word into the other (Levenshtein); large for long words.
   pure function edits(a, b) result(distance)

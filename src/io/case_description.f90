@@ -1,0 +1,171 @@
+!> What the program has understood of a case, in units that people use: the answer to --check.
+module case_description
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: pi, two_pi
+  use case_definition, only: case_t
+  use joint_case, only: joint_case_t
+  use joint_places, only: places, n_places, in_order
+  use scene_builder, only: simulated_time, sample_interval
+  use number_text, only: short_text, quantity_text
+  use text_tools, only: integer_text, printable
+  implicit none
+  private
+  public :: description
+
+  integer, parameter :: digits = 4
+  real(dp), parameter :: mm3_to_cm3 = 1e6_dp        !! cm^3 in a m^3
+  real(dp), parameter :: zero_celsius = 273.15_dp   !! [K]
+
+contains
+
+  !> One line that says that the case is correct, and one for each part of it.
+  function description(case, columns, has_twin, base, tables) result(text)
+    type(case_t), intent(in) :: case
+    integer, intent(in) :: columns         !! number of columns of the trace
+    logical, intent(in) :: has_twin
+    character(len=*), intent(in) :: base     !! path of the results without suffix
+    character(len=*), intent(in) :: tables   !! text about the tables of films; may be empty
+    character(len=:), allocatable :: text
+    integer :: i
+    text = printable(case%file, 200)//': correct'
+    call add('machine', machine_text(case))
+    call add('speed', speed_text(case))
+    if (allocated(case%combustion)) call add('gas', case%combustion%description())
+    if (allocated(case%measured)) call add('gas', case%measured%description())
+    do i = 1, n_places
+      associate (place => in_order(i))
+        if (i == 1 .or. case%joints(place)%has_clearance()) call add(trim(places(place)%title), joint_text(case%joints(place)))
+      end associate
+    end do
+    if (allocated(case%guide)) call add('guide', guide_text(case))
+    call add('run', run_text(case))
+    call add('results', results_text(case, columns, has_twin, base))
+    call add('film table', tables)
+
+  contains
+
+    subroutine add(part, line)
+      character(len=*), intent(in) :: part, line
+      character(len=12) :: name
+      name = part
+      if (line /= '') text = text//achar(10)//'  '//name//line
+    end subroutine add
+  end function description
+
+  function machine_text(case) result(text)
+    type(case_t), intent(in) :: case
+    character(len=:), allocatable :: text
+    real(dp) :: stroke, bore   !! [m]
+    stroke = 2*case%mechanism%crank_length
+    bore = 0
+    if (allocated(case%combustion)) bore = case%combustion%bore
+    if (allocated(case%measured)) bore = case%measured%bore
+    text = 'stroke '//quantity_text(stroke, 'm', digits)//', rod '//quantity_text(case%mechanism%rod_length, 'm', digits)// &
+      ' (crank over rod '//short_text(0.5_dp*stroke/case%mechanism%rod_length, 3)//')'
+    if (bore > 0) text = text//', bore '//quantity_text(bore, 'm', digits)//', displacement '// &
+      short_text(mm3_to_cm3*pi/4*bore**2*stroke, digits)//' cm3'
+    if (allocated(case%elastic_rod)) text = text//', elastic rod'
+    if (allocated(case%crankshaft)) text = text//', elastic crankshaft'
+  end function machine_text
+
+  function speed_text(case) result(text)
+    type(case_t), intent(in) :: case
+    character(len=:), allocatable :: text
+    associate (speed => case%initial%crank_speed, drive => case%drive)
+      text = rpm_text(speed)
+      if (drive%kind == 'constant_speed') then
+        text = text//' held'
+        if (drive%ramp_time > 0) text = text//', after a ramp of '//quantity_text(drive%ramp_time, 's', digits)//' from '// &
+          rpm_text(drive%ramp_from)
+      else
+        text = text//' at first, free crank'
+      end if
+      text = text//'; mean piston speed '//short_text(abs(speed)*2*case%mechanism%crank_length/pi, 3)//' m/s'
+    end associate
+  end function speed_text
+
+  function rpm_text(speed) result(text)
+    real(dp), intent(in) :: speed   !! [rad/s]
+    character(len=:), allocatable :: text
+    text = short_text(30*speed/pi, digits)//' rpm'
+  end function rpm_text
+
+  !> Clearance and models of a joint.
+  function joint_text(joint) result(text)
+    type(joint_case_t), intent(in) :: joint
+    character(len=:), allocatable :: text
+    text = 'ideal'
+    if (.not. joint%has_clearance()) return
+    text = 'clearance '//quantity_text(joint%clearance, 'm', digits)//', '// &
+      short_text(joint%clearance/joint%bearing_radius, 2)//' of the radius of '//quantity_text(joint%bearing_radius, 'm', digits)
+    if (joint%bearing_length > 0) text = text//', length/diameter '//short_text(0.5_dp*joint%bearing_length/joint%bearing_radius, 3)
+    if (allocated(joint%film)) then
+      text = text//'; '//trim(joint%film%name)//' film, '
+      if (joint%oil%is_known()) then
+        text = text//quantity_text(joint%oil%dynamic_viscosity(), 'Pa s', 3)//' at '// &
+          short_text(joint%oil%temperature - zero_celsius, 3)//' degrees C ('//joint%oil%law//')'
+      else
+        text = text//quantity_text(joint%film%viscosity, 'Pa s', 3)
+      end if
+      if (joint%elastic%is_wanted) text = text//', elastic walls'
+    end if
+    if (allocated(joint%contact)) text = text//'; contact '//trim(joint%contact%name)//' on '//trim(joint%contact%geometry%name)
+    if (allocated(joint%asperities)) text = text//'; rough surfaces, '//quantity_text(joint%asperities%roughness, 'm', 3)
+    if (allocated(joint%friction)) text = text//'; friction '//trim(joint%friction%name)
+    if (allocated(joint%wear)) text = text//'; wear'
+  end function joint_text
+
+  function guide_text(case) result(text)
+    type(case_t), intent(in) :: case
+    character(len=:), allocatable :: text
+    associate (guide => case%guide)
+      text = 'piston on the axis of the cylinder'
+      if (case%has_loose_guide()) text = 'clearance '//quantity_text(guide%bore_clearance, 'm', digits)// &
+        ' around a piston of '//quantity_text(guide%piston_radius, 'm', digits)//' radius; contact '//trim(guide%contact%name)
+      if (allocated(guide%friction)) text = text//'; friction '//trim(guide%friction%name)
+    end associate
+  end function guide_text
+
+  function run_text(case) result(text)
+    type(case_t), intent(in) :: case
+    character(len=:), allocatable :: text
+    associate (run => case%integrator)
+      if (case%run%is_until_periodic()) then
+        text = 'until the motion repeats, '//integer_text(case%run%most_revolutions)//' revolutions at most'
+      else if (run%crank_revolutions > 0) then
+        text = short_text(run%crank_revolutions)//' revolutions of the crank, about '// &
+          quantity_text(simulated_time(case), 's', digits)
+      else if (run%revolutions > 0) then
+        text = short_text(run%revolutions)//' revolutions at the starting speed, '// &
+          quantity_text(simulated_time(case), 's', digits)
+      else
+        text = quantity_text(run%end_time, 's', digits)//', '// &
+          short_text(run%end_time*abs(case%initial%crank_speed)/two_pi, digits)//' revolutions at the starting speed'
+      end if
+      text = text//'; method '//run%method//', relative tolerance '//short_text(run%relative_tolerance)
+      if (run%contact_entry /= 'root') text = text//', contact entry '//run%contact_entry
+    end associate
+  end function run_text
+
+  function results_text(case, columns, has_twin, base) result(text)
+    type(case_t), intent(in) :: case
+    integer, intent(in) :: columns
+    logical, intent(in) :: has_twin
+    character(len=*), intent(in) :: base
+    character(len=:), allocatable :: text
+    associate (output => case%output)
+      if (output%every_step) then
+        text = 'a row for each step'
+      else if (output%sampling == 'crank_angle') then
+        text = integer_text(output%samples_per_revolution)//' rows a revolution'
+      else if (case%run%is_until_periodic()) then
+        text = 'a row every '//quantity_text(sample_interval(case), 's', digits)
+      else
+        text = 'about '//short_text(1 + aint((simulated_time(case) - output%start_time)/sample_interval(case)))//' rows'
+      end if
+      text = text//' of '//integer_text(columns)//' columns in '//printable(base, 200)//'.csv'
+    end associate
+    if (case%has_contact()) text = text//', with its events'
+    if (has_twin) text = text//', and the ideal twin'
+  end function results_text
+end module case_description

@@ -1,0 +1,86 @@
+!> Notes on the results of a run: what no machine can do, and what the models do not describe.
+module result_notes
+  use gudgeon_kinds, only: dp
+  use gudgeon_simulation, only: run_report_t
+  use run_figures, only: pin_figures_t
+  use joint_places, only: places, n_places, in_order
+  use case_definition, only: case_t
+  use joint_case, only: joint_case_t
+  use number_text, only: short_text, quantity_text
+  implicit none
+  private
+  public :: notes_on_results, relative_residual, energy_warning, no_exponent
+
+  real(dp), parameter :: thinnest_film = 10e-9_dp      !! below this oil is no continuous fluid, and no surface is smooth [m]
+  character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: '
+  real(dp), parameter :: largest_pressure = 5e9_dp     !! beyond the strength of every bearing [Pa]
+
+contains
+
+  !> Notes on the results, one line each; empty if there are none.
+  function notes_on_results(case, report) result(notes)
+    type(case_t), intent(in) :: case
+    type(run_report_t), intent(in) :: report
+    character(len=:), allocatable :: notes
+    integer :: i
+    notes = ''
+    do i = 1, n_places
+      associate (place => in_order(i))
+        call note_joint(case%joints(place), report%figures%pin(place), trim(places(place)%title)//': ')
+      end associate
+    end do
+    if (report%energy_is_poor) call add_line(energy_warning(case, report))
+    if (.not. report%exponent%is_known .and. allocated(report%exponent%reason)) &
+      call add_line(no_exponent//report%exponent%reason)
+    if (notes /= '') notes = notes(:len(notes) - 1)
+
+  contains
+
+    subroutine add_line(text)
+      character(len=*), intent(in) :: text
+      notes = notes//text//achar(10)
+    end subroutine add_line
+
+    subroutine note_joint(joint, pin, name)
+      type(joint_case_t), intent(in) :: joint
+      type(pin_figures_t), intent(in) :: pin
+      character(len=*), intent(in) :: name
+      character(len=*), parameter :: too_much = ': no bearing carries it'
+      real(dp) :: length, area, limit
+      if (.not. joint%has_clearance()) return
+      if (allocated(joint%film) .and. pin%min_film_thickness > 0 .and. pin%min_film_thickness < thinnest_film) &
+        call add_line(name//'a film of '//quantity_text(pin%min_film_thickness, 'm')//' is thinner than 10 nm, where oil is '// &
+        'not a continuous fluid')
+      length = joint%bearing_length
+      if (.not. length > 0) length = 2*joint%bearing_radius
+      area = joint%bearing_radius*length
+      limit = huge(limit)
+      if (allocated(joint%contact)) limit = minval(joint%contact%geometry%youngs_modulus)*area
+      if (pin%max_force > limit) then
+        call add_line(name//'a force of '//quantity_text(pin%max_force, 'N')//' is larger than E R L = '// &
+          quantity_text(limit, 'N')//too_much)
+      else if (pin%max_force > largest_pressure*2*area) then
+        call add_line(name//'a mean pressure of '//quantity_text(pin%max_force/(2*area), 'Pa')//' is larger than 5 GPa'//too_much)
+      else if (pin%max_film_pressure > largest_pressure) then
+        call add_line(name//'a film pressure of '//quantity_text(pin%max_film_pressure, 'Pa')//' is larger than 5 GPa'//too_much)
+      end if
+    end subroutine note_joint
+  end function notes_on_results
+
+  !> Largest energy residual at the ends of steps divided by the largest energy [-]; 0 if there is no energy.
+  pure real(dp) function relative_residual(report)
+    type(run_report_t), intent(in) :: report
+    relative_residual = 0
+    if (report%figures%max_energy > 0) relative_residual = report%figures%max_energy_residual/report%figures%max_energy
+  end function relative_residual
+
+  !> Warning about a completed run with a large energy residual.
+  function energy_warning(case, report) result(text)
+    type(case_t), intent(in) :: case
+    type(run_report_t), intent(in) :: report
+    character(len=:), allocatable :: text
+    text = 'the energy is conserved only to '//short_text(relative_residual(report))//', that is '// &
+      short_text(relative_residual(report)/case%integrator%relative_tolerance)// &
+      ' relative tolerances: compare with a run with a tenth of &integrator relative_tolerance'
+  end function energy_warning
+end module result_notes

@@ -1,0 +1,118 @@
+!> What the user is told about a run that has ended: the physics in one line, its cost in another one, and the notes on its results.
+module run_line
+  use gudgeon_kinds, only: dp
+  use gudgeon_constants, only: two_pi
+  use gudgeon_simulation, only: run_report_t
+  use run_figures, only: pin_figures_t
+  use period_watch, only: period_watch_t
+  use joint_places, only: places, n_places, in_order
+  use case_definition, only: case_t
+  use joint_case, only: joint_case_t
+  use result_notes, only: notes_on_results, relative_residual
+  use number_text, only: short_text, quantity_text
+  use text_tools, only: integer_text, replaced
+  implicit none
+  private
+  public :: lines_for_user
+
+  character(len=*), parameter :: newline = achar(10)
+  integer, parameter :: digits = 3
+
+contains
+
+  !> The lines for the user. Why a run ended early is in the message of its error.
+  function lines_for_user(case, report, wall_time, path, remark) result(text)
+    type(case_t), intent(in) :: case
+    type(run_report_t), intent(in) :: report
+    real(dp), intent(in) :: wall_time      !! [s]
+    character(len=*), intent(in) :: path   !! path of the results without suffix
+    character(len=*), intent(in) :: remark !! text about the certificate, or empty
+    character(len=:), allocatable :: text, notes
+    integer :: i
+    associate (s => report%statistics, f => report%figures)
+      text = 'ended early'
+      if (report%status == 'done') text = report%status
+      text = case%name//': '//text//'; '//short_text(abs(f%crank_travel)/two_pi, digits)//' revolutions in '// &
+        quantity_text(f%time, 's')
+      if (report%periods%is_on .and. report%status == 'done') text = text//', '//period_text(report%periods)
+      do i = 1, n_places
+        associate (place => in_order(i))
+          if (i > 1 .and. .not. case%joints(place)%has_clearance()) cycle
+          text = text//'; '
+          if (i > 1) text = text//trim(places(place)%title)//': '
+          text = text//pin_text(case%joints(place), f%pin(place), case%integrator%relative_tolerance)
+          if (.not. report%periods%is_on .and. is_driven(case)) text = text//settling_text(case%joints(place), f%pin(place))
+        end associate
+      end do
+      if (case%has_loose_guide()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
+        ' contacts, force up to '//quantity_text(maxval(f%corner%max_force), 'N')
+      if (report%exponent%is_known) text = text//'; Lyapunov exponent '//short_text(report%exponent%mean, digits)//' per revolution'
+      if (remark /= '') text = text//'; '//remark
+      text = text//newline//'  '//path//'.csv; '//integer_text(s%accepted)//' steps, '//integer_text(s%evaluations)// &
+        ' evaluations, '//short_text(wall_time, digits)//' s; relative energy residual '//short_text(relative_residual(report), 2)
+    end associate
+    notes = notes_on_results(case, report)
+    if (notes /= '') text = text//newline//'  note: '//replaced(notes, newline, newline//'  note: ')
+  end function lines_for_user
+
+  !> Text about the period of the motion.
+  function period_text(periods) result(text)
+    type(period_watch_t), intent(in) :: periods
+    character(len=:), allocatable :: text
+    text = 'not periodic within '//integer_text(periods%most_revolutions)//' revolutions'
+    if (periods%period == 0) return
+    text = 'repeats every revolution'
+    if (periods%period > 1) text = 'repeats every '//integer_text(periods%period)//' revolutions'
+    text = text//', recognised after '//integer_text(periods%found_after)
+  end function period_text
+
+  !> Whether the crank is driven, so that the motion settles; otherwise it comes to rest.
+  pure logical function is_driven(case)
+    type(case_t), intent(in) :: case
+    is_driven = case%drive%kind == 'constant_speed' .or. abs(case%drive%torque) > 0 .or. case%drive%table%is_wanted() .or. &
+      allocated(case%combustion) .or. allocated(case%measured)
+  end function is_driven
+
+  !> Text about a film that has not settled; empty if it has.
+  function settling_text(joint, pin) result(text)
+    type(joint_case_t), intent(in) :: joint
+    type(pin_figures_t), intent(in) :: pin
+    character(len=:), allocatable :: text
+    real(dp), parameter :: most = 0.05_dp   !! change from cycle to cycle
+    text = ''
+    if (allocated(joint%film) .and. abs(pin%film_change) > most) text = ', not settled: the film thickness still changes by '// &
+      short_text(100*abs(pin%film_change), 2)//' % from cycle to cycle (--set run.until=periodic)'
+  end function settling_text
+
+  !> Text about the contacts of a pin to which the theory of their law does not apply; empty if there are none.
+  function beyond_text(pin) result(text)
+    type(pin_figures_t), intent(in) :: pin
+    character(len=:), allocatable :: text
+    text = ''
+    if (pin%impacts_beyond_validity > 0) text = integer_text(pin%impacts_beyond_validity)//' faster'
+    if (pin%impacts_beyond_validity > 0 .and. pin%contacts_beyond_validity > 0) text = text//' and '
+    if (pin%contacts_beyond_validity > 0) text = text//integer_text(pin%contacts_beyond_validity)//' deeper'
+    if (text /= '') text = ' ('//text//' than the theory holds)'
+  end function beyond_text
+
+  !> Text about one pin. The error of a table of the film is told if it is larger than the relative tolerance of the run.
+  function pin_text(joint, pin, tolerance) result(text)
+    type(joint_case_t), intent(in) :: joint
+    type(pin_figures_t), intent(in) :: pin
+    real(dp), intent(in) :: tolerance
+    character(len=:), allocatable :: text
+    text = ''
+    if (joint%has_clearance()) then
+      if (joint%can_touch()) text = integer_text(pin%contacts)//' contacts'//beyond_text(pin)//', '
+      if (joint%can_touch() .and. pin%contacts == 0) text = 'no contact, '
+      if (pin%min_film_thickness < 0) then
+        text = text//'penetration up to '//quantity_text(-pin%min_film_thickness, 'm')//', '
+      else if (allocated(joint%film)) then
+        text = text//'film of at least '//quantity_text(pin%min_film_thickness, 'm')//', '
+        if (joint%film%table_of /= '' .and. joint%film%table_error > tolerance) &
+          text = text//'its table good to '//short_text(100*joint%film%table_error, 2)//' %, '
+      end if
+    end if
+    text = text//'pin force up to '//quantity_text(pin%max_force, 'N')
+  end function pin_text
+end module run_line
