@@ -159,6 +159,9 @@ def test_scope(program: Path, work: Path) -> None:
     check(close(summary["cycle_duration"], summary["period"], 1e-9) and close(summary["cycle_start"], summary["window_start"], 1e-9),
           "the cycle is the period in the window")
     check(summary["cycle_is_settled"] == "yes", "a periodic motion is settled")
+    line = subprocess.run([program, "-o", work, *("--set run.until=periodic --set output.window=last_period --set friction.coefficient=0.1"
+                                                  .split()), case], capture_output=True, text=True, check=False).stdout
+    check("kN in the last cycle)" in line, "the line of the run tells the force of the last cycle where it differs", line)
     off, _ = run(program, work, case, "output.answers=F")
     check(not any("cycle_" in name for name in off), "answers = .false. takes them out")
 

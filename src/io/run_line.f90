@@ -5,7 +5,7 @@ module run_line
   use gudgeon_simulation, only: run_report_t
   use run_figures, only: pin_figures_t
   use period_watch, only: period_watch_t
-  use joint_places, only: places, n_places, in_order
+  use joint_places, only: places, n_places, in_order, name_prefix
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use result_notes, only: notes_on_results, relative_residual
@@ -40,7 +40,7 @@ contains
           if (i > 1 .and. .not. case%joints(place)%has_clearance()) cycle
           text = text//'; '
           if (i > 1) text = text//trim(places(place)%title)//': '
-          text = text//pin_text(case%joints(place), f%pin(place), case%integrator%relative_tolerance)
+          text = text//pin_text(case%joints(place), f%pin(place), case%integrator%relative_tolerance, report, place)
           if (.not. report%periods%is_on .and. is_driven(case)) text = text//settling_text(case%joints(place), f%pin(place))
         end associate
       end do
@@ -95,11 +95,33 @@ contains
     if (text /= '') text = ' ('//text//' than the theory holds)'
   end function beyond_text
 
+  !> A value of the last whole cycle in brackets, where it differs from that of the whole run by more than 5 %, as after a start far
+  !> from the settled motion; empty otherwise.
+  function cycle_text(report, name, place, of_run, unit) result(text)
+    type(run_report_t), intent(in) :: report
+    character(len=*), intent(in) :: name, unit   !! of the answer of the cycle
+    integer, intent(in) :: place
+    real(dp), intent(in) :: of_run
+    character(len=:), allocatable :: text
+    real(dp), parameter :: remarkable = 0.05_dp
+    integer :: i
+    text = ''
+    if (.not. allocated(report%answers)) return
+    do i = 1, size(report%answers)
+      associate (it => report%answers(i))
+        if (it%name == name_prefix(place)//name .and. abs(it%value - of_run) > remarkable*abs(of_run)) &
+          text = ' ('//quantity_text(it%value, unit)//' in the last cycle)'
+      end associate
+    end do
+  end function cycle_text
+
   !> Text about one pin. The error of a table of the film is told if it is larger than the relative tolerance of the run.
-  function pin_text(joint, pin, tolerance) result(text)
+  function pin_text(joint, pin, tolerance, report, place) result(text)
     type(joint_case_t), intent(in) :: joint
     type(pin_figures_t), intent(in) :: pin
     real(dp), intent(in) :: tolerance
+    type(run_report_t), intent(in) :: report
+    integer, intent(in) :: place   !! of the pin
     character(len=:), allocatable :: text
     text = ''
     if (joint%has_clearance()) then
@@ -108,11 +130,13 @@ contains
       if (pin%min_film_thickness < 0) then
         text = text//'penetration up to '//quantity_text(-pin%min_film_thickness, 'm')//', '
       else if (allocated(joint%film)) then
-        text = text//'film of at least '//quantity_text(pin%min_film_thickness, 'm')//', '
+        text = text//'film of at least '//quantity_text(pin%min_film_thickness, 'm')// &
+          cycle_text(report, 'cycle_min_film_thickness', place, pin%min_film_thickness, 'm')//', '
         if (joint%film%table_of /= '' .and. joint%film%table_error > tolerance) &
           text = text//'its table good to '//short_text(100*joint%film%table_error, 2)//' %, '
       end if
     end if
-    text = text//'pin force up to '//quantity_text(pin%max_force, 'N')
+    text = text//'pin force up to '//quantity_text(pin%max_force, 'N')// &
+      cycle_text(report, 'cycle_max_force', place, pin%max_force, 'N')
   end function pin_text
 end module run_line
