@@ -54,6 +54,7 @@ count "failures of the machine" tests/test_faults.py --kills 10
 count "pictures" sh -c 'scripts/setup.sh --python && tests/test_plots.py'
 count "analysis of settled cycles" sh -c 'scripts/setup.sh --python && .venv/bin/python tests/test_orders.py'
 count "heat and work of the gas" sh -c 'scripts/setup.sh --python && .venv/bin/python tests/test_gas.py'
+count "bearing cases" python3 tests/test_bearing_cases.py
 count "effects of single models" sh -c 'scripts/setup.sh --python && .venv/bin/python tests/test_models.py'
 count "pages of runs in a browser" sh -c 'scripts/setup.sh --browser && tests/test_report.py'
 count "manual" sh -c 'scripts/setup.sh --manual && tests/test_manual.py'

@@ -8,6 +8,7 @@ program gudgeon
   use study_runner, only: run_study_file
   use study_definition, only: study_schema_of
   use case_schema, only: key_table_t, case_schema_of
+  use bearing_definition, only: bearing_schema_of
   use case_text, only: template_text
   use reference_pages, only: keys_reference, results_reference
   use gudgeon_progress, only: progress_wanted, tell, say
@@ -61,6 +62,9 @@ contains
     else
       if (options%reference == 'study') then
         call study_schema_of(table)
+        call say(keys_reference(table, ''), status)
+      else if (options%reference == 'bearing') then
+        call bearing_schema_of(table)
         call say(keys_reference(table, ''), status)
       else
         call case_schema_of(table)

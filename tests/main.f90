@@ -37,6 +37,10 @@ program gudgeon_tests
   use test_drive, only: run_test_drive
   use test_energy_kept, only: run_test_energy_kept
   use test_error_growth, only: run_test_error_growth
+  use test_banded_lu, only: run_test_banded_lu
+  use test_ring, only: run_test_ring
+  use test_film_cells, only: run_test_film_cells
+  use test_engine_films, only: run_test_engine_films
   use test_events, only: run_test_events
   use test_findings, only: run_test_findings
   use test_finite_bearing, only: run_test_finite_bearing
@@ -120,6 +124,10 @@ program gudgeon_tests
   call run('drive', run_test_drive)
   call run('energy_kept', run_test_energy_kept)
   call run('error_growth', run_test_error_growth)
+  call run('banded_lu', run_test_banded_lu)
+  call run('ring', run_test_ring)
+  call run('film_cells', run_test_film_cells)
+  call run('engine_films', run_test_engine_films)
   call run('events', run_test_events)
   call run('findings', run_test_findings)
   call run('finite_bearing', run_test_finite_bearing)

@@ -12,6 +12,7 @@ module case_file
   use case_rules, only: check_rules
   use case_notes, only: note_case
   use case_text, only: template_text, resolved_text
+  use bearing_definition, only: bearing_schema_of
   use namelist_reader, only: namelist_t, read_namelist
   use problem_list, only: behind_file
   implicit none
@@ -47,22 +48,36 @@ contains
   end subroutine parse_case
 
   !> Read the values of a case file and of the overrides, without checking them against each other. What is wrong is noted in the
-  !> values. Error: the file cannot be read.
-  subroutine read_case_values(path, overrides, values, error)
+  !> values. With `is_bearing` the file may also be a bearing case, which has the group film_history and no mechanism. Error: the
+  !> file cannot be read.
+  subroutine read_case_values(path, overrides, values, error, is_bearing)
     character(len=*), intent(in) :: path, overrides(:)
     type(case_values_t), intent(out) :: values
     type(error_t), allocatable, intent(out) :: error
+    logical, intent(out), optional :: is_bearing
     character(len=:), allocatable :: text
+    if (present(is_bearing)) is_bearing = .false.
     call read_text_file(path, largest_file, 'case file', text, error)
-    if (.not. allocated(error)) call parse_values(text, path, overrides, values)
+    if (.not. allocated(error)) call parse_values(text, path, overrides, values, is_bearing)
   end subroutine read_case_values
 
-  subroutine parse_values(text, path, overrides, values)
+  subroutine parse_values(text, path, overrides, values, is_bearing)
     character(len=*), intent(in) :: text, path, overrides(:)
     type(case_values_t), intent(out) :: values
+    logical, intent(out), optional :: is_bearing
     type(error_t), allocatable :: error
+    logical :: without_mechanism
     integer :: i
-    call case_schema_of(values%key_table_t)
+    without_mechanism = .false.
+    if (present(is_bearing)) then
+      call find_kind(text, is_bearing)
+      without_mechanism = is_bearing
+    end if
+    if (without_mechanism) then
+      call bearing_schema_of(values%key_table_t)
+    else
+      call case_schema_of(values%key_table_t)
+    end if
     call values%set_defaults(path)
     call take_file(values, text)
     do i = 1, size(overrides)
@@ -72,6 +87,24 @@ contains
     end do
     call values%prefer_overrides()
   end subroutine parse_values
+
+  !> Whether a text has the group of a film with memory, and no mechanism.
+  subroutine find_kind(text, is_bearing)
+    character(len=*), intent(in) :: text
+    logical, intent(out) :: is_bearing
+    type(namelist_t) :: list
+    type(error_t), allocatable :: error
+    integer :: i
+    is_bearing = .false.
+    call read_namelist(text, '', list, error)
+    if (allocated(error)) return   ! reported with the name of the file
+    do i = 1, size(list%groups)
+      if (list%groups(i)%name == 'film_history') is_bearing = .true.
+    end do
+    do i = 1, size(list%groups)
+      if (list%groups(i)%name == 'mechanism') is_bearing = .false.
+    end do
+  end subroutine find_kind
 
   !> Complete and check a case from its values; `path` gives its name. Defaults that depend on the selected laws are put into the
   !> values. The error has every problem of the values, but contradictions between them only if it is clear what is wanted.
@@ -133,6 +166,7 @@ contains
     do i = 1, size(list%entries)
       associate (entry => list%entries(i))
         if (.not. is_known(entry%group_number) .or. entry%key == 'place' .and. has_places(values, entry%group)) cycle
+        if (entry%key == 'position_deg') entry%tokens%quoted = .true.   ! a list is kept as written
         call values%give(list%groups(entry%group_number)%name, entry, list%at(entry%line))
       end associate
     end do
