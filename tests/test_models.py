@@ -146,7 +146,7 @@ def whole_table(program: Path, folder: Path) -> None:
         for quantity, name in (("peak_force", "max_pin_force"), ("min_film", "min_film_thickness"), ("mean_speed", "mean_crank_speed")):
             check(row[quantity] == summary[name], f"{scene}: {quantity}", f"{row[quantity]}, {summary[name]}")
     ideal = table.loc["ideal piston pin"]
-    check(ideal["loss"] == 0 and pd.isna(ideal["min_film"]), "an ideal joint has no loss and no film")
+    check(ideal["loss"] == 0 and pd.isna(ideal["min_film"]), "an ideal joint has no loss and no film", str(ideal.to_dict()))
     check(table.loc["no contact, and so no friction", "peak_force_change"] == 0, "removing a contact law has no effect if there is no contact")
     check(abs(table.loc["no film", "contact_share"]) > 0.5, "without the film there is contact")
     check(table["certificate"].dropna().str.contains("digits|none").all(), "each scene has a certificate")

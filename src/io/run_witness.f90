@@ -58,6 +58,7 @@ contains
     logical :: was_interrupted
     integer :: i
     limited = case
+    limited%output%answers = .false.
     if (most_evaluations > 0) limited%integrator%max_evaluations = min(limited%integrator%max_evaluations, most_evaluations)
     if (case%has_play()) then   ! without clearance the integrals of the joint would change the steps
       allocate (witness%cycles)

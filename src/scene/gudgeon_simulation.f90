@@ -263,13 +263,13 @@ contains
     report = self%report
     report%periods = self%recorder%periods
     if (allocated(self%measurement)) report%exponent = self%measurement%exponent
-    if (present(cycles)) call move_alloc(self%recorder%cycles, cycles)
     report%statistics = self%method%totals()
     if (allocated(self%method%time_with)) report%time_with = self%method%time_with
     report%figures = self%recorder%figures
     report%wear = self%recorder%wear(self%scene)
     allocate (report%answers(0))
     if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, self%recorder%periods)
+    if (self%has_cycles) call move_alloc(self%recorder%cycles, cycles)
     if (allocated(self%recorder%films)) report%films = self%recorder%films%fields(self%scene)
     associate (case => self%case, scene => self%scene, t => self%integration%t, y => self%integration%y)
       report%status = 'done'
