@@ -120,7 +120,8 @@ def test_rows(program: Path, work: Path) -> None:
                         ("flores/friction_050", ""), ("film/weighted", "")):
         case = ROOT / "cases" / f"{name}.nml"
         summary, rows = run(program, work, case, "output.samples_per_revolution=20000", "output.sampling=crank_angle",
-                            "output.angle_origin_deg=0", "output.ideal_twin=F", "integrator.method=auto")
+                            "output.angle_origin_deg=0", "output.ideal_twin=F", "integrator.method=auto",
+                            *(["output.columns=standard,film_power"] if "film" in name or "lubricated" in name else []))
         if not rows:
             continue
         begins = summary["cycle_start"]
@@ -134,6 +135,10 @@ def test_rows(program: Path, work: Path) -> None:
             friction = integral(rows, lambda row: row[f"{place}friction_force"]*row[f"{place}sliding_speed"], begins, ends)
             check(abs(summary[f"{place}cycle_work_friction"] - friction) <= 2e-3*size, f"{name}: work of friction against the rows",
                   f"{summary[f'{place}cycle_work_friction']}, not {friction}")
+        if f"{place}film_power" in rows[0]:   # of the film law itself, where the ledger takes the whole work less the other parts
+            film = -integral(rows, lambda row: row[f"{place}film_power"], begins, ends)
+            check(abs(summary[f"{place}cycle_work_film"] - film) <= 2e-3*size, f"{name}: work of the film against the rows",
+                  f"{summary[f'{place}cycle_work_film']}, not {film}")
         if f"{place}film_thickness" in rows[0]:
             thinnest = min(inside, key=lambda row: row[f"{place}film_thickness"])
             film = summary[f"{place}cycle_min_film_thickness"]

@@ -67,7 +67,7 @@ module summary_quantities
     quantity_t('film_table_time', 's', 'time that computing or reading the table took, not part of `wall_time`'), &
     quantity_t('min_film_thickness', 'm', 'smallest film thickness; negative: deepest penetration'), &
     quantity_t('film_thickness_change', '1', &
-      'change of the smallest film thickness of a cycle in the last cycle, over that of the cycle before; large: not settled'), &
+      'smallest film thickness in the last cycle less that in the cycle before, over the latter; large: not settled'), &
     quantity_t('contacts', '1', 'contacts that began'), &
     quantity_t('contact_time_fraction', '1', 'share of the simulated time in contact'), &
     quantity_t('max_penetration', 'm', 'deepest penetration; 0 without contact'), &

@@ -193,7 +193,7 @@ contains
       real(dp) :: mean_speed
       mean_speed = two_pi*revolutions/cycle%duration
       call add(q_speed, cycles%direction*mean_speed)
-      call add(q_fluctuation, (cycle%max_speed + cycle%max_slowness)/mean_speed)
+      call add(q_fluctuation, (cycle%max_speed + cycle%max_negative_speed)/mean_speed)
       call add(q_piston_speed, 4*scene%chain%bodies%crank%length*revolutions/cycle%duration)
       if (.not. allocated(scene%gas)) return
       call add(q_gas_pressure, cycle%max_pressure)

@@ -37,7 +37,7 @@ module cycle_statistics
     real(dp) :: energy_change = 0                     !! of kinetic, potential and elastic energy [J]
     real(dp) :: max_pressure = -huge(1.0_dp)          !! of the gas in the cylinder [Pa]
     real(dp) :: max_pressure_angle = 0                !! crank angle then [rad]
-    real(dp) :: max_speed = -huge(1.0_dp), max_slowness = -huge(1.0_dp)   !! of the crank, and of its negative [rad/s]
+    real(dp) :: max_speed = -huge(1.0_dp), max_negative_speed = -huge(1.0_dp)   !! of the crank, and of its negative [rad/s]
   end type cycle_t
 
   !> Sums and extremes over the revolutions.
@@ -66,7 +66,7 @@ contains
       if (one%max_pressure > total%max_pressure) total%max_pressure_angle = one%max_pressure_angle
       total%max_pressure = max(total%max_pressure, one%max_pressure)
       total%max_speed = max(total%max_speed, one%max_speed)
-      total%max_slowness = max(total%max_slowness, one%max_slowness)
+      total%max_negative_speed = max(total%max_negative_speed, one%max_negative_speed)
     end associate
     associate (total => self%total%pin, one => cycle%pin)
       where (one%min_film_thickness < total%min_film_thickness) total%thinnest_angle = one%thinnest_angle

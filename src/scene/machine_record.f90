@@ -10,7 +10,7 @@ module machine_record
   public :: machine_record_t
 
   !> Quantities that are searched: the pressure, the speed and its negative.
-  integer, parameter :: of_pressure = 1, of_speed = 2, of_slowness = 3
+  integer, parameter :: of_pressure = 1, of_speed = 2, of_negative_speed = 3
 
   type :: machine_record_t
     private
@@ -23,7 +23,7 @@ module machine_record
 
 contains
 
-  !> Begin a run at t, where the scene has been evaluated.
+  !> Let the next interval begin at t, where the scene has been evaluated.
   pure subroutine begin(self, scene, t, now)
     class(machine_record_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -49,15 +49,12 @@ contains
     if (allocated(scene%gas)) call search_one(of_pressure, cycle%max_pressure, cycle%max_pressure_angle)
     if (scene%crank_moves) then
       call search_one(of_speed, cycle%max_speed)
-      call search_one(of_slowness, cycle%max_slowness)
+      call search_one(of_negative_speed, cycle%max_negative_speed)
     else
       cycle%max_speed = max(cycle%max_speed, next%speed)
-      cycle%max_slowness = max(cycle%max_slowness, -next%speed)
+      cycle%max_negative_speed = max(cycle%max_negative_speed, -next%speed)
     end if
-    self%t = next%t
-    self%angle = next%angle
-    self%speed = next%speed
-    self%acceleration = next%acceleration
+    call self%begin(scene, t, now)
 
   contains
 
