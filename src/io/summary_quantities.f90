@@ -196,8 +196,9 @@ contains
     character(len=*), intent(in) :: name
     character(len=:), allocatable :: unit
     integer :: i
-    i = findloc(table%name, name, 1)
     unit = '?'
-    if (i > 0) unit = trim(table(i)%unit)
+    do i = 1, size(table)
+      if (table(i)%name == name) unit = trim(table(i)%unit)
+    end do
   end function unit_of
 end module summary_quantities

@@ -100,7 +100,7 @@ contains
     if (allocated(scene%gas)) gas_revolutions = scene%gas%revolutions
     revolutions = gas_revolutions
     if (periods%period > 0) revolutions = periods%period
-    if (cycles%ended < revolutions .or. revolutions > longest_period) return
+    if (cycles%followed < revolutions .or. revolutions > longest_period) return
     cycle = cycles%last_cycle(revolutions)
     displacement = 0
     if (allocated(scene%gas)) displacement = scene%gas%cylinder%displacement*revolutions/gas_revolutions
