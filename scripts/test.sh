@@ -45,7 +45,7 @@ $all && count "Fortran tests, release build" fpm @release_tests
 count "command line" tests/test_program.sh
 count "parameter studies" tests/test_sweep.sh
 $all && count "independent judge of runs" tests/test_judge.py
-count "extreme scenes" scripts/extremes --scenes 120 --seed 5 --evaluations 100000 --judged 24 --limit 120 --known tests/known_findings.csv --quiet
+count "extreme scenes" tests/judge/extremes --scenes 120 --seed 5 --evaluations 100000 --judged 24 --limit 120 --known tests/judge/known_findings.csv --quiet
 count "states and runs that go on from them" tests/test_state_file.py
 count "summaries against traces" tests/test_summaries.py
 count "answers of cycles" tests/test_cycle_answers.py
