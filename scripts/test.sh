@@ -36,7 +36,7 @@ count() {   # count NAME COMMAND...: run the command and add up its counts
   fi
 }
 
-count "all modules and programs compile" sh -c 'fpm build --no-prune && fpm build --directory scripts && echo "1 passed, 0 failed"'
+count "all modules and programs compile" sh -c 'fpm build --no-prune && fpm build --directory scripts/bench && echo "1 passed, 0 failed"'
 count "build scripts" tests/test_build.sh
 count "layers of the source" tests/test_layers.py
 count "Fortran tests, all compiler checks" fpm @strict
@@ -58,7 +58,7 @@ count "bearing cases" python3 tests/test_bearing_cases.py
 count "effects of single models" sh -c 'scripts/setup.sh --python && .venv/bin/python tests/test_models.py'
 count "pages of runs in a browser" sh -c 'scripts/setup.sh --browser && tests/test_report.py'
 count "manual" sh -c 'scripts/setup.sh --manual && tests/test_manual.py'
-count "statements of the dissertation" sh -c 'scripts/setup.sh --python && .venv/bin/python scripts/check_findings.py --check'
+count "statements of the dissertation" sh -c 'scripts/setup.sh --python && .venv/bin/python scripts/bench/check_findings.py --check'
 count "sensitivity and cluster studies" sh -c 'scripts/setup.sh --studies && tests/test_studies.py'
 
 failed=$((failed + wrong))

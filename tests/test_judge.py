@@ -22,18 +22,18 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
-from typing import Callable
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "judge"))
-from assertions import Assertions  # noqa: E402
-from scene_judge.elastic import requested_columns  # noqa: E402
-from scene_judge.energy import SAFETY  # noqa: E402
-from scene_judge.quadrature import integral, stencils  # noqa: E402
-from scene_judge.trace import Run, merged, run_case  # noqa: E402
-from scene_judge.verdict import judge_files, judge_scene, summary_of  # noqa: E402
+from assertions import Assertions
+from scene_judge.elastic import requested_columns
+from scene_judge.energy import SAFETY
+from scene_judge.quadrature import integral, stencils
+from scene_judge.trace import Run, merged, run_case
+from scene_judge.verdict import judge_files, judge_scene, summary_of
 
 assertions = Assertions()
 check = assertions.check

@@ -1,5 +1,5 @@
 !> The accuracy levels of the command line, as values of keys of the case. Those with method `auto` were chosen by measurement:
-!> scripts/measure_tradeoff.py --presets reports the errors that each level has in shipped cases; scripts/record.py writes them to
+!> scripts/bench/measure_tradeoff.py --presets reports the errors that each level has in shipped cases; scripts/bench/record.py writes them to
 !> data/measured/presets.md. `dissertation` is the integration of Reis (3.8, 4.4).
 module accuracy_presets
   implicit none

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import Sequence
+from collections.abc import Sequence
 
 from .trace import Run
 

@@ -11,7 +11,7 @@ import math
 
 from .energy import SAFETY
 from .films import Film
-from .mechanics import Row, Vector
+from .mechanics import Vector
 from .quadrature import stencils
 from .rows import FILM, RowChecks
 

@@ -13,8 +13,8 @@ from __future__ import annotations
 import dataclasses
 import math
 import random
+from collections.abc import Callable
 from pathlib import Path
-from typing import Callable
 
 from .mechanics import Bodies, Row
 from .trace import Run, run_case

@@ -6,9 +6,9 @@ import math
 
 from .contact import Contact
 from .drive import Drive
+from .films import Asperities, Film
 from .gas import gas_of
 from .guide import Guide
-from .films import Asperities, Film
 from .laws import LANDING, ROUNDING, Friction
 from .mechanics import Bodies, Row
 from .trace import Run
