@@ -1,7 +1,7 @@
 !> The cost of the film of finite length: the time of a force from its table, compared with that of a sine and a cosine in the same
 !> program; of its table, computed and read from a file; and of simulation I with it, compared with the closed form of Pinkus and
-!> Sternlicht. Run by scripts/bench/film_costs.sh from the top of the checkout, with a folder for tables as its argument. Prints a table
-!> in Markdown with the shortest of several times; a table is computed once.
+!> Sternlicht. Run by scripts/bench/film_costs.sh from the top of the checkout, with a folder for tables as its argument. Prints a
+!> table in Markdown with the shortest of several times; a table is computed once.
 program film_costs
   use, intrinsic :: iso_fortran_env, only: int64
   use gudgeon_kinds, only: dp

@@ -1,5 +1,5 @@
-!> A scene as a library that C and Python can call, for scripts/bench/compare_integrators: the program's own right-hand side in its own
-!> coordinates, its event functions, and integrations by the program's own methods.
+!> A scene as a library that C and Python can call, for scripts/bench/compare_integrators: the program's own right-hand side in its
+!> own coordinates, its event functions, and integrations by the program's own methods.
 !>
 !> States are passed without their quadratures, on which the right-hand side does not depend: y = (positions | their rates |
 !> first-order states). Functions with a status return 0 on success.

@@ -9,7 +9,7 @@ UNTRANSLATED = {
 }
 
 TEXTS = {
-    # members of a mechanism (plot_members.py) and integrators (compare_integrators.py)
+    # members of a mechanism (measure_elastic.py) and integrators (compare_integrators.py)
     "piston pin loose": "folga no pino do pistão",
     "crank pin loose too": "folga também no pino da manivela",
     "piston loose in its bore too": "folga também entre pistão e cilindro",
