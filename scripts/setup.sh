@@ -7,6 +7,7 @@
 #   scripts/setup.sh --browser  as --python, and Chromium (Debian packages), which tests/test_report.py needs
 #   scripts/setup.sh --studies  also the packages of gudgeon-plot sensitivity, scripts/run_studies.sh and scripts/cluster
 #   scripts/setup.sh --manual   also FORD, which scripts/manual.sh needs
+#   scripts/setup.sh --lint     also the linters of Fortran and Python
 #
 # Root or sudo is needed only to install Debian packages. fpm and gudgeon-plot are installed in .venv, with links to them in
 # /usr/local/bin or ~/.local/bin. This file is POSIX sh; if it is sourced, it changes no option of the calling shell.
@@ -98,9 +99,9 @@ case "${0##*/} $#" in
         fi
         ;;
       --studies) gudgeon_packages="-r scripts/python/requirements.txt -r scripts/python/requirements-studies.txt" ;;
-      --manual) gudgeon_packages="-r scripts/python/requirements-manual.txt" ;;
+      --manual | --lint) gudgeon_packages="-r scripts/python/requirements-${1#--}.txt" ;;
       *)
-        echo "setup: usage: scripts/setup.sh [--python | --browser | --studies | --manual]" >&2
+        echo "setup: usage: scripts/setup.sh [--python | --browser | --studies | --manual | --lint]" >&2
         gudgeon_status=2
         ;;
     esac

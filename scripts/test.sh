@@ -38,7 +38,7 @@ count() {   # count NAME COMMAND...: run the command and add up its counts
 
 count "all modules and programs compile" sh -c 'fpm build --no-prune && fpm build --directory scripts/bench && echo "1 passed, 0 failed"'
 count "build scripts" tests/test_build.sh
-count "layers of the source" tests/test_layers.py
+count "layers, linters" sh -c 'scripts/setup.sh --lint && tests/test_layers.py'
 count "Fortran tests, all compiler checks" fpm @strict
 count "random changes of case files" tests/test_fuzz.py
 $all && count "Fortran tests, release build" fpm @release_tests

@@ -14,7 +14,6 @@ fi
 ln -sfn ../../src "$folder/src"
 cat >"$folder/fpm.toml" <<'TOML'
 name = "gudgeon"
-version = "0.1.0"
 [build]
 auto-executables = false
 [dependencies]

@@ -83,7 +83,7 @@ def listed(name, values, per_line=3):
     lines = []
     for i in range(0, len(values), per_line):
         lines.append("      " + ", ".join(number(v) for v in values[i:i + per_line]))
-    return "    formula%%%s = [ &\n%s]\n" % (name, ", &\n".join(lines))
+    return f"    formula%{name} = [ &\n" + ", &\n".join(lines) + "]\n"
 
 
 def columns(m):
@@ -93,7 +93,7 @@ def columns(m):
 HEADER = """!> The Radau IIA formulas of 3, 5 and 7 stages (orders 5, 9, 13), stiffly accurate collocation at the right Radau points.
 !> Written by scripts/bench/radau_coefficients.py, which computes them in 60-digit arithmetic; not edited by hand.
 module radau_coefficients
-  use kinds, only: dp
+  use gudgeon_kinds, only: dp
   implicit none
   private
   public :: radau_formula_t, radau_formula, most_stages
@@ -116,9 +116,8 @@ module radau_coefficients
 contains
 
   !> The formula of 3, 5 or 7 stages.
-  pure function radau_formula(stages) result(formula)
+  pure type(radau_formula_t) function radau_formula(stages) result(formula)
     integer, intent(in) :: stages
-    type(radau_formula_t) :: formula
     select case (stages)
     case (3)
       call stages_3(formula)
@@ -136,16 +135,16 @@ def main():
     print(HEADER, end="")
     for s in (3, 5, 7):
         c, a, t, t_inverse, gamma, alphas, betas, e = formulas(s)
-        print("\n  pure subroutine stages_%d(formula)\n    type(radau_formula_t), intent(inout) :: formula" % s)
+        print(f"\n  pure subroutine stages_{s}(formula)\n    type(radau_formula_t), intent(inout) :: formula")
         print(listed("c", c), end="")
         for name, m in (("a", a), ("t", t), ("t_inverse", t_inverse)):
             text = listed(name, columns(m)).replace(" = [ &", " = reshape([ &")
-            print(text.rstrip("\n")[:-1] + "], [%d, %d])" % (s, s))
-        print("    formula%%gamma = %s" % number(gamma))
+            print(text.rstrip("\n")[:-1] + f"], [{s}, {s}])")
+        print(f"    formula%gamma = {number(gamma)}")
         print(listed("alpha", alphas), end="")
         print(listed("beta", betas), end="")
         print(listed("e", e), end="")
-        print("  end subroutine stages_%d" % s)
+        print(f"  end subroutine stages_{s}")
     print("end module radau_coefficients")
 
 

@@ -152,8 +152,8 @@ def draw_points(axis: Axes, points: list[Point], limits: tuple[float, float], ti
     axis.autoscale_view()
     axis.set_title(title)
     axis.set_ylabel("change [%]")
-    for numbers, cost, change in clusters(axis, points):
-        axis.annotate(", ".join(numbers), (cost, change), xytext=(2, 2), textcoords="offset points", fontsize=5)
+    for numbers, cost, height in clusters(axis, points):
+        axis.annotate(", ".join(numbers), (cost, height), xytext=(2, 2), textcoords="offset points", fontsize=5)
 
 
 def clusters(axis: Axes, points: list[Point]) -> list[tuple[list[str], float, float]]:
