@@ -70,7 +70,7 @@ contains
     logical, intent(in) :: announces   !! tell the user that a film table is computed
     type(certificate_t), intent(out) :: certificate
     type(error_t), allocatable, intent(out) :: error
-    type(case_t) :: plain, close
+    type(case_t) :: plain, tighter
     type(comparison_run_t) :: own, closer_run, other_run
     real(dp), allocatable :: errors(:)   ! of the states in each row of the run
     integer :: n   ! number of rows that the closer run has too
@@ -86,26 +86,26 @@ contains
     if (allocated(error)) return
     call run(plain, certificate%list, 0, own, error)
     if (allocated(error)) return
-    close = plain
-    close%integrator%relative_tolerance = max(finest_tolerance, closer*min(case%integrator%relative_tolerance, loosest_tolerance))
-    if (.not. has_coarse_table(case, close%integrator%relative_tolerance)) then   ! the film has the same table at this tolerance
-      if (has_coarse_table(close, finest_table)) close%integrator%relative_tolerance = &
-        min(close%integrator%relative_tolerance, finest_table)
+    tighter = plain
+    tighter%integrator%relative_tolerance = max(finest_tolerance, closer*min(case%integrator%relative_tolerance, loosest_tolerance))
+    if (.not. has_coarse_table(case, tighter%integrator%relative_tolerance)) then   ! the film has the same table at this tolerance
+      if (has_coarse_table(tighter, finest_table)) tighter%integrator%relative_tolerance = &
+        min(tighter%integrator%relative_tolerance, finest_table)
     end if
     if (case%integrator%absolute_tolerance > 0) &
-      close%integrator%absolute_tolerance = max(finest_tolerance, closer*case%integrator%absolute_tolerance)
-    call provide_tables(close, announces, .false., error)
+      tighter%integrator%absolute_tolerance = max(finest_tolerance, closer*case%integrator%absolute_tolerance)
+    call provide_tables(tighter, announces, .false., error)
     if (allocated(error)) return
-    call run(close, certificate%list, 0, closer_run, error)
+    call run(tighter, certificate%list, 0, closer_run, error)
     if (allocated(error)) return
     if (.not. (own%is_done .and. closer_run%is_done)) then
       certificate%reason = 'not certified: the run at a hundredth of the tolerance could not continue'
       return
     end if
-    close%integrator%method = merge('auto ', 'radau', case%integrator%method == 'radau')
+    tighter%integrator%method = merge('auto ', 'radau', case%integrator%method == 'radau')
     ! a method that is not suitable for the case would need hundreds of times as many evaluations
     most_evaluations = int(min(4*real(report%statistics%evaluations, dp) + 40000, real(huge(most_evaluations), dp)))
-    call run(close, certificate%list, most_evaluations, other_run, error)
+    call run(tighter, certificate%list, most_evaluations, other_run, error)
     if (allocated(error)) return
     certificate%has_other_method = other_run%is_done
     if (.not. other_run%is_done) other_run = closer_run   ! which then differs from itself in nothing
