@@ -193,13 +193,8 @@ def main() -> int:
     options = arguments()
     program = options.program or built_program()
     failed = passed = not_compared = 0
-<<<<<<< HEAD:scripts/bench/check_certificates.py
-    title = f"{'case':32s} {'until [ms]':>10s} {'true':>10s} {'known':>10s} {'end':>9s} {'error':>9s} {'true':>9s} digits impacts"
-    command = " ".join(["scripts/bench/check_certificates.py --write", *(f"--set {setting}" for setting in options.set)])
-=======
     title = f"{'case':32s} {'until [ms]':>10s} {'true':>10s} {'known':>10s} {'end':>9s} {'error':>9s} {'true':>9s} digits"
-    command = " ".join(["scripts/check_certificates.py --write", *(f"--set {setting}" for setting in options.set)])
->>>>>>> a70003cc9e0f30beb04b5245eebabf930890b3c8:scripts/check_certificates.py
+    command = " ".join(["scripts/bench/check_certificates.py --write", *(f"--set {setting}" for setting in options.set)])
     rows = earlier_rows()
     print(title)
     with tempfile.TemporaryDirectory() as folder:
