@@ -268,7 +268,8 @@ contains
     report%figures = self%recorder%extremes%figures
     report%wear = self%recorder%wear(self%scene)
     allocate (report%answers(0))
-    if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, self%recorder%periods)
+    if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, &
+      self%recorder%periods, self%recorder%extremes)
     if (self%has_cycles) call move_alloc(self%recorder%cycles, cycles)
     if (allocated(self%recorder%films)) report%films = self%recorder%films%fields(self%scene)
     associate (case => self%case, scene => self%scene, t => self%integration%t, y => self%integration%y)
