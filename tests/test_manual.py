@@ -185,9 +185,11 @@ def is_described(name: str, unit: str, known: set[tuple[str, str]]) -> bool:
     number or word."""
     whole, name = name, re.sub(r"^(crank_pin_|guide_\d_(?!gap|force|friction))", "", name)
     names = [whole, name, re.sub(r"^(rod_mode|rod_axial)_\d$", r"\1_2", name), re.sub(r"^steps_limited_by_\w+$", "steps_limited_by_NAME", name),
-             re.sub(r"^(steps_of)_(order_)?\d+", r"\1_\2N", name), re.sub(r"^beyond_\w+_difference$", "beyond_NAME_difference", name),
+             re.sub(r"^(steps_of)_(order_)?\d+", r"\1_\2N", name),
              re.sub(r"^\w+_time_fraction_with_\w+$", "PHASE_time_fraction_with_NAME", name)]
-    return any((one, unit) in known for one in names)
+    if any((one, unit) in known for one in names):
+        return True
+    return name.endswith("_difference") and ("NAME_difference", "") in known and is_described(whole.removesuffix("_difference"), unit, known)
 
 
 def check_reference(program: Path) -> None:

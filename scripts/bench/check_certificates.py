@@ -34,7 +34,7 @@ from gudgeon.commands import number
 
 WORDS = """Certified and true time up to which no coordinate or speed is off by more than 1e-3 of its range; the time up to which two runs at 1e-13,
 by `auto` and by Radau, agree within 1e-5 of the range, so that the truth is known; the end of the run; the error that the certificate
-states, and the true one, up to the certified time; digits; impacts matched. The runs at 1e-13 end a quarter beyond the certified time:
+states, and the true one, up to the certified time; digits. The runs at 1e-13 end a quarter beyond the certified time:
 a true time equal to the known one means "at least". A known time that is shorter than the certified one is that of a run at 1e-13 that
 takes too long (`--timeout`): the claim is checked up to there.
 
@@ -178,7 +178,6 @@ def judge(program: Path, case: Path, options: argparse.Namespace, out: Path) -> 
     row = (
         f"{name} {1e3 * until:10.5g} {1e3 * true_until:10.5g} {1e3 * known:10.5g} {1e3 * end:9.5g}"
         f" {error:9.1e} {largest:9.1e} {float(claim['certified_digits']):5.1f}"
-        f" {claim['certified_impacts_matched']}/{claim['certified_impacts']}"
     )
     return row, wrong
 
@@ -194,7 +193,7 @@ def main() -> int:
     options = arguments()
     program = options.program or built_program()
     failed = passed = not_compared = 0
-    title = f"{'case':32s} {'until [ms]':>10s} {'true':>10s} {'known':>10s} {'end':>9s} {'error':>9s} {'true':>9s} digits impacts"
+    title = f"{'case':32s} {'until [ms]':>10s} {'true':>10s} {'known':>10s} {'end':>9s} {'error':>9s} {'true':>9s} digits"
     command = " ".join(["scripts/bench/check_certificates.py --write", *(f"--set {setting}" for setting in options.set)])
     rows = earlier_rows()
     print(title)

@@ -1,5 +1,6 @@
 """What each model changes: runs a case's variants, compares the user's quantities, and looks for the cheapest scene that will do."""
 
+import re
 import resource
 import shutil
 import subprocess
@@ -44,7 +45,7 @@ QUANTITIES = {
         Quantity("peak_force", "peak force", "max_pin_force", "relative", "N"),
         Quantity("contact_share", "contact share", "contact_time_fraction", "share"),
         Quantity("min_film", "minimum film", "min_film_thickness", "clearance", "m"),
-        Quantity("loss", "loss", "loss_per_revolution", "relative", "J"),
+        Quantity("loss", "loss", "", "relative", "J"),  # from the work in the last whole cycle, see loss_of
         Quantity("mean_speed", "mean speed", "mean_crank_speed", "relative", "rad/s"),
     )
 }
@@ -96,7 +97,7 @@ class Laboratory:
     def run(self, settings: tuple[str, ...], *more: str) -> tuple[int, str, float]:
         """Exit status, messages, and processor time [s]; -1 if it took too long."""
         words = [str(self.program), "-q", "-o", str(self.folder), *more]
-        for setting in (*self.settings, "output.ideal_twin=F", "run.lyapunov_revolutions=0", *settings):
+        for setting in (*self.settings, "output.ideal_twin=F", "output.answers=T", "run.lyapunov_revolutions=0", *settings):
             words += ["--set", setting]
         before = processor_time()
         try:
@@ -133,15 +134,23 @@ class Laboratory:
         joint = resolved["joint"]
         outcome.clearance = float(joint["clearance"]) if joint.get("kind") == "clearance" else 0.0
         for quantity in QUANTITIES.values():
-            if quantity.source in summary:
+            if quantity.name == "loss" and "cycle_revolutions" in summary:
+                outcome.values["loss"], outcome.uncertainty["loss"] = loss_of(summary)
+            elif quantity.source in summary:
                 outcome.values[quantity.name] = float(summary[quantity.source])
                 outcome.uncertainty[quantity.name] = float(summary.get(f"{quantity.source}_difference", "nan"))
-        if "loss" not in outcome.values and "min_film_thickness" not in summary:  # no joint that could lose anything
-            outcome.values["loss"], outcome.uncertainty["loss"] = 0.0, 0.0
         outcome.seconds = self.run(variant.settings)[2]
         for _ in range(REPEATS - 1 if outcome.seconds < LONG else 0):
             outcome.seconds = min(outcome.seconds, self.run(variant.settings)[2])
         return outcome
+
+
+def loss_of(summary: dict[str, str]) -> tuple[float, float]:
+    """Energy that the joints take from the bodies in a revolution of the last whole cycle, and its uncertainty [J]."""
+    parts = [name for name in summary if re.search(r"cycle_work_(contact|friction|film|asperities)$", name)]
+    revolutions = float(summary["cycle_revolutions"])
+    uncertainty = sum(float(summary.get(f"{name}_difference", "nan")) for name in parts)
+    return -sum(float(summary[name]) for name in parts) / revolutions, uncertainty / revolutions
 
 
 def short(said: str) -> str:

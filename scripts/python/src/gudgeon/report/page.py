@@ -234,8 +234,8 @@ def warnings(run: Run) -> list[str]:
 
     if (until := run.certified_until) is not None:
         found.append(
-            f"The run is certified up to {1e3 * until:.4g} ms: beyond, shaded in the plots, single values are not reliable, and "
-            "only means over revolutions are meaningful (beyond_..., in the summary)."
+            f"The run is certified up to {1e3 * until:.4g} ms: beyond, shaded in the plots, single values are not reliable. How far "
+            "results of the whole run are is in the summary (..._difference)."
         )
     status = run.summary.get("status", ("unknown", ""))[0]
     if status != "done":
