@@ -94,8 +94,6 @@ contains
     integer, intent(inout), optional :: whole
     logical, intent(inout), optional :: switch
     character(len=:), allocatable, intent(inout), optional :: text
-    associate (unused => present(switch) .or. present(text))
-    end associate
     if (key%name /= self%key) return
     if (present(reals)) self%found = reals([1, size(reals)])
     if (present(whole)) self%found = whole

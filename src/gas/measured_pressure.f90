@@ -53,8 +53,6 @@ contains
     real(dp), intent(in) :: tolerance
     type(working_gas_t), intent(out) :: gas
     type(error_t), allocatable, intent(out) :: error
-    associate (unused => tolerance, never => allocated(error))
-    end associate
     gas%cylinder = new_cylinder(self%bore, crank_length, rod_length, 2.0_dp)
     gas%cylinder%dead_volume = 0
     if (self%compression_ratio > 1) gas%cylinder%dead_volume = gas%cylinder%displacement/(self%compression_ratio - 1)

@@ -98,17 +98,12 @@ contains
     logical, intent(in) :: is_model
     character(len=*), intent(in), optional :: place
     character(len=*), intent(in), optional :: instead_of   !! group that a case cannot have together with this one
-    associate (unused => self, unused_name => name, unused_text => says, unused_switch => is_model, &
-               unused_place => present(place), unused_group => present(instead_of))
-    end associate
   end subroutine pass_group
 
   !> The key of the present group that names a law; the laws follow.
   subroutine pass_choice(self, key, default, says)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, default, says
-    associate (unused => self, unused_key => key, unused_word => default, unused_text => says)
-    end associate
   end subroutine pass_choice
 
   !> A law that can be selected by the last choice under this name, with arbitrary values of its parameters. If only one `variant`
@@ -118,8 +113,6 @@ contains
     character(len=*), intent(in) :: name
     class(law_t), intent(in) :: law
     character(len=*), intent(in), optional :: variant
-    associate (unused => self, unused_name => name, unused_law => law, unused_variant => present(variant))
-    end associate
   end subroutine pass_law
 
   !> Declare a real. It is required if it has no default.
@@ -243,8 +236,6 @@ contains
   pure subroutine no_conflict(self, key, wanted)
     class(law_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
-    associate (unused_self => self)
-    end associate
     key = ''
     wanted = ''
   end subroutine no_conflict

@@ -342,8 +342,6 @@ contains
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t_to
-    associate (unused_self => self, unused_method => method, unused_problem => problem, unused_t => t_to)
-    end associate
   end subroutine ignore_step
 
   !> Called when the problem has handled an event. An observer may then change the discrete state of the problem, or y.
@@ -353,8 +351,6 @@ contains
     integer, intent(in) :: index
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
-    associate (unused_self => self, unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
-    end associate
   end subroutine change_nothing
 
   subroutine ignore_event(self, problem, index, t, y)
@@ -362,7 +358,5 @@ contains
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: index
     real(dp), intent(in) :: t, y(:)
-    associate (unused_self => self, unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
-    end associate
   end subroutine ignore_event
 end module ode_solver
