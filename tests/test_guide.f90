@@ -7,7 +7,7 @@ module test_guide
   use gudgeon_errors, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use collecting_sink, only: trace_t, run_case, load_table, column, values_of
+  use collecting_sink, only: trace_t, run_case, column, values_of
   use chain_motion, only: tilting_t
   use joint_places, only: n_places
   use chain_motion, only: motion_t, accelerations_t
@@ -15,6 +15,7 @@ module test_guide
   use guide_events, only: inward_acceleration
   use piston_guide, only: piston_guide_t, guide_loads_t, corner_t, n_corners
   use laws, only: contact_law_of, friction_law_of
+  use data_tables, only: load_table
   implicit none
   private
   public :: run_test_guide
@@ -178,9 +179,9 @@ contains
     type(error_t), allocatable :: error
     real(dp) :: place(2), force(2), total(2), moment
     integer :: i
-    call contact_law_of('law = ''lankarani_nikravesh''', guide%contact, error)
+    call contact_law_of("law='lankarani_nikravesh'", guide%contact, error)
     if (.not. allocated(error)) &
-      call friction_law_of('law = ''ambrosio'', coefficient = 0.3, v0 = 0, v1 = 1e-9', guide%friction, error)
+      call friction_law_of("law='ambrosio' coefficient=0.3 v0=0 v1=1e-9", guide%friction, error)
     call check%that(.not. allocated(error), 'laws of a corner')
     if (allocated(error)) return
     guide%clearance = -2e-3_dp   ! in a bore too narrow for it every corner is in the wall
