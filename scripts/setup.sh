@@ -53,7 +53,7 @@ gudgeon_python() {   # install the packages of these lists; pip skips those that
 gudgeon_sources() {
   gudgeon_list=$(find src tests scripts -name '*.f90' | sort)
   [ "$gudgeon_list" = "$(cat build/sources 2>/dev/null)" ] && return 0
-  rm -rf build/gfortran_* scripts/build/gfortran_*
+  rm -rf build/gfortran_* scripts/build/gfortran_* tests/build/gfortran_*
   mkdir -p build && printf '%s\n' "$gudgeon_list" >build/sources
 }
 

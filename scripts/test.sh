@@ -4,12 +4,37 @@
 #
 #   scripts/test.sh                     what every change must pass
 #   scripts/test.sh --all               the rest too: Fortran tests as released, tests of the independent judge
-#   scripts/test.sh contact friction    the Fortran suites test_contact and test_friction alone, with all checks of the compiler
+#   scripts/test.sh contact friction    the Fortran suites test_contact and test_friction alone, with all checks of the compiler;
+#                                       with --times, the processor time of each
 cd "$(dirname "$0")/.." || exit 1
 . scripts/setup.sh || { echo "0 passed, 1 failed"; exit 1; }
 all=false
 [ "$1" = --all ] && all=true && shift
-[ $# -gt 0 ] && exec fpm @strict -- "$@"
+
+run_suites() {   # run_suites PROGRAM FOLDER SUITE...: build a Fortran test program, units or runs, of the package in this folder
+  program=$1
+  folder=$2
+  shift 2
+  said=$(fpm @strict --directory "$folder" --target "$program" --runner echo 2>&1) || { printf '%s\n' "$said" >&2; return 1; }
+  "$folder/$(printf '%s\n' "$said" | grep "^build/.*/$program\$" | tail -n 1)" "$@"
+}
+
+if [ $# -gt 0 ]; then
+  times=
+  units=
+  runs=
+  for name; do
+    if [ "$name" = --times ]; then times=$name
+    elif grep -q "run_test_$name\$" tests/units.f90; then units="$units $name"
+    else runs="$runs $name"; fi
+  done
+  status=0
+  # shellcheck disable=SC2086  # names
+  [ -z "$units" ] || run_suites units tests $times $units || status=1
+  # shellcheck disable=SC2086
+  [ -z "$runs" ] || run_suites runs . $times $runs || status=1
+  exit $status
+fi
 
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT

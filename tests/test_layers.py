@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The folders of src are layers: a module uses only modules of its own folder and of lower layers, never of a folder beside or
-above it. Above its registry no module names a law. Lines of Fortran, comments included, have at most 132 characters.
+above it. Above its registry no module names a law. The tests of single models use neither scenes nor case files, so that a changed
+model is tested within seconds. Lines of Fortran, comments included, have at most 132 characters.
 
     tests/test_layers.py
 
@@ -11,7 +12,8 @@ import re
 import sys
 from pathlib import Path
 
-SRC = Path(__file__).resolve().parent.parent / "src"
+TESTS = Path(__file__).resolve().parent
+SRC = TESTS.parent / "src"
 
 #: The layers from the lowest to the highest; folders in one row must not use each other.
 LAYERS = [
@@ -83,6 +85,21 @@ def named_laws(files: list[Path]) -> list[str]:
     return wrong
 
 
+def used_by_units() -> set[str]:
+    """Layers that the test program of single models uses, by all modules that it needs."""
+    files = [path for folder in (SRC, TESTS) for path in folder.rglob("*.f90")]
+    by_module = {name: path for path in files for name in re.findall(r"^\s*module\s+(?!procedure\b)(\w+)\s*$", path.read_text(), re.M)}
+    reached, waiting = set(), ["units"]
+    while waiting:
+        name = waiting.pop()
+        path = TESTS / "units.f90" if name == "units" else by_module.get(name)
+        if path is None or path in reached:
+            continue
+        reached.add(path)
+        waiting += used_modules(path.read_text())
+    return {folder_of(path) for path in reached if path.is_relative_to(SRC)}
+
+
 def main() -> int:
     files = sorted(SRC.rglob("*.f90"))
     passed = failed = 0
@@ -100,6 +117,8 @@ def main() -> int:
         check("no module uses a higher layer:\n  " + "\n  ".join(wrong), not wrong)
     wrong = named_laws(files)
     check("no module above its registry names a law:\n  " + "\n  ".join(wrong), not wrong)
+    high = used_by_units() & {"scene", "io", "study"}
+    check(f"tests of single models use the layers {sorted(high)}", not high)
     for path in files:
         name = path.stem
         check(
