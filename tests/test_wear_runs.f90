@@ -1,5 +1,5 @@
-!> Wear in whole runs: volumes and their distribution against an independent program and against quadratures of the trace; other joints,
-!> films and members; the motion with and without wear.
+!> Wear in whole runs: volumes and their distribution against an independent program and against quadratures of the trace; other
+!> joints, films and members; the motion with and without wear.
 module test_wear_runs
   use gudgeon_kinds, only: dp
   use gudgeon_constants, only: two_pi
