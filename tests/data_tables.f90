@@ -1,6 +1,6 @@
 !> Tables of numbers from the folder data.
 module data_tables
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: load_table

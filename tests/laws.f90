@@ -1,13 +1,13 @@
 !> Laws for tests of single models: selected and set from a text of keys, without a case file. Keys are declared by the laws
 !> themselves, as for the reader of cases; keys that are not given take their defaults. Limits are not checked.
 module laws
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_internal
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_internal
+  use bearing_size, only: bearing_t
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
   use film_law, only: film_law_t
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t, law_t, key_t
+  use model_parameters, only: has_parameters_t, parameter_list_t, law_t, key_t
   use joint_case, only: joint_case_t, visit_joint
   implicit none
   private

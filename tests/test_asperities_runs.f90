@@ -1,6 +1,6 @@
 !> Mixed lubrication in runs by all methods, and errors in cases.
 module test_asperities_runs
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use case_checks, only: expect
   use collecting_sink, only: trace_t, run_case, column

@@ -1,11 +1,11 @@
 !> The contact laws: stiffness, restitution, loss, limits, a force that is lost.
 module test_contact
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use checks, only: checks_t
   use contact_law, only: contact_law_t, ratio_limit
   use laws, only: contact_law_of
-  use gudgeon_bearing, only: bearing_t
+  use bearing_size, only: bearing_t
   use hertz_sphere, only: hertz_sphere_t
   use free_impact, only: speed_given_back, exact_restitution
   use winkler, only: winkler_t

@@ -1,7 +1,7 @@
 !> Files of measured curves: valid and invalid ones, and a run with a measured pressure.
 module test_curve_files
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use curve_file, only: parse_curve, crank_angle, pressure, turning_speed, torque
   use case_curves, only: period_fault
   use checks, only: checks_t

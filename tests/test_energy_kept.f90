@@ -1,7 +1,7 @@
 !> The energy in long runs, in runs with large tolerance and in unusual runs: errors that accumulate in the crank or in the work of
 !> the forces.
 module test_energy_kept
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use case_definition, only: case_t
   use result_notes, only: energy_warning

@@ -1,6 +1,6 @@
 !> Results of films besides their force, in whole runs: with the energy that the bodies lose, as columns, in a mixed film.
 module test_film_figures_runs
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use collecting_sink, only: trace_t, run_case, column
   implicit none

@@ -1,7 +1,7 @@
 !> The inverse of the force of a film: the velocity that a force drives.
 module test_film_mobility
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use checks, only: checks_t
   use film_law, only: film_law_t, film_motion_t
   use film_mobility, only: driven_velocity

@@ -1,8 +1,8 @@
 !> Transition from film to contact over a range of penetrations: weights, and a film that is held at the wall.
 module test_film_weights
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use error_handling, only: error_t
+  use bearing_size, only: bearing_t
   use checks, only: checks_t
   use film_transition, only: film_transition_t
   use film_law, only: film_law_t, film_motion_t

@@ -1,7 +1,7 @@
 !> The friction laws without memory: values, derivatives, continuity, signs.
 module test_friction
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use checks, only: checks_t
   use friction_law, only: friction_law_t
   use laws, only: friction_law_of

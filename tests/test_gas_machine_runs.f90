@@ -1,7 +1,7 @@
 !> Two-stroke engines and compressors in whole runs.
 module test_gas_machine_runs
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, degree
+  use kinds, only: dp
+  use constants, only: pi, degree
   use checks, only: checks_t
   use collecting_sink, only: trace_t, run_case, values_of
   implicit none

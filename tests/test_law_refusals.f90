@@ -1,6 +1,6 @@
 !> Laws that a case names wrongly, and keys of laws that are missing, out of their limits or contradict each other.
 module test_law_refusals
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: parse_case

@@ -1,8 +1,8 @@
 !> Measured curves: the cubic polynomials through their points, and the work of a measured pressure.
 module test_measured_curves
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi, degree
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: pi, two_pi, degree
+  use error_handling, only: error_t
   use monotone_cubic, only: monotone_cubic_t, new_monotone_cubic, new_periodic_cubic
   use measured_pressure, only: measured_pressure_t
   use working_gas, only: working_gas_t

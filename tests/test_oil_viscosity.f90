@@ -1,7 +1,7 @@
 !> Viscosity of an oil at a temperature: against values computed with 30 digits from the published equations, and a published
 !> example.
 module test_oil_viscosity
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use oil_viscosity, only: oil_t
   implicit none

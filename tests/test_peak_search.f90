@@ -1,6 +1,6 @@
 !> The search for the largest value of a curve between two of its points.
 module test_peak_search
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use peak_search, only: peak_search_t, sample_t
   implicit none
@@ -34,7 +34,7 @@ contains
         if (is_done) exit
         values = values + 1
         call check%that(t > 0 .and. t < 1, trim(names(i))//': inside')
-        call search%take(t, curve(t))
+        call search%add_value(t, curve(t))
       end do
       call check%close_to(search%value(1), 2.0_dp, within(i), trim(names(i))//': largest value')
       call check%that(values <= most(i), trim(names(i))//': number of evaluations')

@@ -1,19 +1,19 @@
 !> The Radau method: formulas, order, stiff problems, derivatives of laws, states inside steps.
 module test_radau
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use checks, only: checks_t
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use ode_problem, only: ode_problem_t, event_continue
   use ode_method, only: ode_settings_t, step_done
   use radau_coefficients, only: radau_formula_t, radau_formula
   use radau, only: radau_t
   use film_law, only: film_motion_t
   use pinkus_sternlicht, only: pinkus_sternlicht_t
-  use gudgeon_bearing, only: bearing_t
+  use bearing_size, only: bearing_t
   use contact_law, only: contact_law_t
   use laws, only: contact_law_of
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_done, step_limit_reached
+  use ode_solver, only: integrate, silent_observer_t, integration_done, step_limit_reached
   use test_problems, only: oscillator_t
   implicit none
   private
@@ -83,16 +83,16 @@ contains
     end do
   end subroutine damped_contacts_last
 
-  pure subroutine falls_on_wall(self, t, y, dydt, inside)
+  pure subroutine falls_on_wall(self, t, y, dydt, in_domain)
     class(landing_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     associate (unused => t)
     end associate
     dydt = [y(2), 1.0_dp]
     if (self%touches) dydt(2) = 1 - 1e10_dp*max(y(1), 0.0_dp)*max(1 + 19*y(2)/self%impact_speed, 0.0_dp)
-    inside = .true.
+    in_domain = .true.
   end subroutine falls_on_wall
 
   pure subroutine reaches_wall(self, t, y, g, g_rate)
@@ -118,26 +118,26 @@ contains
     action = event_continue
   end subroutine touch
 
-  pure subroutine derivatives(self, t, y, dydt, inside)
+  pure subroutine derivatives(self, t, y, dydt, in_domain)
     class(van_der_pol_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     associate (unused => t)
     end associate
     dydt(1) = y(2)
     dydt(2) = ((1 - y(1)**2)*y(2) - y(1))/self%mu
-    inside = .true.
+    in_domain = .true.
   end subroutine derivatives
 
-  pure subroutine relaxation(self, t, y, dydt, inside)
+  pure subroutine relaxation(self, t, y, dydt, in_domain)
     class(relaxing_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     dydt(1) = y(2)
     dydt(2) = -self%rate*(y(2) - cos(t)) - sin(t)
-    inside = .true.
+    in_domain = .true.
   end subroutine relaxation
 
   !> Collocation conditions, decoupling of the stages, stiff accuracy.
@@ -343,7 +343,7 @@ contains
     type(relaxing_t) :: problem
     type(radau_t) :: method
     real(dp) :: y(2), f(2), t
-    logical :: inside
+    logical :: in_domain
     real(dp) :: change
     integer :: status, i
     problem%n = 2
@@ -364,7 +364,7 @@ contains
         t = method%t_old + i*(method%t - method%t_old)/20
         call method%interpolate(t, y)
         largest = max(largest, abs(y - [sin(t), cos(t)]))
-        call problem%derivatives(t, y, f, inside)
+        call problem%derivatives(t, y, f, in_domain)
         call method%improve(t, f, y, change)
         improved = max(improved, abs(y - [sin(t), cos(t)]))
       end do
@@ -394,13 +394,13 @@ contains
     call check%that(abs(y(3) + y(2) - 1) < 20*tolerance, 'a quadrature uses the final stages')
   end subroutine quadratures_belong_to_their_stages
 
-  pure subroutine follow_cosine(self, t, y, dydt, inside)
+  pure subroutine follow_cosine(self, t, y, dydt, in_domain)
     class(stiff_follower_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     real(dp) :: behind
-    inside = .true.
+    in_domain = .true.
     behind = y(2) - cos(t)
     dydt(1) = y(2)
     dydt(2) = -1e4_dp*(behind + 1e3_dp*behind**3)

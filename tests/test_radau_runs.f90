@@ -1,14 +1,14 @@
 !> The Radau method and the automatic choice in scenes: Jacobians, whole runs, rows inside steps.
 module test_radau_runs
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: piston_pin
   use checks, only: checks_t
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use ode_problem, only: difference_jacobian
-  use gudgeon_scene, only: scene_t, phase_contact
-  use state_making, only: put_crank, put_pin
+  use scene_problem, only: scene_t, phase_contact
+  use state_making, only: set_crank, set_pin
   use scene_builder, only: build_scene
   use collecting_sink, only: trace_t, run_case, values_of
   implicit none
@@ -56,9 +56,9 @@ contains
       if (touches(i)) scene%joints(1)%phase = phase_contact
       scene%joints(1)%impact_speed = 0.8_dp
       do trial = 1, 6
-        call put_pin(scene, y, merge(1.1_dp, 0.55_dp, touches(i))*c*[cos(1.0_dp*trial), sin(1.0_dp*trial)], &
+        call set_pin(scene, y, merge(1.1_dp, 0.55_dp, touches(i))*c*[cos(1.0_dp*trial), sin(1.0_dp*trial)], &
           [0.03_dp*cos(2.3_dp*trial), 0.02_dp*sin(3.1_dp*trial)])
-        call put_crank(scene, y, 6.4_dp + 0.02_dp*trial, case%initial%crank_speed)
+        call set_crank(scene, y, 6.4_dp + 0.02_dp*trial, case%initial%crank_speed)
         call scene%jacobian(1e-3_dp*trial, y, a_p, a_v)
         call difference_jacobian(scene, 1e-3_dp*trial, y, b_p, b_v)
         scale = maxval(abs(b_p))*1e-4_dp + abs(b_p)
@@ -84,9 +84,9 @@ contains
     call read_case('cases/sim_I.nml', none, case, error)
     call build_scene(case, .false., scene, error)
     allocate (y(scene%n), source=0.0_dp)
-    call put_crank(scene, y, 0.4_dp, 250.0_dp)
+    call set_crank(scene, y, 0.4_dp, 250.0_dp)
     do i = 0, 1
-      call put_pin(scene, y, [2e-5_dp + i*1e-7_dp, 0.0_dp], [0.0_dp, 0.0_dp])
+      call set_pin(scene, y, [2e-5_dp + i*1e-7_dp, 0.0_dp], [0.0_dp, 0.0_dp])
       call scene%jacobian(0.0_dp, y, a_p, a_v)
       call check%that(.not. any(abs(a_p) > 0) .and. .not. any(abs(a_v) > 0), 'no derivatives outside the film')
     end do

@@ -1,6 +1,6 @@
 !> The prescribed speed of a crank.
 module test_varying_drive
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use varying_drive, only: varying_drive_t
   use checks, only: checks_t
   implicit none

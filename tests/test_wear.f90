@@ -1,8 +1,8 @@
 !> Wear: how load paths are spread over a surface; pressures along arcs of contact against their resultant.
 module test_wear
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: pi, two_pi
+  use bearing_size, only: bearing_t
   use checks, only: checks_t
   use archard_wear, only: worn_surface_t
   use contact_geometry, only: contact_geometry_t

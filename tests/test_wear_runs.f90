@@ -1,8 +1,8 @@
 !> Wear in whole runs: volumes and their distribution against an independent program and against quadratures of the trace; other
 !> joints, films and members; the motion with and without wear.
 module test_wear_runs
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   use checks, only: checks_t
   use joint_places, only: name_prefix
   use archard_wear, only: of_pin, of_bore

@@ -1,6 +1,6 @@
 !> Runs in which the worn shape of the bore acts, and errors in cases.
 module test_worn_bore_runs
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use archard_wear, only: of_bore
   use case_checks, only: expect, methods_agree

@@ -1,30 +1,30 @@
 !> A run of one case, which can pause: builds its scene, integrates it, hands rows and events to a sink, and reports its results.
-module gudgeon_simulation
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_integration
+module simulation
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_integration
   use run_state, only: run_state_t
   use case_definition, only: case_t
   use ode_method, only: ode_method_t, step_statistics_t, left_domain
-  use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, integration_t, silent_observer_t, integration_done, integration_stopped, &
+  use ode_methods, only: new_method
+  use ode_solver, only: integrate, integration_t, silent_observer_t, integration_done, integration_stopped, &
     integration_interrupted, step_limit_reached, evaluation_limit_reached
-  use gudgeon_scene, only: scene_t, evaluation_t
-  use inside_step, only: look_inside
+  use scene_problem, only: scene_t, evaluation_t
+  use inside_step, only: evaluate_inside
   use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, crank_creeps
   use scene_builder, only: build_scene, simulated_time, latest_end, longest_turn, sample_interval, settings_for
   use crank_turns, only: all_made, turned_back
-  use gudgeon_columns, only: column_list_t
+  use trace_columns, only: column_list_t
   use cycle_watch, only: cycle_watch_t
   use cycle_answers, only: answer_t, find_answers
   use period_watch, only: period_watch_t
   use lyapunov, only: exponent_t, measurement_t
-  use gudgeon_recorder, only: recorder_t
+  use run_recorder, only: recorder_t
   use run_start, only: find_start
   use run_figures, only: run_figures_t
   use film_snapshots, only: film_field_t
   use wear_record, only: wear_profile_t
   use trace_sink, only: trace_sink_t
-  use gudgeon_constants, only: two_pi, degree
+  use constants, only: two_pi, degree
   implicit none
   private
   public :: simulate, run_t, run_report_t, interrupted_text
@@ -62,7 +62,7 @@ module gudgeon_simulation
   contains
     procedure :: begin
     procedure :: advance
-    procedure :: look
+    procedure :: evaluate_row
     procedure :: state
     procedure :: stop
     procedure :: expected_end
@@ -110,22 +110,22 @@ contains
     associate (recorder => self%recorder, scene => self%scene)
       recorder%list = list
       if (case%output%sampling == 'crank_angle') then
-        recorder%angles%per_revolution = case%output%samples_per_revolution
-        recorder%angles%origin = case%output%angle_origin_deg*degree
+        recorder%rows%angles%per_revolution = case%output%samples_per_revolution
+        recorder%rows%angles%origin = case%output%angle_origin_deg*degree
       else
-        recorder%interval = sample_interval(case)
+        recorder%rows%interval = sample_interval(case)
       end if
-      recorder%first_sample = case%output%start_time
+      recorder%rows%first_sample = case%output%start_time
       recorder%periods%is_on = case%run%is_until_periodic()
       recorder%periods%longest = case%run%period_revolutions
       recorder%periods%tolerance = case%run%periodic_tolerance
       recorder%periods%most_revolutions = case%run%most_revolutions
       recorder%periods%keeps_one_more = recorder%periods%is_on .and. case%output%window == 'last_period'
-      recorder%end_time = latest_end(case)
-      recorder%patience%longest = longest_turn(case)
-      recorder%every_step = case%output%every_step
-      recorder%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
-      recorder%revolution_time = two_pi/scene%speed_scale()
+      recorder%rows%end_time = latest_end(case)
+      recorder%limits%turn_limit%longest = longest_turn(case)
+      recorder%rows%every_step = case%output%every_step
+      recorder%limits%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
+      recorder%limits%revolution_time = two_pi/scene%speed_scale()
       recorder%sink => sink
       if (present(cycles)) self%has_cycles = allocated(cycles)
       if (self%has_cycles) then
@@ -145,7 +145,7 @@ contains
       end if
       call recorder%begin(scene, t, y)
       self%t = t
-      call self%integration%begin(scene, self%method, t, y, recorder%end_time, case%integrator%max_steps)
+      call self%integration%begin(scene, self%method, t, y, recorder%rows%end_time, case%integrator%max_steps)
     end associate
   end subroutine begin
 
@@ -170,23 +170,23 @@ contains
     end do
   end subroutine advance
 
-  !> The values of a row at the time reached. If the state there is not `inside` the model, there are none.
-  subroutine look(self, values, inside)
+  !> The values of a row at the time reached. If the state there is not `in_domain` the model, there are none.
+  subroutine evaluate_row(self, values, in_domain)
     class(run_t), intent(inout) :: self
     real(dp), intent(out) :: values(:)   !! in the order of the list
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     type(evaluation_t) :: now
     real(dp) :: y(self%scene%n)
     integer :: unused
     unused = 0
     if (self%integration%is_kept) then
-      call look_inside(self%scene, self%method, self%t, y, now, inside, unused)
+      call evaluate_inside(self%scene, self%method, self%t, y, now, in_domain, unused)
     else
       y = self%integration%state(self%method)
-      call self%scene%evaluate(self%t, y, now, inside)
+      call self%scene%evaluate(self%t, y, now, in_domain)
     end if
-    if (inside) call self%recorder%row(self%scene, self%t, y, now, values)
-  end subroutine look
+    if (in_domain) call self%recorder%row(self%scene, self%t, y, now, values)
+  end subroutine evaluate_row
 
   !> The state that the run has reached, from which another one may start. The run must not pause inside a step.
   subroutine state(self, list)
@@ -214,9 +214,9 @@ contains
   real(dp) function expected_end(self)
     class(run_t), intent(in) :: self
     expected_end = simulated_time(self%case)
-    associate (travel => abs(self%recorder%figures%crank_travel))
+    associate (travel => abs(self%recorder%extremes%figures%crank_travel))
       if (allocated(self%scene%turns) .and. travel > 0) &
-        expected_end = min(self%recorder%end_time, self%t*self%scene%turns%wanted*two_pi/travel)
+        expected_end = min(self%recorder%rows%end_time, self%t*self%scene%turns%wanted*two_pi/travel)
     end associate
   end function expected_end
 
@@ -230,14 +230,14 @@ contains
       if (recorder%periods%has_ended) then
         status = integration_done
         t = recorder%periods%t
-        y = recorder%periods%y
+        y = recorder%state_at_end
         call move_alloc(recorder%scene_at_end, self%scene)
-      else if (recorder%patience%is_over) then
+      else if (recorder%limits%turn_limit%is_over) then
         status = crank_creeps
-        t = recorder%figures%time
+        t = recorder%extremes%figures%time
         call self%method%interpolate(t, y)
       else
-        if (status == integration_interrupted .and. recorder%over_budget) status = revolution_budget_spent
+        if (status == integration_interrupted .and. recorder%limits%over_budget) status = revolution_budget_spent
         call judge_turns(self%scene, t, y, status)
       end if
       call recorder%finish(self%scene, t, y)
@@ -265,7 +265,7 @@ contains
     if (allocated(self%measurement)) report%exponent = self%measurement%exponent
     report%statistics = self%method%totals()
     if (allocated(self%method%time_with)) report%time_with = self%method%time_with
-    report%figures = self%recorder%figures
+    report%figures = self%recorder%extremes%figures
     report%wear = self%recorder%wear(self%scene)
     allocate (report%answers(0))
     if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, self%recorder%periods)
@@ -319,4 +319,4 @@ contains
     real(dp), intent(in) :: crank_travel   !! [rad]
     energy_limit = min(0.05_dp, max(1e-10_dp, 1e3_dp*tolerance*max(1.0_dp, abs(crank_travel)/(100*two_pi))))
   end function energy_limit
-end module gudgeon_simulation
+end module simulation
