@@ -110,23 +110,9 @@ module summary_quantities
     quantity_t('certified_until', 's', 'up to here no coordinate or speed is off by more than 1e-3 of its range'), &
     quantity_t('certified_digits', '1', 'correct digits of the state up to there, median over time'), &
     quantity_t('state_error', '1', 'largest error of the state up to there, over the range of each component'), &
-    quantity_t('certified_impacts', '1', 'impacts up to there'), &
-    quantity_t('certified_impacts_matched', '1', 'those that the closer run has at the same times'), &
     quantity_t('certified_with_other_method', '', 'whether the run with another method could be compared: yes or no'), &
-    quantity_t('max_pin_force_difference', 'N', 'largest difference of `max_pin_force` in the two closer runs'), &
-    quantity_t('contact_time_fraction_difference', '1', 'the same of `contact_time_fraction`'), &
-    quantity_t('min_film_thickness_difference', 'm', 'the same of `min_film_thickness`'), &
-    quantity_t('mean_crank_speed_difference', 'rad/s', 'the same of `mean_crank_speed`'), &
-    quantity_t('worn_volume_pin_difference', 'm3', 'the same of `worn_volume_pin`'), &
-    quantity_t('worn_volume_bore_difference', 'm3', 'the same of `worn_volume_bore`'), &
-    quantity_t('loss_per_revolution', 'J', 'energy lost at the joints in a revolution, mean of the whole revolutions'), &
-    quantity_t('loss_per_revolution_difference', 'J', 'its largest difference in the two closer runs'), &
-    quantity_t('beyond_revolutions', '1', 'whole revolutions after `certified_until`'), &
-    quantity_t('beyond_mean_pin_force', 'N', 'mean force at the piston pin in these revolutions'), &
-    quantity_t('beyond_contact_time_fraction', '1', 'share of the time in contact in these revolutions'), &
-    quantity_t('beyond_impacts_per_revolution', '1', 'impacts in a revolution'), &
-    quantity_t('beyond_loss_per_revolution', 'J', 'energy lost at the joints in a revolution'), &
-    quantity_t('beyond_NAME_difference', '1', 'largest relative difference of this statistic in the two closer runs')]
+    quantity_t('NAME_difference', '', &
+      'largest difference of NAME, a result of the whole run or of its last whole cycle, in the two closer runs; in its unit')]
 
   !> Quantities of a summary, in their order.
   type(quantity_t), parameter :: quantities_of_runs(*) = [of_integration, of_motion, of_joints, &

@@ -307,6 +307,7 @@ contains
       if (scene%turns%outcome == turned_back) status = crank_turned_back
     case (integration_done)
       if (scene%turns%made(scene%crank_angle(t, y)) < scene%turns%wanted*(1 - rounding)) status = turns_not_made
+    case default   ! why the run has ended otherwise
     end select
   end subroutine judge_turns
 
