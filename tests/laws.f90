@@ -102,8 +102,6 @@ contains
     character(len=*), intent(in) :: name, says
     logical, intent(in) :: is_model
     character(len=*), intent(in), optional :: place, instead_of
-    associate (unused => says, unused_switch => is_model, unused_texts => present(place) .or. present(instead_of))
-    end associate
     self%sets = name == self%only
     self%is_present = self%sets
     self%passes = .not. self%sets
@@ -112,8 +110,6 @@ contains
   subroutine select_name(self, key, default, says)
     class(setter_t), intent(inout) :: self
     character(len=*), intent(in) :: key, default, says
-    associate (unused => says)
-    end associate
     if (.not. self%sets) return
     self%law_name = given(self, key)
     if (self%law_name == '') self%law_name = default
@@ -189,8 +185,6 @@ contains
     integer, intent(inout), optional :: whole
     logical, intent(inout), optional :: switch
     character(len=:), allocatable, intent(inout), optional :: text
-    associate (unused => present(switch) .or. present(text))
-    end associate
     if (key%name /= self%key) return
     if (present(reals)) self%found = reals([1, size(reals)])
     if (present(whole)) self%found = whole

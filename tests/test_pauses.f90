@@ -239,8 +239,6 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: in_domain
-    associate (unused => t)
-    end associate
     in_domain = .true.
     dydt = [y(2), -self%stiffness*y(1)]
   end subroutine derivatives

@@ -88,8 +88,6 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: in_domain
-    associate (unused => t)
-    end associate
     dydt = [y(2), 1.0_dp]
     if (self%touches) dydt(2) = 1 - 1e10_dp*max(y(1), 0.0_dp)*max(1 + 19*y(2)/self%impact_speed, 0.0_dp)
     in_domain = .true.
@@ -99,8 +97,6 @@ contains
     class(landing_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
-    associate (unused => t)
-    end associate
     g = merge(-1, 1, self%touches)*y(1)
     g_rate = merge(-1, 1, self%touches)*y(2)
   end subroutine reaches_wall
@@ -111,8 +107,6 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     integer, intent(out) :: action
-    associate (unused => index, unused_t => t, unused_y => y)
-    end associate
     if (.not. self%touches) self%impact_speed = max(y(2), 1e-5_dp)
     self%touches = .not. self%touches
     action = event_continue
@@ -123,8 +117,6 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: in_domain
-    associate (unused => t)
-    end associate
     dydt(1) = y(2)
     dydt(2) = ((1 - y(1)**2)*y(2) - y(1))/self%mu
     in_domain = .true.
