@@ -17,7 +17,7 @@ module case_file
   use problem_list, only: behind_file
   implicit none
   private
-  public :: read_case, parse_case, read_case_values, complete_case, template
+  public :: read_case, parse_case, read_case_values, parse_values, accept_override, complete_case, template
 
   integer, parameter :: largest_file = 1   !! MB; case files are a few kilobytes long
 
@@ -61,6 +61,7 @@ contains
     if (.not. allocated(error)) call parse_values(text, path, overrides, values, is_bearing)
   end subroutine read_case_values
 
+  !> The values of a case file's text and of overrides; see `read_case_values`. `path` gives its name in messages.
   subroutine parse_values(text, path, overrides, values, is_bearing)
     character(len=*), intent(in) :: text, path, overrides(:)
     type(case_values_t), intent(out) :: values
@@ -81,7 +82,7 @@ contains
     call values%set_defaults(path)
     call take_file(values, text)
     do i = 1, size(overrides)
-      call take_override(values, trim(overrides(i)), behind_file + i, error)
+      call accept_override(values, trim(overrides(i)), behind_file + i, error)
       if (allocated(error)) values%problems%is_structural = .true.
       call values%problems%add_error(error, '--set', behind_file + i)
     end do
@@ -250,7 +251,7 @@ contains
 
   !> Put an override GROUP.KEY=VALUE into the values; texts need no quotes. GROUP=none removes everything that the file and earlier
   !> overrides have set in that group.
-  subroutine take_override(values, override, line, error)
+  subroutine accept_override(values, override, line, error)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: override
     integer, intent(in) :: line   !! for the order of messages
@@ -285,7 +286,7 @@ contains
     values%values(place)%line = line
     if (allocated(error) .and. lowercase(text) == 'none') &
       error%message = error%message//'; --set '//group//'=none takes the group out'
-  end subroutine take_override
+  end subroutine accept_override
 
   !> Whether a further joint follows the group of this name for all joints, because it has none of its own.
   pure logical function is_shared(values, group)
