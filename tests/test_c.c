@@ -43,7 +43,7 @@ static double quantity(const gudgeon_run *run, const char *wanted, char *word) {
 
 /* A run with pauses has the rows of one without, bit for bit; a state that is put back gives the same values again. */
 static void pauses(void) {
-  gudgeon_case *it = read_case("sim_II");
+  gudgeon_case *it = read_case("friction/coulomb_static");
   check(gudgeon_case_set(it, "integrator.revolutions", "2") == 0, "a key is set");
   gudgeon_run *whole = gudgeon_run_new(it, 0, 0, 0), *parts = gudgeon_run_new(it, 0, 0, 0);
   check(gudgeon_run_advance(whole, HUGE_VAL, 0) == 2, "a time that is not finite is refused");

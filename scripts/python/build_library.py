@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Builds the shared library: fpm compiles the sources, one line of gfortran links them.
+"""Builds the shared library and the program of the Python package: fpm compiles the sources, one line of gfortran links them.
 
     scripts/python/build_library.py [FOLDER]     FOLDER/libgudgeon.so; FOLDER: build/library of the checkout
 
@@ -53,8 +53,7 @@ def build(folder: Path) -> Path:
         shutil.rmtree(folder / "build", ignore_errors=True)
         listing.write_text(listed)
     run(["fpm", "build", "--directory", str(folder), "--flag", COMPILE], folder)
-    newest = max((folder / "build").rglob("*.o"), key=os.path.getmtime).parent
-    objects = sorted(str(path) for path in newest.glob("*.o"))
+    objects = found_objects(folder)
     library = folder / "libgudgeon.so"
     if library.is_file() and all(os.path.getmtime(path) < library.stat().st_mtime for path in objects):
         return library
@@ -62,6 +61,24 @@ def build(folder: Path) -> Path:
     run(["gfortran", *COMPILE.split(), *link, *objects, "-o", f"{library}.part"], folder)
     os.replace(f"{library}.part", library)
     return library
+
+
+def build_program(folder: Path) -> Path:
+    """Link the program from the objects of a library that has been built in the folder."""
+    program, objects = folder / "gudgeon", found_objects(folder)
+    if program.is_file() and all(os.path.getmtime(path) < program.stat().st_mtime for path in objects):
+        return program
+    modules = str(Path(next((folder / "build").rglob("gudgeon_version.mod"))).parent)
+    needed = [path for path in objects if "_api_" not in Path(path).name]
+    run(["gfortran", *COMPILE.split(), f"-I{modules}", str(sources() / "main.f90"), *needed, "-o", f"{program}.part"], folder)
+    os.replace(f"{program}.part", program)
+    return program
+
+
+def found_objects(folder: Path) -> list[str]:
+    """The objects of the last build."""
+    newest = max((folder / "build").rglob("*.o"), key=os.path.getmtime).parent
+    return sorted(str(path) for path in newest.glob("*.o"))
 
 
 def run(command: list[str], folder: Path) -> None:
