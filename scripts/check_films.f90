@@ -5,8 +5,8 @@
 !>     check_films POINTS NODES     use tables of POINTS values in each direction, solved with NODES nodes; with processor times
 !>     check_films POINTS NODES 0.75 gumbel     the same for one bearing and one cavitation condition
 program check_films
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: degree
+  use kinds, only: dp
+  use constants, only: degree
   use finite_film, only: film_answer_t, cavitation_gumbel, cavitation_reynolds
   use film_map, only: film_map_t
   use film_solution, only: solved_film

@@ -3,7 +3,7 @@
 !> of both. Ends with `N passed, N failed`.
 program check_numbers
   use, intrinsic :: iso_fortran_env, only: int64, output_unit
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use number_text, only: number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
   implicit none
   real(dp), parameter :: least_gain = 8

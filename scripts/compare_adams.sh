@@ -21,7 +21,7 @@ table() {   # table WHAT [FILE]: indented, which Markdown shows as it is
 if [ "$1" != coordinates ]; then
   mkdir -p "$copy"
   cp -rp fpm.toml fpm.rsp src tests cases scripts "$copy"
-  sed -i 's/dp = real64 .*/dp = selected_real_kind(18)/' "$copy/src/base/gudgeon_kinds.f90"
+  sed -i 's/dp = real64 .*/dp = selected_real_kind(18)/' "$copy/src/base/kinds.f90"
 fi
 if [ "$1" != scenes ] && [ "$1" != coordinates ]; then
   reference standard_reference build/standard_references.txt

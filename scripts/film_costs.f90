@@ -4,8 +4,8 @@
 !> in Markdown with the shortest of several times; a table is computed once.
 program film_costs
   use, intrinsic :: iso_fortran_env, only: int64
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use film_law, only: film_motion_t

@@ -7,19 +7,19 @@
 !>                                         of its scene, and of its ideal twin if the case asks for one
 program measure_costs
   use, intrinsic :: iso_fortran_env, only: int64
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: pi
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use adams, only: adams_t
-  use gudgeon_solver, only: integrate, observer_t, silent_observer_t, integration_done, step_limit_reached
-  use gudgeon_scene, only: scene_t, evaluation_t, phase_contact
+  use ode_solver, only: integrate, observer_t, silent_observer_t, integration_done, step_limit_reached
+  use scene_problem, only: scene_t, evaluation_t, phase_contact
   use scene_builder, only: build_scene, settings_for, simulated_time
-  use gudgeon_columns, only: column_list_t, choose_columns, row_values
+  use trace_columns, only: column_list_t, choose_columns, row_values
   use ode_method, only: step_done
-  use gudgeon_events, only: event_watch_t
-  use gudgeon_recorder, only: recorder_t
+  use event_search, only: event_watch_t
+  use run_recorder, only: recorder_t
   use trace_sink, only: trace_sink_t
   use measured_times, only: time_of_pairs, time_of_integration, no_difference
   use joint_places, only: piston_pin
@@ -206,7 +206,7 @@ contains
     logical, intent(in) :: in_turn
     integer(int64) :: before, after, rate
     real(dp) :: state(size(y, 1)), f(size(y, 1)), total
-    logical :: inside
+    logical :: in_domain
     integer :: i, j
     f = 0
     total = 0
@@ -215,11 +215,11 @@ contains
       do j = 1, n_states
         if (in_turn) then
           state = y(:, j) + no_difference*sum(f)
-          call scene%derivatives(0.0_dp, state, f, inside)
+          call scene%derivatives(0.0_dp, state, f, in_domain)
         else
-          call scene%derivatives(0.0_dp, y(:, j), f, inside)
+          call scene%derivatives(0.0_dp, y(:, j), f, in_domain)
         end if
-        if (.not. inside) error stop 'measure_costs: a state outside the model'
+        if (.not. in_domain) error stop 'measure_costs: a state outside the model'
         total = total + f(2)
       end do
     end do
@@ -242,7 +242,7 @@ contains
     integer(int64) :: before, after, rate
     real(dp), allocatable :: values(:)
     real(dp) :: total
-    logical :: inside
+    logical :: in_domain
     integer :: i, j
 
     asked = case
@@ -257,7 +257,7 @@ contains
     call system_clock(before, rate)
     do i = 1, count/n_states
       do j = 1, n_states
-        call scene%evaluate(0.0_dp, y(:, j), now, inside)
+        call scene%evaluate(0.0_dp, y(:, j), now, in_domain)
         call row_values(list, scene, 0.0_dp, now, 1.0_dp, 1.0_dp, values)
         total = total + values(2)
       end do
@@ -345,7 +345,7 @@ contains
       call begin_all(watches, scene, 0.0_dp, y, 0)
       do while (method%t < t_end .and. steps + method%statistics%accepted < count)
         do i = 1, searches
-          method%rough_time = scene%rough_time(method%t, method%y)
+          method%next_kink_time = scene%next_kink_time(method%t, method%y)
         end do
         call method%step(scene, status)
         if (status /= step_done) error stop 'measure_costs: a run failed'
@@ -365,14 +365,14 @@ contains
     ns = ns/steps
   end function time_of_searching
 
-  subroutine begin_all(watches, scene, t, y, just_taken)
+  subroutine begin_all(watches, scene, t, y, last_event)
     type(event_watch_t), intent(inout) :: watches(:)
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
-    integer, intent(in) :: just_taken
+    integer, intent(in) :: last_event
     integer :: i
     do i = 1, size(watches)
-      call watches(i)%begin(scene, t, y, just_taken, .false.)
+      call watches(i)%begin(scene, t, y, last_event, .false.)
     end do
   end subroutine begin_all
 

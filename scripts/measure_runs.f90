@@ -3,14 +3,14 @@
 !> are computed. Prints the number of runs, the evaluations, and the seconds of processor time and of wall time.
 program measure_runs
   use, intrinsic :: iso_fortran_env, only: int64
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use case_values, only: case_values_t
   use case_file, only: read_case_values
-  use gudgeon_columns, only: column_list_t
+  use trace_columns, only: column_list_t
   use cycle_watch, only: cycle_watch_t
-  use gudgeon_simulation, only: simulate, run_report_t
+  use simulation, only: simulate, run_report_t
   use trace_sink, only: trace_sink_t
   use study_definition, only: study_t
   use study_file, only: read_study
@@ -76,7 +76,7 @@ contains
     integer :: run
     do run = 1, design%runs
       call design%get_values(run, texts)
-      call base%put(texts, error)
+      call base%set_values(texts, error)
       if (.not. allocated(error)) call base%check(error)
       if (allocated(error)) error stop 'measure_runs: a run is not valid'
       cases(run) = base%case

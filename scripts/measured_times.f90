@@ -2,13 +2,13 @@
 !> integration.
 module measured_times
   use, intrinsic :: iso_fortran_env, only: int64
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: pi
+  use error_handling, only: error_t
   use case_definition, only: case_t
-  use gudgeon_methods, only: new_method
-  use gudgeon_scene, only: scene_t
-  use gudgeon_solver, only: integrate, silent_observer_t
+  use ode_methods, only: new_method
+  use scene_problem, only: scene_t
+  use ode_solver, only: integrate, silent_observer_t
   use ode_method, only: ode_method_t
   use scene_builder, only: build_scene, settings_for, simulated_time
   implicit none

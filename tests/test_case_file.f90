@@ -1,13 +1,13 @@
 !> Case files: which are accepted, which are refused and with which message, and that a resolved case gives the same case.
 module test_case_file
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, status_case_file
+  use kinds, only: dp
+  use error_handling, only: error_t, status_case_file
   use case_definition, only: case_t
   use case_file, only: read_case, parse_case, template
   use text_tools, only: path_beside, replaced, next_line
   use case_schema, only: key_table_t, case_schema_of
   use text_file, only: read_text_file
-  use gudgeon_posix, only: make_directory, remove_file
+  use posix_files, only: make_directory, remove_file
   use result_file, only: result_file_t
   use checks, only: checks_t
   use laws, only: parameter_of
@@ -792,13 +792,13 @@ contains
     call read_case('/dev/zero', none, c, error)
     call expect(check, error, '/dev/zero: not a regular file')
     call file%open(folder//'/large.nml', error)
-    call file%put(repeat('!'//repeat(' ', 98)//achar(10), 10001))
+    call file%append(repeat('!'//repeat(' ', 98)//achar(10), 10001))
     call file%close(error)
     call read_case(folder//'/large.nml', none, c, error)
     call expect(check, error, folder//'/large.nml: larger than 1 MB: not a case file')
     call remove_file(folder//'/large.nml', status)
     call file%open(folder//'/y.nml', error)
-    call file%put(whole)
+    call file%append(whole)
     call file%close(error)
     call read_case(folder//'/y.nml', none, c, error)
     call check%that(.not. allocated(error), 'a case file is read')

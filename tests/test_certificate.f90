@@ -1,13 +1,13 @@
 !> Certificates against runs at 1e-13: they must not claim more accuracy than there is, nor far less.
 module test_certificate
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use certificate, only: certificate_t, make_certificate, is_state
   use certificate_text, only: certificate_clause, certificate_table, certificate_summary
-  use gudgeon_columns, only: column_name
+  use trace_columns, only: column_name
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private

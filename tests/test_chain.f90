@@ -1,14 +1,14 @@
 !> The chain: closed forms against the general assembly, and both against the energy of bodies whose velocities are computed from
 !> their positions.
 module test_chain
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, degree
+  use kinds, only: dp
+  use constants, only: pi, degree
   use checks, only: checks_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
   use chain_bodies, only: bodies_t, crank_t, rod_t, piston_t, drive_t, new_bodies
   use chain_loads, only: loads_t, bearing_moment
   use chain_reactions, only: reactions_t
-  use gudgeon_chain, only: chain_t
+  use mechanism_chain, only: chain_t
   use ideal_chain, only: ideal_motion
   use assembled_chain, only: accelerate_assembled
   use small_cholesky, only: factorise_cholesky, solve_cholesky

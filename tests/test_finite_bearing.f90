@@ -1,9 +1,9 @@
 !> The film of a bearing of finite length: against an independent solver's tables (data/film), a printed table, closed forms and
 !> identities; its table against its solver; the short bearing against quadrature; energy.
 module test_finite_bearing
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, degree
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: pi, degree
+  use error_handling, only: error_t
   use checks, only: checks_t
   use film_law, only: film_law_t, film_motion_t
   use finite_film, only: film_answer_t, cavitation_none, cavitation_gumbel, cavitation_reynolds
@@ -11,7 +11,7 @@ module test_finite_bearing
   use film_solution, only: solved_film
   use finite_bearing, only: finite_bearing_t
   use short_bearing, only: short_bearing_t
-  use gudgeon_bearing, only: bearing_t
+  use bearing_size, only: bearing_t
   use laws, only: film_law_of
   implicit none
   private

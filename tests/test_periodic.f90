@@ -1,8 +1,8 @@
 !> Runs until the motion is periodic, and Lyapunov exponents of periodic and chaotic motions: compared with the traces of other
 !> runs.
 module test_periodic
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   use checks, only: checks_t
   use collecting_sink, only: trace_t, run_case, column, last_row_time
   implicit none

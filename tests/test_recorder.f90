@@ -1,16 +1,16 @@
 !> The recorder of a run: what happens where the interpolant of a step leaves the model.
 module test_recorder
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use checks, only: checks_t
   use adams, only: adams_t
-  use gudgeon_solver, only: integrate, integration_done, integration_interrupted
-  use gudgeon_scene, only: scene_t
+  use ode_solver, only: integrate, integration_done, integration_interrupted
+  use scene_problem, only: scene_t
   use scene_builder, only: build_scene, settings_for
   use case_definition, only: case_t
   use case_file, only: read_case
-  use gudgeon_columns, only: choose_columns
-  use gudgeon_recorder, only: recorder_t
+  use trace_columns, only: choose_columns
+  use run_recorder, only: recorder_t
   use collecting_sink, only: collecting_sink_t
   use trace_sink, only: trace_event_t
   implicit none

@@ -2,12 +2,12 @@
 !> results; rejected steps change nothing; the interpolant is as accurate as the steps. (The whole battery:
 !> scripts/compare_adams.sh.)
 module test_standard_problems
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use ode_method, only: step_done, limit_stability
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use adams, only: adams_t
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
+  use ode_solver, only: integrate, silent_observer_t, integration_done
   use standard_problems, only: standard_problem_t, new_standard_problem, standard_settings, number_of
   implicit none
   private

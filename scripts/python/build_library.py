@@ -68,7 +68,7 @@ def build_program(folder: Path) -> Path:
     program, objects = folder / "gudgeon", found_objects(folder)
     if program.is_file() and all(os.path.getmtime(path) < program.stat().st_mtime for path in objects):
         return program
-    modules = str(Path(next((folder / "build").rglob("gudgeon_version.mod"))).parent)
+    modules = str(Path(next((folder / "build").rglob("version_number.mod"))).parent)
     needed = [path for path in objects if "_api_" not in Path(path).name]
     run(["gfortran", *COMPILE.split(), f"-I{modules}", str(sources() / "main.f90"), *needed, "-o", f"{program}.part"], folder)
     os.replace(f"{program}.part", program)

@@ -80,7 +80,7 @@ int cvode_run(run_t *run, int method, double relative, const double *absolute, d
     run->sizes(run->handle, sizes);
     int index = 0;
     while (index < sizes[2] - 1 && found[index] == 0) index++;
-    ends = take_event(run, index + 1, t, state, instants);
+    ends = accept_event(run, index + 1, t, state, instants);
     if ((status = CVodeReInit(cvode, t, y)) < 0) break;
     CVodeSetStopTime(cvode, t_end);
     status = watch_events(cvode, run);

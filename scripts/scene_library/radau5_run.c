@@ -140,7 +140,7 @@ int radau5_run(run_t *scene, int method, double relative, const double *absolute
     if (outcome < 0 || event == 0) break;
     t = t_event;
     memcpy(y, y_event, (size_t)n * sizeof *y);
-    ends = take_event(run, event, t, y, instants);
+    ends = accept_event(run, event, t, y, instants);
   }
   run->seconds = processor_time() - before;
   return outcome < 0 ? outcome : ends;

@@ -6,13 +6,13 @@
 module scene_library
   use, intrinsic :: iso_c_binding, only: c_ptr, c_loc, c_f_pointer, c_int, c_double, c_char, c_null_char, c_null_ptr
   use, intrinsic :: iso_fortran_env, only: int64
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use ode_problem, only: event_stop
   use ode_method, only: ode_method_t, ode_settings_t, step_statistics_t
-  use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, silent_observer_t
-  use gudgeon_scene, only: scene_t, event_none
+  use ode_methods, only: new_method
+  use ode_solver, only: integrate, silent_observer_t
+  use scene_problem, only: scene_t, event_none
   use case_definition, only: case_t
   use case_file, only: read_case
   use scene_builder, only: build_scene, settings_for, simulated_time
@@ -110,11 +110,11 @@ contains
     real(c_double), intent(in) :: y(*)
     real(c_double), intent(out) :: f(*)
     type(handle_t), pointer :: self
-    logical :: inside
+    logical :: in_domain
     call c_f_pointer(handle, self)
-    call self%scene%derivatives(t, y, self%f, inside)
+    call self%scene%derivatives(t, y, self%f, in_domain)
     f(:self%n) = self%f(:self%n)
-    scene_rates = merge(0_c_int, 1_c_int, inside)
+    scene_rates = merge(0_c_int, 1_c_int, in_domain)
   end function scene_rates
 
   !> The event functions and their rates; an event is a change of sign from negative to not negative.
@@ -234,7 +234,7 @@ contains
     integer, parameter :: blocks = 8, calls = 1000
     real(dp), parameter :: no_difference = 1e-200_dp   !! a rate times this is added to a state and does not change it
     type(handle_t), pointer :: self
-    logical :: inside
+    logical :: in_domain
     integer :: i, j
     integer(int64) :: before, after, rate
     call c_f_pointer(handle, self)
@@ -243,7 +243,7 @@ contains
     do i = 1, blocks
       call system_clock(before, rate)
       do j = 1, calls
-        call self%scene%derivatives(t, self%y, self%f, inside)
+        call self%scene%derivatives(t, self%y, self%f, in_domain)
         self%y = self%y + no_difference*self%f
       end do
       call system_clock(after)

@@ -23,7 +23,7 @@ typedef struct {
 } run_t;
 
 /* Handle event `index` (from 1) at (t, y) and note its time if it is a contact. Returns 1 if it ends the run. */
-static inline int take_event(run_t *run, int index, double t, double *y, double *instants) {
+static inline int accept_event(run_t *run, int index, double t, double *y, double *instants) {
   int is_contact;
   int ends = run->handle_event(run->handle, index, t, y, &is_contact);
   if (is_contact && run->n_instants < run->most_instants) instants[run->n_instants++] = t;

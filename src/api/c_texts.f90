@@ -1,7 +1,7 @@
 !> Texts to and from C. The base of all handles keeps the last message.
 module c_texts
   use, intrinsic :: iso_c_binding, only: c_ptr, c_char, c_size_t, c_null_char, c_associated, c_f_pointer
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   implicit none
   private
   public :: handle_t, get_text, get_bytes, put_text

@@ -1,8 +1,8 @@
 !> A case that another program holds and changes, key by key. It is completed and checked when a run or its text is asked for.
 module case_handle
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: replaced, lowercase, integer_text
   use number_text, only: short_text
   use case_definition, only: case_t
@@ -14,7 +14,7 @@ module case_handle
   use accuracy_presets, only: with_preset, accuracy_levels
   use case_schema, only: is_listed
   use problem_list, only: behind_file
-  use gudgeon_columns, only: column_list_t, choose_columns
+  use trace_columns, only: column_list_t, choose_columns
   use study_case, only: study_case_t
   use c_texts, only: handle_t
   implicit none
@@ -136,7 +136,7 @@ contains
     end associate
     self%is_checked = .false.
     if (any(self%numbers == key)) then
-      if (allocated(self%varied)) call self%varied%put_number(findloc(self%numbers, key, 1), element, value)
+      if (allocated(self%varied)) call self%varied%write_number(findloc(self%numbers, key, 1), element, value)
     else
       self%numbers = [self%numbers, key]
       if (allocated(self%varied)) deallocate (self%varied)

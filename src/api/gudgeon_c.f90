@@ -3,15 +3,15 @@
 module gudgeon_c
   use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_int64_t, c_size_t, c_double, c_char, c_null_char, c_null_ptr, c_loc, &
     c_f_pointer, c_associated
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use case_schema, only: key_table_t, case_schema_of, is_listed
   use case_file, only: template
   use case_templates, only: short_template, template_kinds
-  use gudgeon_columns, only: column_list_t, column_name
-  use gudgeon_scene, only: event_contact_begins
+  use trace_columns, only: column_list_t, column_name
+  use scene_problem, only: event_contact_begins
   use trace_sink, only: joint_names
   use scene_inputs, only: inputs
-  use gudgeon_version, only: program_version
+  use version_number, only: program_version
   use case_handle, only: case_handle_t
   use run_handle, only: run_handle_t, begin_run, copy_run
   use c_texts, only: handle_t, get_text, get_bytes, put_text

@@ -1,22 +1,22 @@
 !> A run that another program advances: with its rows and events in memory, and its summary.
 module run_handle
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_integration
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_integration
   use text_tools, only: next_line
   use case_definition, only: case_t
   use joint_places, only: n_places
-  use gudgeon_columns, only: column_list_t, choose_columns
+  use trace_columns, only: column_list_t, choose_columns
   use film_files, only: provide_tables, write_film_file
   use wear_file, only: write_wear_file
   use result_file, only: write_text
   use trace_files, only: trace_files_t
-  use gudgeon_simulation, only: run_t, run_report_t
+  use simulation, only: run_t, run_report_t
   use scene_inputs, only: input_t, inputs
-  use gudgeon_summary, only: summary_table
+  use run_summary, only: summary_table
   use certificate, only: certificate_t, make_certificate
   use certificate_text, only: certificate_summary, certificate_table
-  use gudgeon_progress, only: clock
+  use run_progress, only: clock
   use row_store, only: row_store_t
   use case_handle, only: case_handle_t
   use c_texts, only: handle_t
@@ -115,12 +115,12 @@ contains
   subroutine look(self, status)
     class(run_handle_t), intent(inout) :: self
     integer, intent(out) :: status
-    logical :: inside
+    logical :: in_domain
     status = 0
     if (.not. abs(self%seen - self%run%t) > 0) return
-    call self%run%look(self%now, inside)
-    if (inside) self%seen = self%run%t
-    if (.not. inside) status = status_integration
+    call self%run%look(self%now, in_domain)
+    if (in_domain) self%seen = self%run%t
+    if (.not. in_domain) status = status_integration
   end subroutine look
 
   !> Set an input of the run.
@@ -229,7 +229,7 @@ contains
         call files%take_row(self%rows%values(:, i))
       end do
       do i = 1, self%rows%events
-        call files%take_event(self%rows%event(i))
+        call files%accept_event(self%rows%event(i))
       end do
       call files%file%conclude()
       call files%close(error)

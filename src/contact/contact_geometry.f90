@@ -1,8 +1,8 @@
 !> Interface of all contact geometries: the elastic force between pin and bearing as a function of the penetration.
 module contact_geometry
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: law_t, parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use model_parameters, only: law_t, parameter_list_t
+  use bearing_size, only: bearing_t
   use trace_row, only: trace_row_t
   implicit none
   private
@@ -28,7 +28,7 @@ module contact_geometry
     procedure :: half_angle => line_contact
     procedure :: pressure => no_pressure
     procedure :: total_pressure => only_the_force
-    procedure :: put_columns => no_columns
+    procedure :: add_columns => no_columns
     procedure, non_overridable :: material_parameters
     procedure, non_overridable :: contact_modulus
     procedure, non_overridable :: fastest_impact

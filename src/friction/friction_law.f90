@@ -1,7 +1,7 @@
 !> Interface of all dry friction laws.
 module friction_law
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: law_t, parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: law_t, parameter_list_t
   use trace_row, only: trace_row_t
   implicit none
   private
@@ -27,7 +27,7 @@ module friction_law
     procedure :: touch_down_limit => no_limit
     procedure :: state_friction => steady_friction
     procedure :: state_slopes => steady_slopes
-    procedure :: put_columns => no_columns
+    procedure :: add_columns => no_columns
     procedure, non_overridable :: add_coefficient
   end type friction_law_t
 

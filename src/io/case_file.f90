@@ -1,7 +1,7 @@
 !> Reads case files into cases, and writes cases as text. All errors have the exit status of case files and are one line: file, line
 !> or group and key, value as written, and what is allowed.
 module case_file
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: lowercase, printable, case_name, likely_word
   use text_file, only: read_text_file
   use joint_places, only: places, n_places, in_order, joint_group
@@ -80,7 +80,7 @@ contains
       call case_schema_of(values%key_table_t)
     end if
     call values%set_defaults(path)
-    call take_file(values, text)
+    call set_from_file(values, text)
     do i = 1, size(overrides)
       call accept_override(values, trim(overrides(i)), behind_file + i, error)
       if (allocated(error)) values%problems%is_structural = .true.
@@ -119,8 +119,8 @@ contains
     this%file = path
     this%name = case_name(path)
     if (this%name == '') this%name = 'case'
-    if (.not. (values%problems%is_structural .or. values%problems%blames('mechanism') .or. values%problems%blames('initial') .or. &
-               any([(values%problems%blames(joint_group(i)), i=1, n_places)]))) then
+    if (.not. (values%problems%is_structural .or. values%problems%concerns('mechanism') .or. values%problems%concerns('initial') .or. &
+               any([(values%problems%concerns(joint_group(i)), i=1, n_places)]))) then
       call values%problems%settle()
       call load_case(values, this)
       call check_rules(this, values)
@@ -138,7 +138,7 @@ contains
   end function template
 
   !> Put the groups and keys of a file's text into the values.
-  subroutine take_file(values, text)
+  subroutine set_from_file(values, text)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: text
     type(namelist_t) :: list
@@ -173,7 +173,7 @@ contains
     end do
     if (allocated(syntax)) values%problems%is_structural = .true.
     call values%problems%add_error(syntax, '', behind_file)
-  end subroutine take_file
+  end subroutine set_from_file
 
   !> Begin a group of the file. Error: an unknown group, or one that has begun before.
   subroutine begin_group(values, name, line, at, is_known, error)
@@ -269,7 +269,7 @@ contains
           ' alone is given: the group '//group(dot + 1:)//' is for all pins, and --set '//group(dot + 1:)// &
           '=none removes it from all', status_case_file)
       else
-        call values%take_out(group, at, error)
+        call values%remove_group(group, at, error)
       end if
       return
     else if (dot == 0) then

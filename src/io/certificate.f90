@@ -8,15 +8,15 @@
 !> After that time means over whole revolutions are compared. Results of the whole run, such as largest forces, are compared
 !> independently of the certified time.
 module certificate
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: two_pi
+  use error_handling, only: error_t
   use case_definition, only: case_t
-  use gudgeon_columns, only: column_list_t, choose_columns
-  use gudgeon_simulation, only: run_report_t
+  use trace_columns, only: column_list_t, choose_columns
+  use simulation, only: run_report_t
   use trace_sink, only: trace_event_t
   use film_files, only: provide_tables
-  use run_witness, only: witness_t, run, has_coarse_table, has_figures, figures_of, means_of, n_statistics, n_figures, loss_figure
+  use comparison_run, only: comparison_run_t, run, has_coarse_table, has_figures, figures_of, means_of, n_statistics, n_figures, loss_figure
   use joint_places, only: n_places, name_prefix
   implicit none
   private
@@ -70,7 +70,7 @@ contains
     type(certificate_t), intent(out) :: certificate
     type(error_t), allocatable, intent(out) :: error
     type(case_t) :: plain, close
-    type(witness_t) :: own, closer_run, other_run
+    type(comparison_run_t) :: own, closer_run, other_run
     real(dp), allocatable :: errors(:)   ! of the states in each row of the run
     integer :: n   ! number of rows that the closer run has too
     integer :: most_evaluations   ! allowed for the run with the other method

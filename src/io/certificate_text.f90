@@ -1,9 +1,9 @@
 !> Text forms of a certificate: NAME.certificate.csv, rows of the summary, and a part of the line for the user.
 module certificate_text
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use certificate, only: certificate_t, is_state
-  use run_witness, only: statistic_names, n_statistics, name_figure, n_figures, loss_figure
-  use gudgeon_columns, only: column_name
+  use comparison_run, only: statistic_names, n_statistics, name_figure, n_figures, loss_figure
+  use trace_columns, only: column_name
   use number_text, only: real_text, short_text
   use text_tools, only: integer_text, quoted
   implicit none

@@ -1,12 +1,12 @@
 !> Reference pages of the manual in Markdown, generated from the declarations of the models: the keys of case and study files, the
 !> columns and quantities of results. `gudgeon --reference` prints them.
 module reference_pages
-  use gudgeon_errors, only: error_t
-  use gudgeon_parameters, only: key_t, logical_kind
+  use error_handling, only: error_t
+  use model_parameters, only: key_t, logical_kind
   use case_schema, only: group_definition_t, key_table_t, find_key
   use case_definition, only: case_t
   use case_file, only: parse_case, template
-  use gudgeon_columns, only: choose_columns
+  use trace_columns, only: choose_columns
   use trace_row, only: column_list_t, name_length
   use text_tools, only: replaced
   use summary_quantities, only: quantity_t, quantities_of_runs, event_columns, wear_columns

@@ -1,8 +1,8 @@
 !> What the user is told about a run that has ended: the physics in one line, its cost in another one, and the notes on its results.
 module run_line
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
-  use gudgeon_simulation, only: run_report_t
+  use kinds, only: dp
+  use constants, only: two_pi
+  use simulation, only: run_report_t
   use run_figures, only: pin_figures_t
   use period_watch, only: period_watch_t
   use joint_places, only: places, n_places, in_order, name_prefix

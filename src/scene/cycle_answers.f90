@@ -3,11 +3,11 @@
 !> The cycle is the period of the motion if one was found, else that of the gas, else one revolution. It ends where the run last
 !> completed a revolution. Work is that on the bodies, so losses are negative.
 module cycle_answers
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi, degree
+  use kinds, only: dp
+  use constants, only: two_pi, degree
   use joint_places, only: name_prefix
   use load_element, only: of_contact, of_friction, of_film, of_asperities
-  use gudgeon_scene, only: scene_t, by_gas, by_drive, by_damping, by_guide, by_elastic
+  use scene_problem, only: scene_t, by_gas, by_drive, by_damping, by_guide, by_elastic
   use cycle_statistics, only: cycle_t
   use cycle_watch, only: cycle_watch_t
   use period_watch, only: period_watch_t

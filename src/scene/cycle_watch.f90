@@ -4,14 +4,14 @@
 !> Revolution k ends when the crank has turned by 2 pi k from its start, in the sense of its starting speed (from rest: of its
 !> torque). If the crank swings back, it is still in the revolution that it has reached.
 module cycle_watch
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   use ode_method, only: ode_method_t
   use joint_places, only: n_places
-  use gudgeon_scene, only: scene_t, evaluation_t, phase_contact
+  use scene_problem, only: scene_t, evaluation_t, phase_contact
   use crank_passage, only: find_passage
   use step_peaks, only: n_peaks, of_pin_force, of_penetration
-  use gudgeon_columns, only: column_list_t, row_values
+  use trace_columns, only: column_list_t, row_values
   use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt, most_parts
   use run_length, only: longest_period
   use machine_record, only: machine_record_t
@@ -51,29 +51,29 @@ module cycle_watch
     procedure :: count_from
     procedure :: find_end
     procedure :: end_cycle
-    procedure :: take_strobes
+    procedure :: record_strobes
     procedure :: lower_to_peaks
-    procedure :: take_peaks
-    procedure :: take_film
+    procedure :: record_peaks
+    procedure :: record_film
     procedure :: search_machine
     procedure :: last_cycle
-    procedure :: take_point
-    procedure :: take_impact
-    procedure :: take_skirt
+    procedure :: record_point
+    procedure :: count_impact
+    procedure :: record_skirt
     procedure :: finish
   end type cycle_watch_t
 
 contains
 
   !> Begin a run at (t, y), where the scene has been evaluated if that is inside the model.
-  subroutine begin(self, scene, t, y, now, inside, initial_energy)
+  subroutine begin(self, scene, t, y, now, in_domain, initial_energy)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(in) :: now
-    logical, intent(in) :: inside
+    logical, intent(in) :: in_domain
     real(dp), intent(in) :: initial_energy   !! [J]
-    if (inside) call self%machine%begin(scene, t, now)
+    if (in_domain) call self%machine%begin(scene, t, now)
     self%statistics = cycle_statistics_t()
     self%present = cycle_t()
     self%uncounted = self%settle
@@ -87,7 +87,7 @@ contains
     self%works = 0
     if (allocated(scene%parts)) self%works(:size(scene%parts)) = scene%works(t, y)
     self%energy = 0
-    if (inside) self%energy = scene%chain%energy(now%motion)
+    if (in_domain) self%energy = scene%chain%energy(now%motion)
     self%direction = sign(1.0_dp, scene%chain%drive%torque)
     if (abs(scene%start_speed) > 0) self%direction = sign(1.0_dp, scene%start_speed)
     self%start_angle = scene%crank_angle(t, y)
@@ -128,7 +128,7 @@ contains
   end subroutine find_end
 
   !> Sample the columns at the strobe angle, if the crank has passed it before (t_to, y_to), perhaps several times.
-  subroutine take_strobes(self, method, scene, t_to, y_to)
+  subroutine record_strobes(self, method, scene, t_to, y_to)
     class(cycle_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
@@ -140,7 +140,7 @@ contains
       t = passage(self, method, scene, next_strobe(self), t_to)
       call strobe(self, scene, t, self%y)
     end do
-  end subroutine take_strobes
+  end subroutine record_strobes
 
   !> Lower the values above which peaks are searched from those of the run to those of the present revolution, if that is counted.
   pure subroutine lower_to_peaks(self, pin, known)
@@ -155,7 +155,7 @@ contains
   end subroutine lower_to_peaks
 
   !> Account for the values of one evaluation of a film in the present revolution.
-  pure subroutine take_film(self, pin, pressure, angle, volume)
+  pure subroutine record_film(self, pin, pressure, angle, volume)
     class(cycle_watch_t), intent(inout) :: self
     integer, intent(in) :: pin
     real(dp), intent(in) :: pressure   !! largest in the film [Pa]
@@ -168,7 +168,7 @@ contains
         c%pressure_angle = angle
       end if
     end associate
-  end subroutine take_film
+  end subroutine record_film
 
   !> Search the last step, up to t, where the scene is evaluated, for the largest pressure of the gas and for the extremes of the
   !> crank speed in the present revolution.
@@ -194,7 +194,7 @@ contains
   end function last_cycle
 
   !> Account for values of the quantities with peaks, at a pin in the present revolution.
-  pure subroutine take_peaks(self, pin, is_touching, values, thinnest_angle)
+  pure subroutine record_peaks(self, pin, is_touching, values, thinnest_angle)
     class(cycle_watch_t), intent(inout) :: self
     integer, intent(in) :: pin
     logical, intent(in) :: is_touching
@@ -206,10 +206,10 @@ contains
       c%min_film_thickness = min(c%min_film_thickness, -values(of_penetration))
       if (is_touching) c%max_penetration = max(c%max_penetration, values(of_penetration))
     end associate
-  end subroutine take_peaks
+  end subroutine record_peaks
 
   !> Account for an accepted point at time t in the present revolution.
-  pure subroutine take_point(self, scene, t)
+  pure subroutine record_point(self, scene, t)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
@@ -224,22 +224,22 @@ contains
       if (any(scene%guide%touches)) self%present%pin(skirt)%contact_time = self%present%pin(skirt)%contact_time + (t - self%t)
     end if
     self%t = t
-  end subroutine take_point
+  end subroutine record_point
 
   !> Count a contact that begins at a pin or at a corner of the skirt.
-  pure subroutine take_impact(self, pin)
+  pure subroutine count_impact(self, pin)
     class(cycle_watch_t), intent(inout) :: self
     integer, intent(in) :: pin
     self%present%pin(pin)%impacts = self%present%pin(pin)%impacts + 1
-  end subroutine take_impact
+  end subroutine count_impact
 
   !> Account for the largest penetration and force of the corners of the skirt in the present revolution.
-  pure subroutine take_skirt(self, penetration, force)
+  pure subroutine record_skirt(self, penetration, force)
     class(cycle_watch_t), intent(inout) :: self
     real(dp), intent(in) :: penetration, force   !! [m], [N]
     self%present%pin(skirt)%max_penetration = penetration
     self%present%pin(skirt)%max_force = force
-  end subroutine take_skirt
+  end subroutine record_skirt
 
   !> End the run at (t, y). A revolution that is complete except for rounding is ended too.
   subroutine finish(self, scene, t, y)
@@ -247,12 +247,12 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
-    logical :: inside
+    logical :: in_domain
     real(dp) :: travel
     travel = travel_at(self, scene, t, y)
     if (abs(travel - next_end(self)) <= rounding*(1 + self%ended)) then
       self%y = y
-      call scene%evaluate(t, y, now, inside)
+      call scene%evaluate(t, y, now, in_domain)
       call self%end_cycle(scene, t, now)
     end if
     if (.not. self%has_strobe) return
@@ -303,7 +303,7 @@ contains
     energy = scene%chain%energy(now%motion)
     works = 0
     if (allocated(scene%parts)) works(:size(scene%parts)) = scene%works(t, self%y)
-    call self%take_point(scene, t)
+    call self%record_point(scene, t)
     self%present%duration = t - self%cycle_start
     self%present%pin(:n_places)%force_integral = force_integral - self%force_integral
     self%present%dissipated_energy = loss - self%loss
@@ -335,14 +335,14 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
-    logical :: inside
+    logical :: in_domain
     self%passed = self%passed + 1
     if (self%passed <= self%uncounted) return
     if (self%most_strobes > 0 .and. self%strobes >= self%most_strobes) return
     self%strobes = self%strobes + 1
     if (self%strobes > size(self%strobe_values, 2)) self%strobe_values = reshape(self%strobe_values, &
       [size(self%strobe_values, 1), 2*self%strobes], pad=[0.0_dp])   ! more room
-    call scene%evaluate(t, y, now, inside)
+    call scene%evaluate(t, y, now, in_domain)
     call row_values(self%strobe_list, scene, t, now, scene%work(y), self%initial_energy, self%strobe_values(:, self%strobes))
   end subroutine strobe
 end module cycle_watch

@@ -8,10 +8,10 @@
 !> approaches its limit slowly would be accepted too early. Differences below a hundredth of the tolerance are not tested for this,
 !> since they are errors of the integration. Periods are multiples of the period of the gas.
 module period_watch
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   use ode_method, only: ode_method_t
-  use gudgeon_scene, only: scene_t
+  use scene_problem, only: scene_t
   use crank_passage, only: find_passage
   use run_length, only: longest_period
   implicit none
@@ -52,7 +52,7 @@ module period_watch
     real(dp), private :: times(0:depth - 1) = 0
   contains
     procedure :: begin
-    procedure :: take_point
+    procedure :: record_point
     procedure :: follow
     procedure :: change
   end type period_watch_t
@@ -84,7 +84,7 @@ contains
   end subroutine begin
 
   !> Account for an accepted point of the present revolution.
-  pure subroutine take_point(self, y, crank_angle)
+  pure subroutine record_point(self, y, crank_angle)
     class(period_watch_t), intent(inout) :: self
     real(dp), intent(in) :: y(:)
     real(dp), intent(in) :: crank_angle   !! [rad]
@@ -96,7 +96,7 @@ contains
       self%low(i, place) = min(self%low(i, place), value)
       self%high(i, place) = max(self%high(i, place), value)
     end do
-  end subroutine take_point
+  end subroutine record_point
 
   !> End the revolutions that are complete before t_to, up to which the solution is final, inside the last step. Decide whether the
   !> run is to end (`has_ended`), or the window of the output to begin (`window_start`).

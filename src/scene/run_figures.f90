@@ -1,6 +1,6 @@
 !> The results of a run that are single numbers, most of them for its summary.
 module run_figures
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use run_state, only: run_state_t
   use joint_places, only: n_places
   use piston_guide, only: n_corners

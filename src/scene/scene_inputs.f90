@@ -2,8 +2,8 @@
 !> crank whose speed is prescribed, and a pressure that is set from outside. A crank that is prescribed through an elastic shaft has
 !> no input.
 module scene_inputs
-  use gudgeon_kinds, only: dp
-  use gudgeon_scene, only: scene_t
+  use kinds, only: dp
+  use scene_problem, only: scene_t
   implicit none
   private
   public :: input_t, inputs, inputs_of, input_value, change_input

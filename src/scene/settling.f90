@@ -1,7 +1,7 @@
 !> Whether the film of a joint has settled: its smallest thickness in each cycle against that in the cycle before.
 module settling
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   implicit none
   private
   public :: settling_t
@@ -13,14 +13,14 @@ module settling
     real(dp), private :: start = huge(1.0_dp)   !! crank travel at the first point [rad]
     real(dp), private :: least(0:2) = huge(1.0_dp)   !! in the present cycle, in the last one and in the one before that
   contains
-    procedure :: take
+    procedure :: record
     procedure :: change
   end type settling_t
 
 contains
 
   !> Account for an accepted point.
-  pure subroutine take(self, crank_travel, thickness)
+  pure subroutine record(self, crank_travel, thickness)
     class(settling_t), intent(inout) :: self
     real(dp), intent(in) :: crank_travel   !! crank angle turned through, signed [rad]
     real(dp), intent(in) :: thickness      !! [m]
@@ -30,7 +30,7 @@ contains
       self%least = [huge(1.0_dp), self%least(:1)]
     end if
     self%least(0) = min(self%least(0), thickness)
-  end subroutine take
+  end subroutine record
 
   !> Change of the smallest thickness from the last cycle but one to the last, relative to the former [-]; 0 before the end of the
   !> third cycle, since the first one begins anywhere, and where the surfaces touch.

@@ -1,10 +1,10 @@
 !> The base case of a study with the values of one run. Everything is read and checked once; a run only converts its own values.
 module study_case
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_case_file
   use number_text, only: short_text
   use case_definition, only: case_t
-  use gudgeon_parameters, only: integer_kind, word_kind
+  use model_parameters, only: integer_kind, word_kind
   use case_schema, only: find_group
   use case_values, only: case_values_t
   use case_file, only: complete_case
@@ -28,8 +28,8 @@ module study_case
     logical, private :: varies_words = .false.       !! a parameter is a word, which may name a law with keys of its own
   contains
     procedure :: prepare
-    procedure :: put
-    procedure :: put_number
+    procedure :: set_values
+    procedure :: write_number
     procedure :: load
     procedure :: convert
     procedure :: check
@@ -83,7 +83,7 @@ contains
   end subroutine prepare
 
   !> Set the values of a run, without checking ranges. Error: see `convert`.
-  subroutine put(self, texts, error)
+  subroutine set_values(self, texts, error)
     class(study_case_t), intent(inout) :: self
     character(len=*), intent(in) :: texts(:)
     type(error_t), allocatable, intent(out) :: error
@@ -94,10 +94,10 @@ contains
       if (allocated(error)) return
     end do
     call self%load()
-  end subroutine put
+  end subroutine set_values
 
   !> Set a number of parameter i; `load` puts the numbers set since the last call into the case.
-  pure subroutine put_number(self, i, element, number)
+  pure subroutine write_number(self, i, element, number)
     class(study_case_t), intent(inout) :: self
     integer, intent(in) :: i, element   !! element: of an array, from 1 on
     real(dp), intent(in) :: number      !! whole where the key is
@@ -107,7 +107,7 @@ contains
       value%given(element) = .true.
       value%written(element) = short_text(number)
     end associate
-  end subroutine put_number
+  end subroutine write_number
 
   !> Put the values into the case.
   subroutine load(self)
@@ -116,7 +116,7 @@ contains
     call load_case(self%values, self%case, self%groups)
   end subroutine load
 
-  !> Convert the value of parameter i, which `put` sets in the case. Error: a text that is not a value of its key; the message does
+  !> Convert the value of parameter i, which `set_values` sets in the case. Error: a text that is not a value of its key; the message does
   !> not name the key.
   subroutine convert(self, i, text, error)
     class(study_case_t), intent(inout) :: self

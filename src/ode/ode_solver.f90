@@ -1,10 +1,10 @@
 !> Integrates from one time to another with events: take a step, search it for events, report it to the observer, handle the event,
 !> restart. An integration can pause at any time without an influence on its steps.
-module gudgeon_solver
-  use gudgeon_kinds, only: dp
+module ode_solver
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t, event_stop, max_events
   use ode_method, only: ode_method_t, step_done
-  use gudgeon_events, only: event_watch_t
+  use event_search, only: event_watch_t
   implicit none
   private
   public :: integrate, integration_t, observer_t, silent_observer_t
@@ -21,13 +21,13 @@ module gudgeon_solver
 
   integer, parameter :: most_events_in_place = 100    !! number of events within the chatter time that count as chatter
 
-  !> An observer of accepted steps and events. During `step_taken` it may call the interpolant of the method.
+  !> An observer of accepted steps and events. During `step_accepted` it may call the interpolant of the method.
   type, abstract :: observer_t
     logical :: wants_to_stop = .false.
   contains
     procedure :: event_handled => change_nothing
-    procedure(step_taken), deferred :: step_taken
-    procedure(event_taken), deferred :: event_taken
+    procedure(step_accepted), deferred :: step_accepted
+    procedure(event_accepted), deferred :: event_accepted
   end type observer_t
 
   !> An integration under way: everything besides problem, method and observer. The part of the last step up to the next event is
@@ -58,28 +58,28 @@ module gudgeon_solver
   !> An observer that ignores everything.
   type, extends(observer_t) :: silent_observer_t
   contains
-    procedure :: step_taken => ignore_step
-    procedure :: event_taken => ignore_event
+    procedure :: step_accepted => ignore_step
+    procedure :: event_accepted => ignore_event
   end type silent_observer_t
 
   abstract interface
     !> Report that the solution is final from method%t_old to t_to (method%t, or less if an event or the end cuts the step).
-    subroutine step_taken(self, method, problem, t_to)
+    subroutine step_accepted(self, method, problem, t_to)
       import :: observer_t, ode_method_t, ode_problem_t, dp
       class(observer_t), intent(inout) :: self
       class(ode_method_t), intent(inout) :: method
       class(ode_problem_t), intent(in) :: problem
       real(dp), intent(in) :: t_to
-    end subroutine step_taken
+    end subroutine step_accepted
 
     !> Report event `index` at (t, y), before the discrete state of the problem is changed.
-    subroutine event_taken(self, problem, index, t, y)
+    subroutine event_accepted(self, problem, index, t, y)
       import :: observer_t, ode_problem_t, dp
       class(observer_t), intent(inout) :: self
       class(ode_problem_t), intent(in) :: problem
       integer, intent(in) :: index
       real(dp), intent(in) :: t, y(:)
-    end subroutine event_taken
+    end subroutine event_accepted
   end interface
 
 contains
@@ -147,7 +147,7 @@ contains
       if (self%t > pause) exit
       self%is_kept = .false.
       call method%count_time(self%t)
-      call observer%step_taken(method, problem, self%t)
+      call observer%step_accepted(method, problem, self%t)
       if (self%event == 0) then
         self%is_over = method%t >= self%t_end
       else
@@ -165,7 +165,7 @@ contains
     class(ode_method_t), intent(inout) :: method
     class(observer_t), intent(in) :: observer
     logical :: landed
-    method%rough_time = problem%rough_time(method%t, method%y)
+    method%next_kink_time = problem%next_kink_time(method%t, method%y)
     call method%step(problem, self%status)
     self%is_over = self%status /= step_done
     if (self%is_over) return
@@ -195,7 +195,7 @@ contains
     class(observer_t), intent(inout) :: observer
     real(dp) :: chatter_time, g(max_events), rate(max_events)
     integer :: action
-    call observer%event_taken(problem, self%event, self%t, self%y)
+    call observer%event_accepted(problem, self%event, self%t, self%y)
     call problem%events(self%t, self%y, g, rate)
     self%falls = rate(self%event) < 0
     call problem%handle_event(self%event, self%t, self%y, action)
@@ -235,7 +235,7 @@ contains
     self%event = 0
     self%is_kept = .false.
     call method%count_time(t)
-    call observer%step_taken(method, problem, t)
+    call observer%step_accepted(method, problem, t)
     call look_around(self, method, observer)
   end subroutine cut
 
@@ -342,12 +342,12 @@ contains
     class(ode_method_t), intent(inout) :: method
     real(dp), intent(in) :: t, y(:)
     real(dp) :: f(problem%n)
-    logical :: inside
+    logical :: in_domain
     hardly_moves = method%difference(y, method%y_old) <= 1
     if (.not. hardly_moves) return
     method%statistics%evaluations = method%statistics%evaluations + 1
-    call problem%derivatives(method%t_old, method%y_old, f, inside)
-    hardly_moves = inside .and. method%difference(method%y_old + (t - method%t_old)*f, method%y_old) <= 1
+    call problem%derivatives(method%t_old, method%y_old, f, in_domain)
+    hardly_moves = in_domain .and. method%difference(method%y_old + (t - method%t_old)*f, method%y_old) <= 1
   end function hardly_moves
 
   subroutine ignore_step(self, method, problem, t_to)
@@ -378,4 +378,4 @@ contains
     associate (unused_self => self, unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
     end associate
   end subroutine ignore_event
-end module gudgeon_solver
+end module ode_solver

@@ -1,22 +1,22 @@
 !> A run in memory, for comparison with other runs of the same case: its rows, impacts, revolutions and results.
-module run_witness
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_integration
+module comparison_run
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_integration
   use joint_places, only: n_places, in_order, name_prefix
   use joint_case, only: joint_case_t
   use case_definition, only: case_t
   use cycle_statistics, only: cycle_t
   use cycle_watch, only: cycle_watch_t
-  use gudgeon_columns, only: column_list_t
-  use gudgeon_scene, only: event_contact_begins
-  use gudgeon_simulation, only: run_t, run_report_t
-  use patient_run, only: go_to_end
+  use trace_columns, only: column_list_t
+  use scene_problem, only: event_contact_begins
+  use simulation, only: run_t, run_report_t
+  use whole_run, only: go_to_end
   use row_store, only: row_store_t
   use run_figures, only: run_figures_t
   use trace_sink, only: trace_event_t
   implicit none
   private
-  public :: witness_t, run, has_coarse_table, means_of, has_figures, figures_of, name_figure, n_statistics, &
+  public :: comparison_run_t, run, has_coarse_table, means_of, has_figures, figures_of, name_figure, n_statistics, &
     statistic_names, n_figures, loss_figure
 
   integer, parameter :: n_statistics = 4
@@ -30,24 +30,24 @@ module run_witness
   character(len=*), parameter :: of_wear(2) = [character(len=16) :: 'worn_volume_pin', 'worn_volume_bore']
 
   !> One run.
-  type :: witness_t
+  type :: comparison_run_t
     real(dp), allocatable :: values(:, :)              !! (columns, rows)
     type(trace_event_t), allocatable :: impact(:)      !! contacts that begin
     type(cycle_watch_t), allocatable :: cycles
     type(run_figures_t) :: figures
     real(dp) :: worn(2, n_places) = 0                  !! volumes of pin and bore, by place [m^3]
     logical :: is_done = .false.
-  end type witness_t
+  end type comparison_run_t
 
 contains
 
   !> Run a case, whose films have their tables, in memory. `is_done` is false if it does not reach its end, or needs more than
   !> `most_evaluations` (0: no limit).
-  subroutine run(case, list, most_evaluations, witness, error)
+  subroutine run(case, list, most_evaluations, comparison, error)
     type(case_t), intent(in) :: case
     type(column_list_t), intent(in) :: list
     integer, intent(in) :: most_evaluations
-    type(witness_t), intent(out) :: witness
+    type(comparison_run_t), intent(out) :: comparison
     type(error_t), allocatable, intent(out) :: error   !! the user interrupted
     type(error_t), allocatable :: failure
     type(run_t) :: own
@@ -61,24 +61,24 @@ contains
     limited%output%answers = .false.
     if (most_evaluations > 0) limited%integrator%max_evaluations = min(limited%integrator%max_evaluations, most_evaluations)
     if (case%has_play()) then   ! without clearance the integrals of the joint would change the steps
-      allocate (witness%cycles)
-      witness%cycles%keeps_cycles = .true.
+      allocate (comparison%cycles)
+      comparison%cycles%keeps_cycles = .true.
     end if
-    call own%begin(limited, .false., list, sink, failure, witness%cycles)
+    call own%begin(limited, .false., list, sink, failure, comparison%cycles)
     if (.not. allocated(failure)) then
       call go_to_end(own, was_interrupted)
       if (was_interrupted) call fail(error, 'interrupted before it was certified', status_integration)
-      call own%finish(report, failure, witness%cycles)
+      call own%finish(report, failure, comparison%cycles)
     end if
-    witness%is_done = .not. allocated(failure)
-    witness%figures = report%figures
+    comparison%is_done = .not. allocated(failure)
+    comparison%figures = report%figures
     if (allocated(report%wear)) then
       do i = 1, size(report%wear)
-        witness%worn(:, report%wear(i)%place) = sum(report%wear(i)%volume, 1)
+        comparison%worn(:, report%wear(i)%place) = sum(report%wear(i)%volume, 1)
       end do
     end if
-    call sink%hand_over(size(list%id), witness%values, event)
-    witness%impact = pack(event, event%kind == event_contact_begins)
+    call sink%hand_over(size(list%id), comparison%values, event)
+    comparison%impact = pack(event, event%kind == event_contact_begins)
   end subroutine run
 
   !> Whether a tighter tolerance would give a finer table of a film of the case.
@@ -127,31 +127,31 @@ contains
   end subroutine name_figure
 
   !> Results of a run; 0 for results that it does not have.
-  pure function figures_of(witness) result(values)
-    type(witness_t), intent(in) :: witness
+  pure function figures_of(comparison) result(values)
+    type(comparison_run_t), intent(in) :: comparison
     real(dp) :: values(n_figures)
     integer :: i
     values = 0
-    if (.not. witness%figures%time > 0) return
-    associate (f => witness%figures)
+    if (.not. comparison%figures%time > 0) return
+    associate (f => comparison%figures)
       do i = 1, n_places
         associate (pin => f%pin(in_order(i)))
           values(3*i - 2:3*i) = [pin%max_force, pin%contact_time/f%time, pin%min_film_thickness]
         end associate
-        values(speed_figure + 2*i - 1:speed_figure + 2*i) = witness%worn(:, in_order(i))
+        values(speed_figure + 2*i - 1:speed_figure + 2*i) = comparison%worn(:, in_order(i))
       end do
       values(speed_figure) = f%crank_travel/f%time
     end associate
-    if (.not. allocated(witness%cycles)) return
-    associate (s => witness%cycles%statistics)
+    if (.not. allocated(comparison%cycles)) return
+    associate (s => comparison%cycles%statistics)
       if (s%cycles > 0) values(loss_figure) = s%total%dissipated_energy/s%cycles
     end associate
   end function figures_of
 
   !> The results that a run of a case has, but that of whole revolutions.
-  pure function has_figures(case, witness) result(has)
+  pure function has_figures(case, comparison) result(has)
     type(case_t), intent(in) :: case
-    type(witness_t), intent(in) :: witness
+    type(comparison_run_t), intent(in) :: comparison
     logical :: has(n_figures)
     integer :: i
     has = .false.
@@ -163,7 +163,7 @@ contains
       end associate
     end do
     has(1) = .true.
-    has(speed_figure) = witness%figures%time > 0
+    has(speed_figure) = comparison%figures%time > 0
   end function has_figures
 
   !> Statistics of some revolutions, of all pins; the force is that of the first one.
@@ -181,4 +181,4 @@ contains
     means = [sum(cycles%pin(in_order(1))%force_integral/duration), sum(contact_time/duration), sum(impacts/size(cycles)), &
       sum(cycles%dissipated_energy/size(cycles))]
   end function means_of
-end module run_witness
+end module comparison_run

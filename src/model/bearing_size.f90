@@ -1,6 +1,6 @@
 !> The geometry of the journal bearing of a joint with clearance, for contact, friction and film laws.
-module gudgeon_bearing
-  use gudgeon_kinds, only: dp
+module bearing_size
+  use kinds, only: dp
   implicit none
   private
   public :: bearing_t, crossing_speed
@@ -27,4 +27,4 @@ contains
     real(dp), intent(in) :: clearance, span   !! [m], [s]
     crossing_speed = min(clearance/span, 1.0_dp)
   end function crossing_speed
-end module gudgeon_bearing
+end module bearing_size

@@ -1,10 +1,10 @@
 !> The summary of a run: NAME.summary.csv.
-module gudgeon_summary
+module run_summary
   use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
-  use gudgeon_simulation, only: run_report_t
+  use simulation, only: run_report_t
   use cycle_answers, only: answer_t
   use run_figures, only: pin_figures_t, elastic_figures_t
   use piston_guide, only: n_corners, corner_names
@@ -16,7 +16,7 @@ module gudgeon_summary
   use result_notes, only: notes_on_results, relative_residual, energy_warning, no_exponent
   use number_text, only: real_text
   use text_tools, only: integer_text, quoted, next_line
-  use gudgeon_version, only: program_version
+  use version_number, only: program_version
   implicit none
   private
   public :: summary_table, summary_value, build_advice
@@ -296,9 +296,9 @@ contains
     character(len=*), intent(in) :: flags   !! compiler options, separated by blanks
     real(dp), intent(in) :: seconds         !! time taken by the cases [s]
     character(len=:), allocatable :: text
-    real(dp), parameter :: patience = 2
+    real(dp), parameter :: long_run = 2
     text = ''
-    if (seconds > patience .and. index(' '//flags, ' -O2') + index(' '//flags, ' -O3') + index(' '//flags, ' -Ofast') == 0) &
+    if (seconds > long_run .and. index(' '//flags, ' -O2') + index(' '//flags, ' -O3') + index(' '//flags, ' -Ofast') == 0) &
       text = 'this is a build for debugging, several times slower than the fast program: scripts/install.sh installs that'
   end function build_advice
-end module gudgeon_summary
+end module run_summary

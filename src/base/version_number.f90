@@ -1,8 +1,8 @@
 !> The version of the program.
-module gudgeon_version
+module version_number
   implicit none
   private
   public :: program_version
 
   character(len=*), parameter :: program_version = '0.1.0'   !! as in fpm.toml
-end module gudgeon_version
+end module version_number

@@ -1,13 +1,13 @@
 !> A scene: the chain of crank, rod and piston with the joints and the gas of a case, as a system of differential equations.
-module gudgeon_scene
-  use gudgeon_kinds, only: dp
+module scene_problem
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t, max_events
   use state_layout, only: layout_t, coordinates_t, slice_t
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
   use joint_places, only: places, n_places, in_order
   use chain_loads, only: loads_t, force_size
-  use gudgeon_chain, only: chain_t
+  use mechanism_chain, only: chain_t
   use crank_rod, only: accelerate_crank_rod
   use ideal_chain, only: accelerate_ideal_chain
   use joint_evaluation, only: joint_evaluation_t, clear_loads
@@ -96,7 +96,7 @@ module gudgeon_scene
   contains
     procedure :: claim
     procedure, non_overridable :: read_crank
-    procedure, non_overridable :: place_journals
+    procedure, non_overridable :: place_pins
     procedure, non_overridable :: find_loads
     procedure :: derivatives
     procedure :: evaluate
@@ -104,20 +104,20 @@ module gudgeon_scene
     procedure :: initial_state
     procedure :: prepare_start
     procedure :: declare
-    procedure :: take_up
+    procedure :: complete_state
     procedure :: events => all_events
     procedure :: handle_event
     procedure :: reported_event
     procedure :: judge_step
     procedure :: lands_on_step_end
-    procedure :: rough_time
+    procedure :: next_kink_time
     procedure :: is_singular
     procedure :: crank_angle
     procedure :: crank_speed
     procedure :: work
     procedure :: work_of_torque
     procedure :: measure_joint
-    procedure, non_overridable :: take_layout
+    procedure, non_overridable :: set_layout
     procedure :: measure_works
     procedure :: works
     procedure :: pin_force
@@ -173,18 +173,18 @@ module gudgeon_scene
     end function lands_on_step_end
 
     !> Predicted end of a contact.
-    pure real(dp) module function rough_time(self, t, y)
+    pure real(dp) module function next_kink_time(self, t, y)
       class(scene_t), intent(in) :: self
       real(dp), intent(in) :: t, y(:)
-    end function rough_time
+    end function next_kink_time
 
-    !> Find the discrete state at t = 0 after everything else has been set. A journal beyond the clearance is in contact. A journal
+    !> Find the discrete state at t = 0 after everything else has been set. A pin beyond the clearance is in contact. A pin
     !> exactly at the wall is in contact if it moves outwards or, at rest, is pressed outwards.
     module subroutine prepare_start(self)
       class(scene_t), intent(inout) :: self
     end subroutine prepare_start
 
-    !> Declare the state at (t, y) to a list that records it, or set it from a list; then call `take_up`.
+    !> Declare the state at (t, y) to a list that records it, or set it from a list; then call `complete_state`.
     module subroutine declare(self, list, t, y)
       class(scene_t), intent(inout) :: self
       type(run_state_t), intent(inout) :: list
@@ -192,28 +192,28 @@ module gudgeon_scene
     end subroutine declare
 
     !> Find the part of the discrete state that follows from a state that has been set.
-    module subroutine take_up(self, t, y)
+    module subroutine complete_state(self, t, y)
       class(scene_t), intent(inout) :: self
       real(dp), intent(in) :: t, y(:)
-    end subroutine take_up
+    end subroutine complete_state
 
     !> `find_accelerations` of a scene that is not plain: with elastic members, a guide that is not ideal or a drive that varies.
-    pure module subroutine find_general_accelerations(self, joints, t, y, now, inside)
+    pure module subroutine find_general_accelerations(self, joints, t, y, now, in_domain)
       class(scene_t), intent(in) :: self
       type(clearance_joint_t), intent(in) :: joints(:)
       real(dp), intent(in) :: t, y(self%n)
       type(evaluation_t), intent(inout) :: now
-      logical, intent(out) :: inside
+      logical, intent(out) :: in_domain
     end subroutine find_general_accelerations
 
-    !> Set the motion of the bodies and of the journals in their bearings, as far as it follows from the state. `inside` is false if
+    !> Set the motion of the bodies and of the pins in their bearings, as far as it follows from the state. `in_domain` is false if
     !> it is not admissible.
-    pure module subroutine move_bodies(self, joints, t, y, now, inside)
+    pure module subroutine move_bodies(self, joints, t, y, now, in_domain)
       class(scene_t), intent(in) :: self
       type(clearance_joint_t), intent(in) :: joints(:)
       real(dp), intent(in) :: t, y(self%n)
       type(evaluation_t), intent(inout) :: now
-      logical, intent(out) :: inside
+      logical, intent(out) :: in_domain
     end subroutine move_bodies
 
     !> Claim the states of the elastic members.
@@ -228,12 +228,12 @@ module gudgeon_scene
     end subroutine measure_works
 
     !> Rates of the quadratures of the parts of the work.
-    pure module subroutine put_work_rates(self, y, now, dydt)
+    pure module subroutine set_work_rates(self, y, now, dydt)
       class(scene_t), intent(in) :: self
       real(dp), intent(in) :: y(self%n)
       type(evaluation_t), intent(in) :: now
       real(dp), intent(inout) :: dydt(*)
-    end subroutine put_work_rates
+    end subroutine set_work_rates
 
     !> Work of each part on the bodies since t = 0 [J], in a scene that tells them apart.
     pure module function works(self, t, y)
@@ -251,11 +251,11 @@ module gudgeon_scene
 
 contains
 
-  pure subroutine derivatives(self, t, y, dydt, inside)
+  pure subroutine derivatives(self, t, y, dydt, in_domain)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     type(evaluation_t) :: now
     integer :: i
     if (self%has_shared_loads) then
@@ -263,22 +263,22 @@ contains
         call clear_loads(now%joint(i))
       end do
     end if
-    call find_accelerations(self, self%n_joints, self%joints, t, y, now, inside)
-    if (.not. inside) return
+    call find_accelerations(self, self%n_joints, self%joints, t, y, now, in_domain)
+    if (.not. in_domain) return
     if (self%crank_moves) then
       dydt(self%crank%position) = now%motion%crank_speed
       dydt(self%crank%rate) = now%accelerations%crank
     end if
-    call put_rates(self%n_joints, self%joints, now, dydt)
+    call set_rates(self%n_joints, self%joints, now, dydt)
     dydt(self%work_at) = now%power
     if (.not. self%has_more_rates) return
-    if (allocated(self%guide)) call self%guide%put_rates(now%motion%tilting, now%accelerations%offset, now%accelerations%tilt, &
+    if (allocated(self%guide)) call self%guide%set_rates(now%motion%tilting, now%accelerations%offset, now%accelerations%tilt, &
       dydt)
-    if (allocated(self%chain%elastic)) call self%chain%elastic%put_rates(now%motion, now%accelerations, dydt)
+    if (allocated(self%chain%elastic)) call self%chain%elastic%set_rates(now%motion, now%accelerations, dydt)
     do i = 1, self%n_joints
-      if (self%joints(i)%has_own_rates) call self%joints(i)%put_own_rates(now%joint(i), dydt)
+      if (self%joints(i)%has_own_rates) call self%joints(i)%set_own_rates(now%joint(i), dydt)
     end do
-    if (allocated(self%parts)) call put_work_rates(self, y, now, dydt)
+    if (allocated(self%parts)) call set_work_rates(self, y, now, dydt)
     if (self%measures%last < self%measures%first) return
     if (self%measures_loss) dydt(self%measures%last) = -sum(now%joint(:self%n_joints)%power)
     do i = 1, size(self%reported)
@@ -287,7 +287,7 @@ contains
   end subroutine derivatives
 
   !> Rates of the states of the joints.
-  pure subroutine put_rates(n, joints, now, dydt)
+  pure subroutine set_rates(n, joints, now, dydt)
     integer, intent(in) :: n
     type(clearance_joint_t), intent(in) :: joints(n)
     type(evaluation_t), intent(in) :: now
@@ -301,15 +301,15 @@ contains
         dydt(at%rate + 1) = joints(i)%site%sense*now%accelerations%pin(2, pin)
       end associate
     end do
-  end subroutine put_rates
+  end subroutine set_rates
 
-  !> Evaluate all quantities at (t, y). `inside` is false if a model is not defined there; then only the crank angle and the motion
+  !> Evaluate all quantities at (t, y). `in_domain` is false if a model is not defined there; then only the crank angle and the motion
   !> of the joints are set, without sliding speeds.
-  pure subroutine evaluate(self, t, y, evaluation, inside)
+  pure subroutine evaluate(self, t, y, evaluation, in_domain)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     type(evaluation_t), intent(out) :: evaluation
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     integer :: i
     evaluation%cylinder_pressure = 0
     evaluation%loads%force = 0
@@ -319,34 +319,34 @@ contains
     do i = 1, self%n_joints
       call clear_loads(evaluation%joint(i))
     end do
-    call find_accelerations(self, self%n_joints, self%joints, t, y, evaluation, inside)
-    if (inside) call self%chain%move_piston(evaluation%motion)
+    call find_accelerations(self, self%n_joints, self%joints, t, y, evaluation, in_domain)
+    if (in_domain) call self%chain%move_piston(evaluation%motion)
     do i = 1, self%n_joints
-      call self%joints(i)%complete(evaluation%motion, inside, y, evaluation%joint(i))
+      call self%joints(i)%complete(evaluation%motion, in_domain, y, evaluation%joint(i))
     end do
   end subroutine evaluate
 
-  !> Compute motion, loads, accelerations and power. `inside` is false if an eccentricity is not admissible. (The joints are passed
+  !> Compute motion, loads, accelerations and power. `in_domain` is false if an eccentricity is not admissible. (The joints are passed
   !> as an argument of fixed size, which avoids looking up bounds and strides. The equations of the two most common chains are
   !> called directly, so that the compiler includes them here.)
-  pure subroutine find_accelerations(self, n, joints, t, y, now, inside)
+  pure subroutine find_accelerations(self, n, joints, t, y, now, in_domain)
     class(scene_t), intent(in) :: self
     integer, intent(in) :: n
     type(clearance_joint_t), intent(in) :: joints(n)
     real(dp), intent(in) :: t, y(self%n)
     type(evaluation_t), intent(inout) :: now
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
 
     if (.not. self%is_plain) then
-      call find_general_accelerations(self, joints, t, y, now, inside)
+      call find_general_accelerations(self, joints, t, y, now, in_domain)
       return
     end if
     call self%read_crank(t, y, now%motion)
-    call self%place_journals(n, joints, y, now, inside)
-    if (.not. inside) return
+    call self%place_pins(n, joints, y, now, in_domain)
+    if (.not. in_domain) return
     associate (bodies => self%chain%bodies, drive => self%chain%drive, motion => now%motion)
-      call follow_rod(bodies%crank%length, bodies%per_rod_length, motion, inside)
-      if (.not. inside) return
+      call follow_rod(bodies%crank%length, bodies%per_rod_length, motion, in_domain)
+      if (.not. in_domain) return
       call self%find_loads(n, joints, y, now)
       if (n == 0) then
         call accelerate_ideal_chain(bodies, drive, motion, now%loads, now%accelerations, now%crank_moment)
@@ -380,14 +380,14 @@ contains
     end if
   end subroutine read_crank
 
-  !> Set the eccentricities of the joints, also in the motion of the chain. `inside` is false if one is not admissible.
-  pure subroutine place_journals(self, n, joints, y, now, inside)
+  !> Set the eccentricities of the joints, also in the motion of the chain. `in_domain` is false if one is not admissible.
+  pure subroutine place_pins(self, n, joints, y, now, in_domain)
     class(scene_t), intent(in) :: self
     integer, intent(in) :: n
     type(clearance_joint_t), intent(in) :: joints(n)
     real(dp), intent(in) :: y(self%n)
     type(evaluation_t), intent(inout) :: now
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     real(dp) :: offset(2), offset_rate(2), shift(2), shift_rate(2)
     logical :: admitted
     integer :: i
@@ -409,8 +409,8 @@ contains
     end do
     now%motion%offset = offset
     now%motion%offset_rate = offset_rate
-    inside = admitted
-  end subroutine place_journals
+    in_domain = admitted
+  end subroutine place_pins
 
   !> The loads of joints and gas, and the power of the joints.
   pure subroutine find_loads(self, n, joints, y, now)
@@ -449,7 +449,7 @@ contains
     call claim_states(self)
     self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying))
     self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide)
-    call self%take_layout()
+    call self%set_layout()
   end subroutine claim
 
   !> Let all parts claim their states.
@@ -468,12 +468,12 @@ contains
   end subroutine claim_states
 
   !> Pass the parts of the layout that the integrator needs to it.
-  subroutine take_layout(self)
+  subroutine set_layout(self)
     class(scene_t), intent(inout) :: self
     self%n = self%layout%n()
     self%n_positions = self%layout%n_positions
     self%n_quadratures = self%layout%n_quadratures
-  end subroutine take_layout
+  end subroutine set_layout
 
   !> Request the integrals of the joints; must be called before the run. In a scene with clearance they do not influence the steps.
   !> In a scene without clearance the only one, the integral of the force, takes part in the error control, since otherwise the
@@ -492,7 +492,7 @@ contains
     end if
     call self%layout%claim_quadratures(n, scale, self%measures)
     self%has_more_rates = .true.
-    call self%take_layout()
+    call self%set_layout()
   end subroutine measure_joint
 
   !> Whether the energy taken by the joints follows from the work of all forces: no other part does work except a constant torque.
@@ -502,7 +502,7 @@ contains
       .or. allocated(self%chain%varying) .or. allocated(self%guide) .or. allocated(self%chain%elastic))
   end function work_tells
 
-  !> Force of the joint at a place on its journal [N]; at a place without joint that on the journal of its ideal pin.
+  !> Force of the joint at a place on its pin [N]; at a place without joint that on the pin of its ideal pin.
   pure function pin_force(self, now, place) result(force)
     class(scene_t), intent(in) :: self
     type(evaluation_t), intent(in) :: now
@@ -545,16 +545,16 @@ contains
     real(dp) :: y(self%n)
     integer :: i
     y = 0
-    if (allocated(self%chain%elastic)) call self%chain%elastic%put_start(y)
+    if (allocated(self%chain%elastic)) call self%chain%elastic%set_start(y)
     if (self%crank_moves) then
       y(self%crank%position) = self%start_angle
       y(self%crank%rate) = self%start_speed
       if (self%runs_up) y(self%crank%rate) = self%chain%varying%first_speed   ! on a shaft whose other end is run up
     end if
     do i = 1, self%n_joints
-      call self%joints(i)%put_start(y)
+      call self%joints(i)%set_start(y)
     end do
-    if (allocated(self%guide)) call self%guide%put_start(y)
+    if (allocated(self%guide)) call self%guide%set_start(y)
   end function initial_state
 
   !> Whether the force of a film has no bound near this state.
@@ -636,4 +636,4 @@ contains
         energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%guide%own_speed(self%span)**2
     end associate
   end function energy_scale
-end module gudgeon_scene
+end module scene_problem

@@ -1,6 +1,6 @@
 !> Mathematical constants and unit factors.
-module gudgeon_constants
-  use gudgeon_kinds, only: dp
+module constants
+  use kinds, only: dp
   implicit none
   private
   public :: pi, two_pi, degree
@@ -8,4 +8,4 @@ module gudgeon_constants
   real(dp), parameter :: pi = 3.141592653589793238462643383279502884_dp
   real(dp), parameter :: two_pi = 2*pi
   real(dp), parameter :: degree = pi/180   !! one degree in radians
-end module gudgeon_constants
+end module constants

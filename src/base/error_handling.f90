@@ -1,5 +1,5 @@
 !> Errors as values: an unallocated `error_t` means success.
-module gudgeon_errors
+module error_handling
   implicit none
   private
   public :: error_t, fail, keep_first
@@ -36,4 +36,4 @@ contains
     type(error_t), allocatable, intent(inout) :: error, kept
     if (allocated(error) .and. .not. allocated(kept)) call move_alloc(error, kept)
   end subroutine keep_first
-end module gudgeon_errors
+end module error_handling

@@ -3,8 +3,8 @@
 !> A type with parameters has one procedure that passes each of them, with its key, unit, limits, default and meaning, to a visitor.
 !> One visitor collects them for the reader, the template and the messages; another one sets them from the values of a case. A law
 !> is selected from those that its family registers, by the names of the laws.
-module gudgeon_parameters
-  use gudgeon_kinds, only: dp
+module model_parameters
+  use kinds, only: dp
   implicit none
   private
   public :: parameter_list_t, has_parameters_t, law_t, key_t
@@ -250,4 +250,4 @@ contains
     key = ''
     wanted = ''
   end subroutine no_conflict
-end module gudgeon_parameters
+end module model_parameters

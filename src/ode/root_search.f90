@@ -1,6 +1,6 @@
 !> The root of an event function on the interpolant of a step.
-module gudgeon_roots
-  use gudgeon_kinds, only: dp
+module root_search
+  use kinds, only: dp
   implicit none
   private
   public :: bracket_t, next_abscissa, narrow, abscissa_by_rates
@@ -67,4 +67,4 @@ contains
       bracket%fb = value
     end if
   end subroutine narrow
-end module gudgeon_roots
+end module root_search

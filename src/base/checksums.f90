@@ -1,11 +1,11 @@
 !> A checksum of texts: CRC-64 with the reflected polynomial of ECMA-182 (CRC-64/XZ).
-module gudgeon_checksum
+module checksums
   use, intrinsic :: iso_fortran_env, only: int64
   implicit none
   private
-  public :: checksum_t, mark_of, mark_length
+  public :: checksum_t, checksum_of, checksum_length
 
-  integer, parameter :: mark_length = 8   !! number of bytes of a checksum behind its text
+  integer, parameter :: checksum_length = 8   !! number of bytes of a checksum behind its text
 
   integer(int64), parameter :: polynomial = ior(shiftl(int(z'C96C5795', int64), 32), int(z'D7870F42', int64))
   integer(int64), parameter :: byte = 255
@@ -52,11 +52,11 @@ contains
   end function hexadecimal
 
   !> The checksum of some bytes, as bytes.
-  pure function mark_of(bytes) result(mark)
+  pure function checksum_of(bytes) result(mark)
     character(len=*), intent(in) :: bytes
-    character(len=mark_length) :: mark
+    character(len=checksum_length) :: mark
     type(checksum_t) :: sum
     call sum%add(bytes)
     mark = transfer(sum%sum, mark)
-  end function mark_of
-end module gudgeon_checksum
+  end function checksum_of
+end module checksums

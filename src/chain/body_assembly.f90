@@ -8,8 +8,8 @@
 !> By virtual work every body adds J^T M J to the mass matrix of the chain and J^T (Q - M b) to its forces, where Q are the loads on
 !> the body and the inertial loads of its motion (centripetal terms). The mass matrix is symmetric and positive definite; there are
 !> no constraints, since the coordinates are independent.
-module gudgeon_assembly
-  use gudgeon_kinds, only: dp
+module body_assembly
+  use kinds, only: dp
   use small_cholesky, only: factorise_cholesky, solve_cholesky
   implicit none
   private
@@ -104,4 +104,4 @@ contains
     accelerations(:self%n) = a
     if (holds_first) holding = dot_product(self%mass(1, :self%n), a) - self%force(1)
   end subroutine solve
-end module gudgeon_assembly
+end module body_assembly

@@ -1,6 +1,6 @@
 !> The integration methods by name.
-module gudgeon_methods
-  use gudgeon_errors, only: error_t, fail, status_case_file
+module ode_methods
+  use error_handling, only: error_t, fail, status_case_file
   use ode_method, only: ode_method_t
   use adams, only: adams_t
   use radau, only: radau_t
@@ -27,4 +27,4 @@ contains
       call fail(error, "&integrator method = '"//name//"': must be 'auto', 'adams' or 'radau'", status_case_file)
     end select
   end subroutine new_method
-end module gudgeon_methods
+end module ode_methods

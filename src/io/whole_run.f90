@@ -1,8 +1,8 @@
 !> Goes on with a run to its end, unless the user interrupts.
-module patient_run
-  use gudgeon_kinds, only: dp
-  use gudgeon_simulation, only: run_t
-  use gudgeon_posix, only: interrupted
+module whole_run
+  use kinds, only: dp
+  use simulation, only: run_t
+  use posix_files, only: interrupted
   implicit none
   private
   public :: go_to_end, steps_between_looks
@@ -21,4 +21,4 @@ contains
       if (was_interrupted) call run%stop()
     end do
   end subroutine go_to_end
-end module patient_run
+end module whole_run

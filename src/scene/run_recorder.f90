@@ -3,21 +3,21 @@
 !>
 !> Results that belong to a pin are in its `pin_record`: one for each of the scene's reported places. Peaks are
 !> searched also between accepted points, and no peak is below the largest value of a row. The energy is checked at accepted points.
-module gudgeon_recorder
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+module run_recorder
+  use kinds, only: dp
+  use constants, only: two_pi
   use ode_problem, only: ode_problem_t
   use run_state, only: run_state_t
   use ode_method, only: ode_method_t
-  use gudgeon_solver, only: observer_t
+  use ode_solver, only: observer_t
   use joint_places, only: n_places
-  use gudgeon_scene, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide, of_wear, phase_contact
-  use inside_step, only: look_inside
+  use scene_problem, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide, of_wear, phase_contact
+  use inside_step, only: evaluate_inside
   use joint_events, only: penetration_and_rate, may_lose_force, find_lost_force
-  use gudgeon_columns, only: column_list_t, row_values
+  use trace_columns, only: column_list_t, row_values
   use angle_grid, only: angle_grid_t
   use crank_passage, only: find_turning
-  use crank_turns, only: turn_patience_t
+  use crank_turns, only: turn_limit_t
   use period_watch, only: period_watch_t
   use cycle_statistics, only: skirt
   use cycle_watch, only: cycle_watch_t
@@ -40,7 +40,7 @@ module gudgeon_recorder
     type(cycle_watch_t), allocatable :: cycles   !! results of each revolution, if they are requested
     type(period_watch_t) :: periods   !! search for a periodic motion that ends the run
     type(scene_t), allocatable :: scene_at_end   !! the scene at the end of that period
-    type(turn_patience_t) :: patience   !! time limit for a turn, if turns of the crank end the run
+    type(turn_limit_t) :: turn_limit   !! time limit for a turn, if turns of the crank end the run
     real(dp) :: first_sample = 0      !! time of the first row [s]
     real(dp) :: interval = 0          !! time between rows [s]
     type(angle_grid_t) :: angles      !! crank angles of the rows, if rows are spaced by crank angle
@@ -65,8 +65,8 @@ module gudgeon_recorder
     procedure :: prepare
     procedure :: declare
     procedure :: begin
-    procedure :: step_taken
-    procedure :: event_taken
+    procedure :: step_accepted
+    procedure :: event_accepted
     procedure :: event_handled
     procedure :: finish
     procedure :: row
@@ -103,7 +103,7 @@ contains
       call self%pins(i)%declare(list, self%figures, scene)
     end do
     call self%guide%declare(list, self%figures)
-    if (self%elastic%is_there) call self%figures%elastic%declare(list)
+    if (self%elastic%is_present) call self%figures%elastic%declare(list)
     list%of_totals = .false.
     self%goes_on = list%sets .and. list%goes_on
   end subroutine declare
@@ -114,62 +114,62 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
-    logical :: inside, is_there
+    logical :: in_domain, is_first_row
     integer :: i
 
-    call look_at(self, scene, t, y, now, inside)
+    call evaluate_scene(self, scene, t, y, now, in_domain)
     if (self%goes_on) then
       self%start_angle = scene%crank_angle(t, y) - self%figures%crank_travel
       self%figures%time = t
-      call self%patience%begin(t, abs(self%figures%crank_travel)/two_pi)
-    else if (inside) then
+      call self%turn_limit%begin(t, abs(self%figures%crank_travel)/two_pi)
+    else if (in_domain) then
       self%initial_energy = scene%chain%energy(now%motion)
       self%start_angle = now%motion%crank_angle
     end if
     if (self%periods%is_on .or. allocated(self%cycles)) call self%periods%begin(scene, t, y)
-    if (inside) call self%elastic%begin(scene, t, now)
+    if (in_domain) call self%elastic%begin(scene, t, now)
     if (allocated(self%cycles)) then
-      call self%cycles%begin(scene, t, y, now, inside, self%initial_energy)
+      call self%cycles%begin(scene, t, y, now, in_domain, self%initial_energy)
       call self%guide%begin_revolution()
     end if
     do i = 1, self%n_pins
-      if (inside .and. self%pins(i)%is_touching(scene) .and. .not. self%goes_on) &
-        call take_contact(self, self%pins(i), event_contact_begins, t, now)
+      if (in_domain .and. self%pins(i)%is_touching(scene) .and. .not. self%goes_on) &
+        call record_contact(self, self%pins(i), event_contact_begins, t, now)
       call self%pins(i)%begin(scene, t, now)
       call self%pins(i)%count_from(t)
-      if (inside) call self%pins(i)%take_values(scene, now, self%figures, self%cycles)
+      if (in_domain) call self%pins(i)%record_values(scene, now, self%figures, self%cycles)
     end do
-    if (inside .and. self%guide%is_there) then
+    if (in_domain .and. self%guide%is_present) then
       call self%guide%stand_at(t, now)
       do i = 1, size(scene%guide%touches)
-        if (scene%guide%touches(i) .and. .not. self%goes_on) call take_corner_contact(self, i, event_contact_begins, t, now)
+        if (scene%guide%touches(i) .and. .not. self%goes_on) call record_corner_contact(self, i, event_contact_begins, t, now)
       end do
-      call self%guide%take_values(scene, now, self%figures)
+      call self%guide%record_values(scene, now, self%figures)
     end if
-    call find_first_row(self, t, scene%crank_angle(t, y), is_there)
-    call take_point(self, scene, t, y, now, inside, is_there)
+    call find_first_row(self, t, scene%crank_angle(t, y), is_first_row)
+    call record_point(self, scene, t, y, now, in_domain, is_first_row)
   end subroutine begin
 
   !> Find out whether a row is due at the start, at a time and a crank angle [rad], and which one comes next.
-  subroutine find_first_row(self, t, crank_angle, is_there)
+  subroutine find_first_row(self, t, crank_angle, is_first_row)
     class(recorder_t), intent(inout) :: self
     real(dp), intent(in) :: t, crank_angle
-    logical, intent(out) :: is_there
+    logical, intent(out) :: is_first_row
     real(dp), parameter :: same = 1e-9_dp   !! share of an interval that counts as rounding
     real(dp) :: intervals
-    is_there = .true.
+    is_first_row = .true.
     if (self%angles%per_revolution > 0) then
-      call self%angles%begin(crank_angle, is_there)
+      call self%angles%begin(crank_angle, is_first_row)
     else if (self%interval > 0 .and. self%first_sample <= t .and. .not. self%every_step) then
       intervals = (t - self%first_sample)/self%interval
       self%next_row = ceiling(intervals - same)
-      is_there = self%next_row <= intervals + same
-      if (is_there) self%next_row = self%next_row + 1
+      is_first_row = self%next_row <= intervals + same
+      if (is_first_row) self%next_row = self%next_row + 1
     end if
-    is_there = is_there .and. self%first_sample <= t
+    is_first_row = is_first_row .and. self%first_sample <= t
   end subroutine find_first_row
 
-  subroutine step_taken(self, method, problem, t_to)
+  subroutine step_accepted(self, method, problem, t_to)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
@@ -179,21 +179,21 @@ contains
     select type (problem)
     class is (scene_t)
       t_end = t_to
-      call self%patience%limit_end(t_end)
+      call self%turn_limit%limit_end(t_end)
       if (self%periods%is_on .or. allocated(self%cycles)) call watch_periods(self, method, problem, t_end)
-      if (.not. self%every_step .and. size(self%values) > 0) call put_samples(self, method, problem, t_end)
-      if (allocated(self%films)) call self%films%take(method, problem, t_end, self%figures%evaluations)
+      if (.not. self%every_step .and. size(self%values) > 0) call write_samples(self, method, problem, t_end)
+      if (allocated(self%films)) call self%films%record(method, problem, t_end, self%figures%evaluations)
       if (t_end < method%t) then
         call method%interpolate(t_end, self%y)
-        call take_end(self, method, problem, t_end, self%y)
+        call record_end(self, method, problem, t_end, self%y)
       else
-        call take_end(self, method, problem, method%t, method%y)
+        call record_end(self, method, problem, method%t, method%y)
       end if
     end select
     call keep_budget(self, method%statistics%evaluations)
-    call self%patience%follow(self%figures%time, abs(self%figures%crank_travel)/two_pi)
-    self%wants_to_stop = self%over_budget .or. self%has_left .or. self%periods%has_ended .or. self%patience%is_over
-  end subroutine step_taken
+    call self%turn_limit%follow(self%figures%time, abs(self%figures%crank_travel)/two_pi)
+    self%wants_to_stop = self%over_budget .or. self%has_left .or. self%periods%has_ended .or. self%turn_limit%is_over
+  end subroutine step_accepted
 
   !> Check whether the motion is periodic. If so, t_end may be moved to an earlier time, or the window of the output begins.
   subroutine watch_periods(self, method, scene, t_end)
@@ -210,9 +210,9 @@ contains
     end if
     if (t_end < method%t) then
       call method%interpolate(t_end, self%y)
-      call self%periods%take_point(self%y, scene%crank_angle(t_end, self%y))
+      call self%periods%record_point(self%y, scene%crank_angle(t_end, self%y))
     else
-      call self%periods%take_point(method%y, scene%crank_angle(method%t, method%y))
+      call self%periods%record_point(method%y, scene%crank_angle(method%t, method%y))
     end if
     if (self%periods%window_after < 0 .or. self%first_sample <= self%periods%window_start) return
     self%first_sample = self%periods%window_start
@@ -223,7 +223,7 @@ contains
   end subroutine watch_periods
 
   !> Write the rows that are due in the last step, up to t_to.
-  subroutine put_samples(self, method, scene, t_to)
+  subroutine write_samples(self, method, scene, t_to)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
@@ -236,7 +236,7 @@ contains
       do
         t = self%first_sample + self%next_row*self%interval
         if (t > t_to .or. t > self%end_time*(1 + 4*epsilon(t))) exit
-        call put_sample(self, method, scene, t)
+        call write_sample(self, method, scene, t)
         self%next_row = self%next_row + 1
       end do
       return
@@ -248,52 +248,52 @@ contains
       do
         call self%angles%next_passage(method, scene, t_from, ends(part), t, self%y, is_found)
         if (.not. is_found) exit
-        if (t >= self%first_sample) call put_sample(self, method, scene, t)
+        if (t >= self%first_sample) call write_sample(self, method, scene, t)
         t_from = t
       end do
       t_from = ends(part)
     end do
-  end subroutine put_samples
+  end subroutine write_samples
 
   !> Write the row of a time inside the last step.
-  subroutine put_sample(self, method, scene, t)
+  subroutine write_sample(self, method, scene, t)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t) :: now
-    logical :: inside
-    call look_inside(scene, method, t, self%y, now, inside, self%figures%evaluations)
-    if (inside) call self%elastic%take_values(scene, now, self%figures%elastic)
-    call take_row(self, scene, t, self%y, now, inside)
-  end subroutine put_sample
+    logical :: in_domain
+    call evaluate_inside(scene, method, t, self%y, now, in_domain, self%figures%evaluations)
+    if (in_domain) call self%elastic%record_values(scene, now, self%figures%elastic)
+    call record_row(self, scene, t, self%y, now, in_domain)
+  end subroutine write_sample
 
   !> Record the end of a step, or of its final part, after the ends of revolutions inside it.
-  subroutine take_end(self, method, scene, t, y)
+  subroutine record_end(self, method, scene, t, y)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t) :: now
-    logical :: inside, ends
+    logical :: in_domain, ends
     real(dp) :: t_cycle
 
     if (allocated(self%cycles)) then
       do
         call self%cycles%find_end(method, scene, t, y, t_cycle, ends)
         if (.not. ends) exit
-        call look_at(self, scene, t_cycle, self%cycles%y, now, inside)
-        if (inside) call search_peaks(self, method, scene, t_cycle, now, is_end=.false.)
+        call evaluate_scene(self, scene, t_cycle, self%cycles%y, now, in_domain)
+        if (in_domain) call search_peaks(self, method, scene, t_cycle, now, is_end=.false.)
         call self%guide%end_revolution(self%cycles)
         call self%cycles%end_cycle(scene, t_cycle, now)
         call self%guide%begin_revolution()
       end do
-      call self%cycles%take_strobes(method, scene, t, y)
+      call self%cycles%record_strobes(method, scene, t, y)
     end if
-    call look_at(self, scene, t, y, now, inside)
-    if (inside) call search_peaks(self, method, scene, t, now, is_end=.true.)
-    call take_point(self, scene, t, y, now, inside, self%every_step .and. t >= self%first_sample)
-  end subroutine take_end
+    call evaluate_scene(self, scene, t, y, now, in_domain)
+    if (in_domain) call search_peaks(self, method, scene, t, now, is_end=.true.)
+    call record_point(self, scene, t, y, now, in_domain, self%every_step .and. t >= self%first_sample)
+  end subroutine record_end
 
   !> Search for peaks between the last point recorded (or the beginning of a step after an event) and t, where the scene is
   !> evaluated.
@@ -330,28 +330,28 @@ contains
   end subroutine keep_budget
 
   !> Evaluate the scene for the trace or the summary. These evaluations are counted.
-  subroutine look_at(self, scene, t, y, now, inside)
+  subroutine evaluate_scene(self, scene, t, y, now, in_domain)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t), intent(out) :: now
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     self%figures%evaluations = self%figures%evaluations + 1
-    call scene%evaluate(t, y, now, inside)
-    if (inside) call self%elastic%take_values(scene, now, self%figures%elastic)
-  end subroutine look_at
+    call scene%evaluate(t, y, now, in_domain)
+    if (in_domain) call self%elastic%record_values(scene, now, self%figures%elastic)
+  end subroutine evaluate_scene
 
   !> Record an accepted point at which the scene has been evaluated, and write a row if one is due.
-  subroutine take_point(self, scene, t, y, now, inside, has_row)
+  subroutine record_point(self, scene, t, y, now, in_domain, has_row)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t), intent(in) :: now
-    logical, intent(in) :: inside, has_row
+    logical, intent(in) :: in_domain, has_row
     real(dp) :: energy
     integer :: i
 
-    if (.not. inside) return
+    if (.not. in_domain) return
     energy = scene%chain%energy(now%motion)
     associate (f => self%figures)
       f%max_energy = max(f%max_energy, abs(energy))
@@ -362,42 +362,42 @@ contains
         associate (figures => f%pin(self%pins(i)%pin), joint => scene%joints(self%pins(i)%joint))
           if (self%pins(i)%is_touching(scene)) figures%contact_time = figures%contact_time + (t - f%time)
           if (joint%integrates_friction) figures%friction_work = joint%work_of_friction(y)
-          call self%pins(i)%settling%take(f%crank_travel, -now%joint(self%pins(i)%joint)%penetration)
+          call self%pins(i)%settling%record(f%crank_travel, -now%joint(self%pins(i)%joint)%penetration)
           figures%film_change = self%pins(i)%settling%change()
         end associate
       end do
-      call self%guide%take_time(scene, t - f%time, f)
+      call self%guide%add_time(scene, t - f%time, f)
       f%time = t
     end associate
-    if (allocated(self%cycles)) call self%cycles%take_point(scene, t)
-    if (has_row) call put_row(self, scene, t, y, now)
-  end subroutine take_point
+    if (allocated(self%cycles)) call self%cycles%record_point(scene, t)
+    if (has_row) call pass_row(self, scene, t, y, now)
+  end subroutine record_point
 
-  subroutine event_taken(self, problem, index, t, y)
+  subroutine event_accepted(self, problem, index, t, y)
     class(recorder_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: index
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
-    logical :: inside
+    logical :: in_domain
     integer :: i
 
-    if (self%periods%has_ended .or. self%patience%is_over) return
+    if (self%periods%has_ended .or. self%turn_limit%is_over) return
     select type (problem)
     class is (scene_t)
       do i = 1, self%n_pins
         call self%pins(i)%change_phase()
       end do
       if (problem%reported_event(index) == event_none) return
-      call look_at(self, problem, t, y, now, inside)
+      call evaluate_scene(self, problem, t, y, now, in_domain)
       do i = 1, self%n_pins
         if (self%pins(i)%joint == problem%event_of(index)%joint) &
-          call take_contact(self, self%pins(i), problem%reported_event(index), t, now)
+          call record_contact(self, self%pins(i), problem%reported_event(index), t, now)
       end do
       if (problem%event_of(index)%joint == of_guide) &
-        call take_corner_contact(self, problem%event_of(index)%event, problem%reported_event(index), t, now)
+        call record_corner_contact(self, problem%event_of(index)%event, problem%reported_event(index), t, now)
     end select
-  end subroutine event_taken
+  end subroutine event_accepted
 
   !> Change the shape of a worn bore at the end of its cycle. If the pin does not touch the deeper bore, its contact ends; a
   !> contact law whose force may be lost may lose it, or act again.
@@ -409,7 +409,7 @@ contains
     real(dp), intent(inout) :: y(:)
     type(evaluation_t) :: now
     real(dp) :: contact(2)
-    logical :: inside
+    logical :: in_domain
     integer :: i, k, action
     select type (problem)
     class is (scene_t)
@@ -422,15 +422,15 @@ contains
           if (joint%phase /= phase_contact) cycle
           contact = penetration_and_rate(joint, y)
           if (contact(1) > 0 .and. may_lose_force(joint)) then
-            call look_at(self, problem, t, y, now, inside)
-            if (inside) call find_lost_force(joint, now%joint(self%pins(i)%joint), joint%relative_rates(now%accelerations))
+            call evaluate_scene(self, problem, t, y, now, in_domain)
+            if (in_domain) call find_lost_force(joint, now%joint(self%pins(i)%joint), joint%relative_rates(now%accelerations))
           end if
           if (contact(1) > 0) cycle
         end associate
         do k = 1, problem%n_events
           if (problem%event_of(k)%joint /= self%pins(i)%joint) cycle
           if (problem%reported_event(k) == event_none) cycle
-          call self%event_taken(problem, k, t, y)
+          call self%event_accepted(problem, k, t, y)
           call problem%handle_event(k, t, y, action)
           exit
         end do
@@ -439,35 +439,35 @@ contains
   end subroutine event_handled
 
   !> Record that a contact begins or ends at a pin at time t; `now` is evaluated before that event.
-  subroutine take_contact(self, pin, kind, t, now)
+  subroutine record_contact(self, pin, kind, t, now)
     class(recorder_t), intent(inout) :: self
     type(pin_record_t), intent(inout) :: pin
     integer, intent(in) :: kind
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     type(trace_event_t) :: event
-    call pin%take_contact(kind, t, now, self%figures, event, self%cycles)
+    call pin%record_contact(kind, t, now, self%figures, event, self%cycles)
     call pass_on(self, event)
-  end subroutine take_contact
+  end subroutine record_contact
 
   !> Record that a contact of corner i of the skirt begins or ends at time t; `now` is evaluated before that event.
-  subroutine take_corner_contact(self, i, kind, t, now)
+  subroutine record_corner_contact(self, i, kind, t, now)
     class(recorder_t), intent(inout) :: self
     integer, intent(in) :: i, kind
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     type(trace_event_t) :: event
-    call self%guide%take_contact(i, kind, t, now, self%figures, event)
-    if (allocated(self%cycles) .and. kind == event_contact_begins) call self%cycles%take_impact(skirt)
+    call self%guide%record_contact(i, kind, t, now, self%figures, event)
+    if (allocated(self%cycles) .and. kind == event_contact_begins) call self%cycles%count_impact(skirt)
     call pass_on(self, event)
-  end subroutine take_corner_contact
+  end subroutine record_corner_contact
 
   !> Pass an event on, unless only those of a last period are wanted, which has not begun.
   subroutine pass_on(self, event)
     class(recorder_t), intent(inout) :: self
     type(trace_event_t), intent(in) :: event
     if (self%periods%keeps_one_more .and. self%periods%window_after < 0) return
-    call self%sink%take_event(event)
+    call self%sink%accept_event(event)
   end subroutine pass_on
 
   !> End the run at (t, y), and with it a cycle of wear that is complete. Writes the last row if rows are written at every step, or
@@ -489,14 +489,14 @@ contains
     end if
     if (self%every_step) return
     if (self%angles%per_revolution > 0) then
-      call put_last_angle(self, scene, t, y)
+      call write_last_angle(self, scene, t, y)
     else if (abs(self%first_sample + self%next_row*self%interval - t) <= 1e-9_dp*self%interval) then
       call write_row(self, scene, t, y)
     end if
   end subroutine finish
 
   !> Write the row at the final crank angle, if rounding left it out.
-  subroutine put_last_angle(self, scene, t, y)
+  subroutine write_last_angle(self, scene, t, y)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
@@ -508,7 +508,7 @@ contains
     self%y = y
     if (scene%crank_moves) self%y(scene%crank%position) = crank_angle
     call write_row(self, scene, t, self%y)
-  end subroutine put_last_angle
+  end subroutine write_last_angle
 
   !> The worn surfaces of the joints whose wear is counted.
   function wear(self, scene) result(worn)
@@ -528,31 +528,31 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t) :: now
-    logical :: inside
+    logical :: in_domain
     if (size(self%values) == 0) return
-    call look_at(self, scene, t, y, now, inside)
-    call take_row(self, scene, t, y, now, inside)
+    call evaluate_scene(self, scene, t, y, now, in_domain)
+    call record_row(self, scene, t, y, now, in_domain)
   end subroutine write_row
 
-  !> Account for the values of an evaluation and write its row. If its state is not `inside` the model there is no row, and the
+  !> Account for the values of an evaluation and write its row. If its state is not `in_domain` the model there is no row, and the
   !> run is to end.
-  subroutine take_row(self, scene, t, y, now, inside)
+  subroutine record_row(self, scene, t, y, now, in_domain)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t), intent(in) :: now
-    logical, intent(in) :: inside
+    logical, intent(in) :: in_domain
     integer :: i
-    if (.not. inside) self%has_left = .true.
-    if (.not. inside) return
+    if (.not. in_domain) self%has_left = .true.
+    if (.not. in_domain) return
     do i = 1, self%n_pins   ! without revolution counts: those must not depend on whether rows are written
-      call self%pins(i)%take_values(scene, now, self%figures)
+      call self%pins(i)%record_values(scene, now, self%figures)
     end do
-    call self%guide%take_values(scene, now, self%figures)
-    call put_row(self, scene, t, y, now)
-  end subroutine take_row
+    call self%guide%record_values(scene, now, self%figures)
+    call pass_row(self, scene, t, y, now)
+  end subroutine record_row
 
-  subroutine put_row(self, scene, t, y, now)
+  subroutine pass_row(self, scene, t, y, now)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(scene%n)
@@ -562,8 +562,8 @@ contains
     associate (f => self%figures)
       f%row_energy_residual = max(f%row_energy_residual, abs(scene%chain%energy(now%motion) - self%initial_energy - scene%work(y)))
     end associate
-    call self%sink%take_row(self%values)
-  end subroutine put_row
+    call self%sink%accept_row(self%values)
+  end subroutine pass_row
 
   !> The values of a row at (t, y), where the scene has been evaluated.
   subroutine row(self, scene, t, y, now, values)
@@ -574,4 +574,4 @@ contains
     real(dp), intent(out) :: values(:)
     call row_values(self%list, scene, t, now, scene%work(y), self%initial_energy, values)
   end subroutine row
-end module gudgeon_recorder
+end module run_recorder

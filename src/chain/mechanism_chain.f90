@@ -1,7 +1,7 @@
 !> The chain of crank, rod and piston. Since the forces of pins with clearance follow from the state, the chain separates at these
 !> pins into parts with accelerations in closed form.
-module gudgeon_chain
-  use gudgeon_kinds, only: dp
+module mechanism_chain
+  use kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, follow_rod, follow_piston, &
     body_crank, body_big_end, body_piston
   use chain_bodies, only: bodies_t, drive_t, undriven, weightless
@@ -295,4 +295,4 @@ contains
     if (self%has_crankshaft()) energy = energy + self%elastic%crankshaft%energy(motion)
     if (self%bodies%piston%is_loose) call add_energy_beside(self%bodies, motion, energy)
   end function energy
-end module gudgeon_chain
+end module mechanism_chain

@@ -5,11 +5,11 @@
 !> passes zero and returns within one step is usually found. The same is done for all functions in the first step after a restart,
 !> until they have become negative. If a function whose event has been taken is becoming negative (such as the penetration after the
 !> end of a contact) and turns before it is negative, its event occurs again where it turns.
-module gudgeon_events
-  use gudgeon_kinds, only: dp
+module event_search
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t, max_events
   use ode_method, only: ode_method_t
-  use gudgeon_roots, only: bracket_t, next_abscissa, narrow, abscissa_by_rates
+  use root_search, only: bracket_t, next_abscissa, narrow, abscissa_by_rates
   implicit none
   private
   public :: event_watch_t
@@ -26,7 +26,7 @@ module gudgeon_events
     logical :: low(max_events) = .false.  !! negative at some time since the last restart: a passage is an event
     logical :: leaving(max_events) = .false.       !! its event has been taken, and it is becoming negative; its sign is rounding
     logical :: on_step_end(max_events) = .false.   !! its event is taken at the end of the step
-    integer :: just_taken = 0             !! event that caused the last restart
+    integer :: last_event = 0             !! event that caused the last restart
     logical :: fresh = .true.             !! no step since the restart
     real(dp) :: t = 0                     !! end of the interval searched so far
     real(dp) :: g(max_events) = 0, rate(max_events) = 0   !! values and rates at that time
@@ -39,17 +39,17 @@ module gudgeon_events
 
 contains
 
-  !> Begin at (t, y), after a start or restart of the method. Event `just_taken` (0: none) is not taken again before its function
+  !> Begin at (t, y), after a start or restart of the method. Event `last_event` (0: none) is not taken again before its function
   !> has been negative; any other function that is positive and increasing gives an event at once. `fell`: the function of event
-  !> `just_taken` was decreasing when the event was taken, which happens where the interpolant, on which it is found, is inexact. If
+  !> `last_event` was decreasing when the event was taken, which happens where the interpolant, on which it is found, is inexact. If
   !> the event has reversed the function, it now gives the opposite event at once.
-  subroutine begin(self, problem, t, y, just_taken, fell)
+  subroutine begin(self, problem, t, y, last_event, fell)
     class(event_watch_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t, y(:)
-    integer, intent(in) :: just_taken
+    integer, intent(in) :: last_event
     logical, intent(in) :: fell
-    self%just_taken = just_taken
+    self%last_event = last_event
     self%fresh = .true.
     if (.not. allocated(self%y)) allocate (self%y(size(y)))
     call prepare(self, problem)
@@ -57,9 +57,9 @@ contains
     call look(self, problem, t, y)
     self%low(:self%n) = self%g(:self%n) < 0
     self%leaving(:self%n) = self%leaving(:self%n) .and. .not. self%low(:self%n)
-    if (just_taken > 0) self%leaving(just_taken) = self%rate(just_taken) < 0
+    if (last_event > 0) self%leaving(last_event) = self%rate(last_event) < 0
     if (fell) then
-      if (self%rate(just_taken) > 0) self%just_taken = 0
+      if (self%rate(last_event) > 0) self%last_event = 0
     end if
   end subroutine begin
 
@@ -68,7 +68,7 @@ contains
     class(event_watch_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t, y(:)
-    call self%begin(problem, t, y, self%just_taken, .false.)
+    call self%begin(problem, t, y, self%last_event, .false.)
     self%fresh = .false.   ! functions that were positive there have been looked at
   end subroutine step_back
 
@@ -107,7 +107,7 @@ contains
 
     index = 0
     t_event = min(t_last, method%t)
-    if (self%fresh) call take_passed(self, index, t_event)
+    if (self%fresh) call find_passed(self, index, t_event)
     if (index > 0 .or. self%n == 0) return
     t_end = t_event
     t_before = self%t
@@ -139,13 +139,13 @@ contains
   end subroutine search
 
   !> In the first step after a restart: an event of a function that was positive at its beginning and is increasing.
-  pure subroutine take_passed(self, index, t_event)
+  pure subroutine find_passed(self, index, t_event)
     class(event_watch_t), intent(inout) :: self
     integer, intent(inout) :: index
     real(dp), intent(inout) :: t_event
     integer :: i
     do i = 1, self%n
-      if (i == self%just_taken) cycle
+      if (i == self%last_event) cycle
       if (self%g(i) > 0 .and. self%rate(i) >= 0 .or. .not. self%g(i) < 0 .and. self%rate(i) > 0) then
         index = i
         t_event = self%t
@@ -153,7 +153,7 @@ contains
       end if
     end do
     self%fresh = .false.
-  end subroutine take_passed
+  end subroutine find_passed
 
   !> Search one function that may reach zero, from `before` to `here`, which is at most the end of the step.
   subroutine search_one(self, method, problem, index, before, here, found, t_found)
@@ -334,4 +334,4 @@ contains
     call problem%events(t, self%y, g, rate)
     sample = sample_t(t, g(index), rate(index))
   end function sample
-end module gudgeon_events
+end module event_search

@@ -1,6 +1,6 @@
 !> Thin bindings for Linux to calls of the C library that Fortran does not offer. Error numbers are returned and not stored, so that
 !> they are safe in several threads.
-module gudgeon_posix
+module posix_files
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_short, c_null_char, c_ptr, &
     c_size_t, c_loc, c_f_pointer, c_associated
   use posix_calls, only: file_status_t, poll_t, c_open, c_read, c_realpath, c_write, c_fsync, c_ftruncate, c_flock, &
@@ -295,14 +295,14 @@ contains
     answer = c_isatty(descriptor) == 1
   end function is_terminal
 
-  !> Wait for data to read, or for their end, at most for the given time in ms. `is_there` is true also if reading would fail.
-  subroutine wait_for_input(descriptor, milliseconds, is_there)
+  !> Wait for data to read, or for their end, at most for the given time in ms. `has_input` is true also if reading would fail.
+  subroutine wait_for_input(descriptor, milliseconds, has_input)
     integer, intent(in) :: descriptor, milliseconds
-    logical, intent(out) :: is_there
+    logical, intent(out) :: has_input
     integer(c_short), parameter :: is_readable = 1   !! POLLIN
     type(poll_t) :: file
     file = poll_t(descriptor, is_readable, 0_c_short)
-    is_there = c_poll(file, 1_c_long, milliseconds) > 0
+    has_input = c_poll(file, 1_c_long, milliseconds) > 0
   end subroutine wait_for_input
 
   !> The system's text for an error number.
@@ -339,4 +339,4 @@ contains
     call c_f_pointer(c_errno_location(), number)
     status = number
   end function outcome
-end module gudgeon_posix
+end module posix_files

@@ -1,12 +1,12 @@
 !> Shows progress on standard error, in one line for each case that is overwritten. Each line is written in one call, so that the
 !> lines of several cases do not mix.
-module gudgeon_progress
+module run_progress
   use, intrinsic :: iso_fortran_env, only: int64
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use text_tools, only: printable, integer_text, replaced
   use number_text, only: short_text
-  use gudgeon_errors, only: status_output
-  use gudgeon_posix, only: is_terminal, write_all, error_text, error_broken_pipe
+  use error_handling, only: status_output
+  use posix_files, only: is_terminal, write_all, error_text, error_broken_pipe
   implicit none
   private
   public :: progress_t, progress_wanted, clock, tell, say, rate_text, duration_text
@@ -173,4 +173,4 @@ contains
       text = integer_text(whole/3600)//' h '//integer_text(mod(whole/60, 60))//' min'
     end if
   end function duration_text
-end module gudgeon_progress
+end module run_progress

@@ -1,31 +1,31 @@
 !> A run of one case, which can pause: builds its scene, integrates it, hands rows and events to a sink, and reports its results.
-module gudgeon_simulation
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_integration
+module simulation
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_integration
   use run_state, only: run_state_t
   use case_definition, only: case_t
   use ode_method, only: ode_method_t, step_statistics_t, left_domain
-  use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, integration_t, silent_observer_t, integration_done, integration_stopped, &
+  use ode_methods, only: new_method
+  use ode_solver, only: integrate, integration_t, silent_observer_t, integration_done, integration_stopped, &
     integration_interrupted, step_limit_reached, evaluation_limit_reached
-  use gudgeon_scene, only: scene_t, evaluation_t
+  use scene_problem, only: scene_t, evaluation_t
   use scene_inputs, only: inputs, inputs_of, input_value, change_input
-  use inside_step, only: look_inside
+  use inside_step, only: evaluate_inside
   use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, crank_creeps
   use scene_builder, only: build_scene, simulated_time, latest_end, longest_turn, sample_interval, settings_for
   use crank_turns, only: all_made, turned_back
-  use gudgeon_columns, only: column_list_t
+  use trace_columns, only: column_list_t
   use cycle_watch, only: cycle_watch_t
   use cycle_answers, only: answer_t, find_answers
   use period_watch, only: period_watch_t
   use lyapunov, only: exponent_t, measurement_t
-  use gudgeon_recorder, only: recorder_t
+  use run_recorder, only: recorder_t
   use run_start, only: find_start
   use run_figures, only: run_figures_t
   use film_snapshots, only: film_field_t
   use wear_record, only: wear_profile_t
   use trace_sink, only: trace_sink_t
-  use gudgeon_constants, only: two_pi, degree
+  use constants, only: two_pi, degree
   implicit none
   private
   public :: simulate, run_t, run_report_t, interrupted_text
@@ -67,7 +67,7 @@ module gudgeon_simulation
   contains
     procedure :: begin
     procedure :: advance
-    procedure :: look
+    procedure :: evaluate_row
     procedure :: state
     procedure :: stop
     procedure :: set_input
@@ -131,7 +131,7 @@ contains
       recorder%periods%most_revolutions = case%run%most_revolutions
       recorder%periods%keeps_one_more = recorder%periods%is_on .and. case%output%window == 'last_period'
       recorder%end_time = latest_end(case)
-      recorder%patience%longest = longest_turn(case)
+      recorder%turn_limit%longest = longest_turn(case)
       recorder%every_step = case%output%every_step
       recorder%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
       recorder%revolution_time = two_pi/scene%speed_scale()
@@ -232,23 +232,23 @@ contains
     is_complete = self%is_over .and. self%status == integration_done
   end function is_complete
 
-  !> The values of a row at the time reached. If the state there is not `inside` the model, there are none.
-  subroutine look(self, values, inside)
+  !> The values of a row at the time reached. If the state there is not `in_domain` the model, there are none.
+  subroutine evaluate_row(self, values, in_domain)
     class(run_t), intent(inout) :: self
     real(dp), intent(out) :: values(:)   !! in the order of the list
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     type(evaluation_t) :: now
     real(dp) :: y(self%scene%n)
     integer :: unused
     unused = 0
     if (self%integration%is_kept) then
-      call look_inside(self%scene, self%method, self%t, y, now, inside, unused)
+      call evaluate_inside(self%scene, self%method, self%t, y, now, in_domain, unused)
     else
       y = self%integration%state(self%method)
-      call self%scene%evaluate(self%t, y, now, inside)
+      call self%scene%evaluate(self%t, y, now, in_domain)
     end if
-    if (inside) call self%recorder%row(self%scene, self%t, y, now, values)
-  end subroutine look
+    if (in_domain) call self%recorder%row(self%scene, self%t, y, now, values)
+  end subroutine evaluate_row
 
   !> The state that the run has reached, from which another one may start. The run must not pause inside a step.
   subroutine state(self, list)
@@ -298,7 +298,7 @@ contains
         t = recorder%periods%t
         y = recorder%periods%y
         call move_alloc(recorder%scene_at_end, self%scene)
-      else if (recorder%patience%is_over) then
+      else if (recorder%turn_limit%is_over) then
         status = crank_creeps
         t = recorder%figures%time
         call self%method%interpolate(t, y)
@@ -385,4 +385,4 @@ contains
     real(dp), intent(in) :: crank_travel   !! [rad]
     energy_limit = min(0.05_dp, max(1e-10_dp, 1e3_dp*tolerance*max(1.0_dp, abs(crank_travel)/(100*two_pi))))
   end function energy_limit
-end module gudgeon_simulation
+end module simulation
