@@ -359,7 +359,7 @@ contains
     call check%that(.not. reachable, 'a pin farther away than the rod is long is refused')
   end subroutine coordinates_agree
 
-  !> If journal and bearing rotate as one body, the force and moments of a joint do no work.
+  !> If pin and bearing rotate as one body, the force and moments of a joint do no work.
   subroutine joints_leave_angular_momentum(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: e(2) = [3e-5_dp, -4e-5_dp], force(2) = [700.0_dp, 300.0_dp], moment = 0.4_dp, spin = 90

@@ -1,5 +1,5 @@
 !> The load elements of a joint: their slopes against differences, with a bearing that turns, the powers of the kinds of load, and a
-!> joint whose journal belongs to the body farther from the crank.
+!> joint whose pin belongs to the body farther from the crank.
 module test_load_elements
   use kinds, only: dp
   use error_handling, only: error_t
@@ -28,7 +28,7 @@ module test_load_elements
 
   logical, parameter :: yes = .true., no = .false.
   character(len=*), parameter :: sheared = 'lubrication.film_moment=T'
-  type(kind_t), parameter :: kinds(9) = [ &
+  type(kind_t), parameter :: element_kinds(9) = [ &
     kind_t('friction/lugre', '', yes, 1.02_dp, [yes, yes, no, no]), &
     kind_t('flores/friction_050', 'friction.v1=2', yes, 1.01_dp, [yes, yes, no, no]), &
     kind_t('flores/dry_0500um', '', yes, 1.01_dp, [yes, no, no, no]), &
@@ -45,11 +45,11 @@ contains
     class(checks_t), intent(inout) :: check
     type(scene_t), allocatable :: scene
     integer :: i
-    do i = 1, size(kinds)
-      call make_scene(check, kinds(i), scene)
+    do i = 1, size(element_kinds)
+      call make_scene(check, element_kinds(i), scene)
       if (.not. allocated(scene)) cycle
-      call slopes_are_those_of_the_loads(check, kinds(i), scene%joints(1))
-      call powers_add_up(check, kinds(i), scene%joints(1))
+      call slopes_are_those_of_the_loads(check, element_kinds(i), scene%joints(1))
+      call powers_add_up(check, element_kinds(i), scene%joints(1))
     end do
     call pin_on_the_other_body(check)
   end subroutine run_test_load_elements
@@ -169,7 +169,7 @@ contains
   end subroutine powers_add_up
 
   !> With a film and its shear, which see only the relative motion, nothing tells whether the pin is held by the rod or by the
-  !> piston: a journal on the piston at the opposite eccentricity gives the bodies the same accelerations.
+  !> piston: a pin on the piston at the opposite eccentricity gives the bodies the same accelerations.
   subroutine pin_on_the_other_body(check)
     class(checks_t), intent(inout) :: check
     type(scene_t), allocatable :: scene
@@ -178,7 +178,7 @@ contains
     real(dp) :: e(2), rate(2)
     logical :: in_domain
     integer :: i
-    call make_scene(check, kinds(5), scene)
+    call make_scene(check, element_kinds(5), scene)
     if (.not. allocated(scene)) return
     allocate (f(scene%n, 2))
     do i = 1, 2

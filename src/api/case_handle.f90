@@ -9,7 +9,7 @@ module case_handle
   use case_schema, only: find_group, real_kind, integer_kind
   use case_values, only: case_values_t
   use value_reader, only: set_to_default
-  use case_file, only: parse_values, accept_override, complete_case
+  use case_file, only: parse_values, apply_override, complete_case
   use case_text, only: resolved_text, value_text
   use accuracy_presets, only: with_preset, accuracy_levels
   use case_schema, only: is_listed
@@ -74,7 +74,7 @@ contains
     if (group > 0 .and. value /= 'none') then
       self%values%is_present(group) = .true.
     else if (has_value) then
-      call accept_override(self%values, key//'='//value, behind_file, error)
+      call apply_override(self%values, key//'='//value, behind_file, error)
       call settle(self%values)
     else
       call self%values%find(lowercase(key(:max(0, dot - 1))), lowercase(key(dot + 1:)), '', place, error)
@@ -136,7 +136,7 @@ contains
     end associate
     self%is_checked = .false.
     if (any(self%numbers == key)) then
-      if (allocated(self%varied)) call self%varied%write_number(findloc(self%numbers, key, 1), element, value)
+      if (allocated(self%varied)) call self%varied%set_number(findloc(self%numbers, key, 1), element, value)
     else
       self%numbers = [self%numbers, key]
       if (allocated(self%varied)) deallocate (self%varied)

@@ -118,7 +118,7 @@ contains
     logical :: in_domain
     status = 0
     if (.not. abs(self%seen - self%run%t) > 0) return
-    call self%run%look(self%now, in_domain)
+    call self%run%evaluate_row(self%now, in_domain)
     if (in_domain) self%seen = self%run%t
     if (.not. in_domain) status = status_integration
   end subroutine look

@@ -2,7 +2,7 @@
 !> 3.70-3.72).
 !>
 !> The coordinates are the crank angle q and, for each pin with clearance, its eccentricity: c at the crank pin, e at the piston
-!> pin. It is the vector from the centre of the bearing to the centre of the pin (crank pin or piston pin). An ideal pin has no
+!> pin. It is the vector from the centre of the bearing to the centre of the pin. An ideal pin has no
 !> coordinate. With o = c + e everything else follows in closed form:
 !>
 !>     sin A = (R sin q - o_y)/L,    A' = (R cos q q' - o_y')/(L cos A)

@@ -10,7 +10,7 @@ module elastic_columns
 
 contains
 
-  !> Put the columns of elastic members into a row. Rates and accelerations of the rod's shapes, and the flywheel's acceleration,
+  !> Add the columns of elastic members to a row. Rates and accelerations of the rod's shapes, and the flywheel's acceleration,
   !> are written only on request.
   pure subroutine add_elastic_columns(elastic, motion, accelerations, row)
     type(elastic_members_t), intent(in) :: elastic

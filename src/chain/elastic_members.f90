@@ -66,7 +66,7 @@ contains
       call layout%claim_positions(1, 1.0_dp, crank_speed, self%flywheel, grows=.true.)
   end subroutine claim
 
-  !> Put the initial state into the state vector: the rod is straight and has its nominal length, the shaft is not twisted, and
+  !> Set the initial state in the state vector: the rod is straight and has its nominal length, the shaft is not twisted, and
   !> their rates are 0.
   pure subroutine set_start(self, y)
     class(elastic_members_t), intent(in) :: self

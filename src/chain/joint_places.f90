@@ -6,15 +6,15 @@ module joint_places
   private
   public :: place_t, places, n_places, in_order, name_prefix, joint_group, crank_pin, piston_pin
 
-  !> One place: its names, and how its joint enters the chain. The eccentricity of the pin in its bearing is that of the pin of the
-  !> chain, the joint's force on its pin acts on the body nearer to the crank, and the opposite force on the other; the other
+  !> One place: its names, and how its joint enters the chain. The eccentricity of the pin in its bearing is that of the chain
+  !> at this pin, the joint's force on its pin acts on the body nearer to the crank, and the opposite force on the other; the other
   !> way round if the pin belongs to the body farther from the crank.
   type :: place_t
     character(len=10) :: name      !! in cases and results
     character(len=11) :: prefix    !! of the names of its quantities
     character(len=10) :: title     !! in messages
     integer :: pin                 !! of the chain, where it enters: crank_pin or piston_pin
-    integer :: pin_body, bearing    !! bodies with which they turn: see chain_motion
+    integer :: pin_body, bearing   !! bodies with which they turn: see chain_motion
     real(dp) :: sense              !! 1: the pin belongs to the body nearer to the crank; -1: to the other
   end type place_t
 

@@ -174,7 +174,7 @@ contains
     total_pressure = 2*(u + atanh(u/(2 + u))/u)/(1 + u)
   end function total_pressure
 
-  !> Put the half-angle of the contact into a row, which follows from the penetration, and the pressure in its middle, which follows
+  !> Add the half-angle of the contact to a row, which follows from the penetration, and the pressure in its middle, which follows
   !> from the normal force.
   pure subroutine add_columns(self, penetration, normal_force, row)
     class(conformal_t), intent(in) :: self

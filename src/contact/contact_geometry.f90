@@ -161,7 +161,7 @@ contains
     total = 1
   end function only_the_force
 
-  !> Put columns that only this geometry has into a row. The default is none.
+  !> Add columns that only this geometry has to a row. The default is none.
   pure subroutine no_columns(self, penetration, normal_force, row)
     class(contact_geometry_t), intent(in) :: self
     real(dp), intent(in) :: penetration    !! [m]; 0 without contact

@@ -125,7 +125,7 @@ contains
     slopes(1, 1) = self%friction_ratio_slope(sliding_speed)
   end subroutine steady_slopes
 
-  !> Put the columns of the states into a row.
+  !> Add the columns of the states to a row.
   pure subroutine no_columns(self, states, row)
     class(friction_law_t), intent(in) :: self
     real(dp), intent(in) :: states(:)           !! (most_friction_states); 0 without contact

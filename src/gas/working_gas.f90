@@ -108,7 +108,7 @@ contains
     force = (pressure - self%crankcase_pressure)*self%cylinder%area
   end function force
 
-  !> Put pressure [Pa], force and volume at a crank angle with this sine and cosine into a row.
+  !> Add pressure [Pa], force and volume at a crank angle with this sine and cosine to a row.
   pure subroutine add_columns(self, sin_crank, cos_crank, pressure, row)
     class(working_gas_t), intent(in) :: self
     real(dp), intent(in) :: sin_crank, cos_crank, pressure

@@ -17,7 +17,7 @@ module case_file
   use problem_list, only: behind_file
   implicit none
   private
-  public :: read_case, parse_case, read_case_values, parse_values, accept_override, complete_case, template
+  public :: read_case, parse_case, read_case_values, parse_values, apply_override, complete_case, template
 
   integer, parameter :: largest_file = 1   !! MB; case files are a few kilobytes long
 
@@ -82,7 +82,7 @@ contains
     call values%set_defaults(path)
     call set_from_file(values, text)
     do i = 1, size(overrides)
-      call accept_override(values, trim(overrides(i)), behind_file + i, error)
+      call apply_override(values, trim(overrides(i)), behind_file + i, error)
       if (allocated(error)) values%problems%is_structural = .true.
       call values%problems%add_error(error, '--set', behind_file + i)
     end do
@@ -119,8 +119,8 @@ contains
     this%file = path
     this%name = case_name(path)
     if (this%name == '') this%name = 'case'
-    if (.not. (values%problems%is_structural .or. values%problems%concerns('mechanism') .or. values%problems%concerns('initial') .or. &
-               any([(values%problems%concerns(joint_group(i)), i=1, n_places)]))) then
+    if (.not. (values%problems%is_structural .or. values%problems%concerns('mechanism') .or. &
+               values%problems%concerns('initial') .or. any([(values%problems%concerns(joint_group(i)), i=1, n_places)]))) then
       call values%problems%settle()
       call load_case(values, this)
       call check_rules(this, values)
@@ -137,7 +137,7 @@ contains
     text = template_text('A case of gudgeon with every key there is. Keys marked required have no default.', table)
   end function template
 
-  !> Put the groups and keys of a file's text into the values.
+  !> Set the values from the groups and keys of a file's text.
   subroutine set_from_file(values, text)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: text
@@ -199,7 +199,7 @@ contains
     end if
   end subroutine begin_group
 
-  !> Put the place of a joint in front of the name of its group: crank_pin.joint.
+  !> Write the place of a joint in front of the name of its group: crank_pin.joint.
   subroutine name_place(values, list, number, error)
     type(case_values_t), intent(in) :: values
     type(namelist_t), intent(inout) :: list
@@ -249,9 +249,9 @@ contains
     end do
   end function place_names
 
-  !> Put an override GROUP.KEY=VALUE into the values; texts need no quotes. GROUP=none removes everything that the file and earlier
+  !> Apply an override GROUP.KEY=VALUE to the values; texts need no quotes. GROUP=none removes everything that the file and earlier
   !> overrides have set in that group.
-  subroutine accept_override(values, override, line, error)
+  subroutine apply_override(values, override, line, error)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: override
     integer, intent(in) :: line   !! for the order of messages
@@ -286,7 +286,7 @@ contains
     values%values(place)%line = line
     if (allocated(error) .and. lowercase(text) == 'none') &
       error%message = error%message//'; --set '//group//'=none takes the group out'
-  end subroutine accept_override
+  end subroutine apply_override
 
   !> Whether a further joint follows the group of this name for all joints, because it has none of its own.
   pure logical function is_shared(values, group)

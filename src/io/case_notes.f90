@@ -21,7 +21,7 @@ module case_notes
 
 contains
 
-  !> Put the notes on a valid case into it. Only keys that the user has set are noted, each of them once.
+  !> Add the notes on a valid case to it. Only keys that the user has set are noted, each of them once.
   subroutine note_case(c, values)
     type(case_t), intent(inout) :: c
     type(case_values_t), intent(in) :: values

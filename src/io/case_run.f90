@@ -268,7 +268,7 @@ contains
     has_events = self%case%has_contact() .and. .not. self%is_twin
   end function has_events
 
-  !> Put the name of the case file in front of each line of an error message that does not contain it.
+  !> Write the name of the case file in front of each line of an error message that does not contain it.
   subroutine name_file(path, error)
     character(len=*), intent(in) :: path
     type(error_t), intent(inout) :: error

@@ -16,7 +16,8 @@ module certificate
   use simulation, only: run_report_t
   use trace_sink, only: trace_event_t
   use film_files, only: provide_tables
-  use comparison_run, only: comparison_run_t, run, has_coarse_table, has_figures, figures_of, means_of, n_statistics, n_figures, loss_figure
+  use comparison_run, only: comparison_run_t, run, has_coarse_table, has_figures, figures_of, means_of, n_statistics, n_figures, &
+    loss_figure
   use joint_places, only: n_places, name_prefix
   implicit none
   private

@@ -17,7 +17,7 @@ module result_file
   !> A file that is being written. After a failed write nothing more is written: further rows are discarded, `conclude` keeps the
   !> rows that were written completely, and `close` reports the failure.
   type :: result_file_t
-    character(len=:), allocatable :: buffer  !! after a call of `require_space` whole rows may be added here, and their length to `used`
+    character(len=:), allocatable :: buffer  !! after `require_space` whole rows may be added here, and their length to `used`
     integer :: used = 0                                 !! number of bytes in the buffer
     character(len=:), allocatable, private :: path      !! final name
     integer, private :: descriptor = -1

@@ -108,7 +108,7 @@ module clearance_joint
 
 contains
 
-  !> Put the joint at a place of the chain.
+  !> Set the joint to a place of the chain.
   subroutine set_place(self, place)
     class(clearance_joint_t), intent(inout) :: self
     integer, intent(in) :: place   !! index in `places`
@@ -173,7 +173,7 @@ contains
     own_speed = max(norm2(self%start_rate), crossing_speed(self%bearing%clearance, span))
   end function own_speed
 
-  !> Put the initial values of the joint's states into the state vector.
+  !> Set the initial values of the joint's states in the state vector.
   pure subroutine set_start(self, y)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(inout) :: y(:)

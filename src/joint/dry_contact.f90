@@ -177,7 +177,7 @@ contains
     if (allocated(self%friction)) call self%friction%add_columns(joint%states, row)
   end subroutine add_columns
 
-  !> Put the columns of friction, of a contact or of asperities.
+  !> Add the columns of friction, of a contact or of asperities.
   pure subroutine add_friction_columns(joint, row)
     type(joint_evaluation_t), intent(in) :: joint
     type(trace_row_t), intent(inout) :: row

@@ -42,7 +42,7 @@ contains
     end associate
   end function film_figures_of
 
-  !> Put the columns of the force of a film.
+  !> Add the columns of the force of a film.
   pure subroutine add_film_force(joint, row)
     type(joint_evaluation_t), intent(in) :: joint
     type(trace_row_t), intent(inout) :: row
@@ -50,7 +50,7 @@ contains
     call row%add('film_force_y[N]', joint%film(2), 'the same along y')
   end subroutine add_film_force
 
-  !> Put the column of the film's moment, and those that need more computation than its force, which are computed only if the case
+  !> Add the column of the film's moment, and those that need more computation than its force, which are computed only if the case
   !> names one.
   pure subroutine add_film_figures(element, joint, row)
     class(load_element_t), intent(in) :: element   !! with a film

@@ -9,7 +9,7 @@ module guide_columns
 
 contains
 
-  !> Put the columns of the guide into a row: the friction force on the piston along x and, with clearance in the bore, position and
+  !> Add the columns of the guide to a row: the friction force on the piston along x and, with clearance in the bore, position and
   !> tilt of the piston and the quantities of each corner of its skirt.
   pure subroutine add_guide_columns(guide, motion, accelerations, loads, row)
     type(piston_guide_t), intent(in) :: guide

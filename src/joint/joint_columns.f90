@@ -12,7 +12,7 @@ module joint_columns
 
 contains
 
-  !> Put the columns of a joint and of its elements into a row.
+  !> Add the columns of a joint and of its elements to a row.
   pure subroutine add_joint_columns(joint, now, row)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_evaluation_t), intent(in) :: now
@@ -37,7 +37,7 @@ contains
     row%place = ''
   end subroutine add_joint_columns
 
-  !> Put the volumes that wear in a second.
+  !> Add the volumes that wear in a second.
   pure subroutine add_wear(joint, now, row)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_evaluation_t), intent(in) :: now

@@ -80,7 +80,7 @@ contains
     end associate
   end subroutine find_polar
 
-  !> Sliding speed v_T = t . e' + omega_journal R - omega_bearing (|e| + R), with the pin's radius R: the relative velocity of
+  !> Sliding speed v_T = t . e' + omega_pin R - omega_bearing (|e| + R), with the pin's radius R: the relative velocity of
   !> the material points in contact. Equations (3.74)-(3.76) as printed let the contact points rotate with the eccentricity, so that
   !> no sliding remains.
   pure subroutine find_sliding(pin_radius, joint)
@@ -90,7 +90,7 @@ contains
       - joint%bearing_speed*(joint%distance + pin_radius)
   end subroutine find_sliding
 
-  !> Rate of the sliding speed, v_T' [m/s^2] = t . e'' - gamma' n . e' + omega_journal' R - omega_bearing' (|e| + R) - omega_bearing
+  !> Rate of the sliding speed, v_T' [m/s^2] = t . e'' - gamma' n . e' + omega_pin' R - omega_bearing' (|e| + R) - omega_bearing
   !> |e|', with gamma' = t . e'/|e|. With `at_rest` only the terms with accelerations are included.
   pure real(dp) function sliding_acceleration(pin_radius, joint, rates, at_rest) result(a)
     real(dp), intent(in) :: pin_radius

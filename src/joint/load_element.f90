@@ -111,7 +111,7 @@ module load_element
       real(dp), intent(out) :: of_loads(3, n_slopes), of_rates(most_element_states, n_slopes)
     end subroutine find_slopes
 
-    !> Put the columns of the element into a row.
+    !> Add the columns of the element to a row.
     pure subroutine add_columns(self, joint, row)
       import :: load_element_t, joint_evaluation_t, trace_row_t
       class(load_element_t), intent(in) :: self

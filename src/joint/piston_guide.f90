@@ -103,7 +103,7 @@ contains
       crossing_speed(self%clearance, span))
   end function own_speed
 
-  !> Put the initial offset and tilt into the state vector.
+  !> Set the initial offset and tilt in the state vector.
   pure subroutine set_start(self, y)
     class(piston_guide_t), intent(in) :: self
     real(dp), intent(inout) :: y(:)

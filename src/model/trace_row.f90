@@ -62,7 +62,7 @@ contains
     end do
   end subroutine choose
 
-  !> Put the next column.
+  !> Add the next column.
   pure subroutine add(self, name, value, says)
     class(trace_row_t), intent(inout) :: self
     character(len=*), intent(in) :: name    !! with its unit: normal_force[N]
@@ -77,7 +77,7 @@ contains
     end if
   end subroutine add
 
-  !> Put the next column, which a trace has only if the case names it.
+  !> Add the next column, which a trace has only if the case names it.
   pure subroutine add_on_request(self, name, value, says)
     class(trace_row_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says

@@ -59,7 +59,7 @@ contains
     call case%output%parameters(list)
   end procedure visit_case
 
-  !> Take the working cycle that a case names, if it names one.
+  !> Select the working cycle that a case names, if it names one.
   subroutine select_gas(chosen, law)
     class(law_t), allocatable, intent(in) :: chosen
     class(gas_law_t), allocatable, intent(out) :: law

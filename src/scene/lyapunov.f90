@@ -38,7 +38,7 @@ module lyapunov
   integer, parameter :: per_revolution = 4             !! measurements in one revolution
   real(dp), parameter :: tolerance = 1e-11_dp          !! relative, of all scenes
   real(dp), parameter :: smallest_growth = 1e-12_dp    !! smallest growth factor that is resolved
-  real(dp), parameter :: longest_revolution = 100  !! longest time for one revolution, relative to its time at the crank speed at which it
+  real(dp), parameter :: longest_revolution = 100  !! longest time for one, relative to its time at the crank speed at which it
                                          !! begins
 
   !> Result of the measurement.

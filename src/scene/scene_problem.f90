@@ -303,8 +303,8 @@ contains
     end do
   end subroutine set_rates
 
-  !> Evaluate all quantities at (t, y). `in_domain` is false if a model is not defined there; then only the crank angle and the motion
-  !> of the joints are set, without sliding speeds.
+  !> Evaluate all quantities at (t, y). `in_domain` is false if a model is not defined there; then only the crank angle and the
+  !> motion of the joints are set, without sliding speeds.
   pure subroutine evaluate(self, t, y, evaluation, in_domain)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
@@ -326,9 +326,9 @@ contains
     end do
   end subroutine evaluate
 
-  !> Compute motion, loads, accelerations and power. `in_domain` is false if an eccentricity is not admissible. (The joints are passed
-  !> as an argument of fixed size, which avoids looking up bounds and strides. The equations of the two most common chains are
-  !> called directly, so that the compiler includes them here.)
+  !> Compute motion, loads, accelerations and power. `in_domain` is false if an eccentricity is not admissible. (The joints are
+  !> passed as an argument of fixed size, which avoids looking up bounds and strides. The equations of the two most common chains
+  !> are called directly, so that the compiler includes them here.)
   pure subroutine find_accelerations(self, n, joints, t, y, now, in_domain)
     class(scene_t), intent(in) :: self
     integer, intent(in) :: n

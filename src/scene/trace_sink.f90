@@ -26,7 +26,7 @@ module trace_sink
     procedure :: declare
   end type trace_event_t
 
-  !> Takes rows and events in the order of time. This type itself ignores them.
+  !> Accepts rows and events in the order of time. This type itself ignores them.
   type :: trace_sink_t
   contains
     procedure :: accept_row
@@ -65,7 +65,7 @@ contains
     call list%add(pre//'contact_max_normal_force', self%max_normal_force, 'N', 'largest normal force in it')
   end subroutine declare
 
-  !> Take one row of the trace, with values in the order of its columns.
+  !> Accept one row of the trace, with values in the order of its columns.
   subroutine accept_row(self, values)
     class(trace_sink_t), intent(inout) :: self
     real(dp), intent(in), contiguous :: values(:)

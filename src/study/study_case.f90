@@ -29,7 +29,7 @@ module study_case
   contains
     procedure :: prepare
     procedure :: set_values
-    procedure :: write_number
+    procedure :: set_number
     procedure :: load
     procedure :: convert
     procedure :: check
@@ -37,7 +37,7 @@ module study_case
 
 contains
 
-  !> Take the values of a base case, which must be valid by itself, and find the keys of the parameters. `at` names the place of the
+  !> Read the values of a base case, which must be valid by itself, and find the keys of the parameters. `at` names the place of the
   !> keys in messages. A key of a model that the base case does not have adds the model.
   subroutine prepare(self, values, path, keys, at, error)
     class(study_case_t), intent(inout) :: self
@@ -97,7 +97,7 @@ contains
   end subroutine set_values
 
   !> Set a number of parameter i; `load` puts the numbers set since the last call into the case.
-  pure subroutine write_number(self, i, element, number)
+  pure subroutine set_number(self, i, element, number)
     class(study_case_t), intent(inout) :: self
     integer, intent(in) :: i, element   !! element: of an array, from 1 on
     real(dp), intent(in) :: number      !! whole where the key is
@@ -107,7 +107,7 @@ contains
       value%given(element) = .true.
       value%written(element) = short_text(number)
     end associate
-  end subroutine write_number
+  end subroutine set_number
 
   !> Put the values into the case.
   subroutine load(self)
@@ -116,8 +116,8 @@ contains
     call load_case(self%values, self%case, self%groups)
   end subroutine load
 
-  !> Convert the value of parameter i, which `set_values` sets in the case. Error: a text that is not a value of its key; the message does
-  !> not name the key.
+  !> Convert the value of parameter i, which `set_values` sets in the case. Error: a text that is not a value of its key; the
+  !> message does not name the key.
   subroutine convert(self, i, text, error)
     class(study_case_t), intent(inout) :: self
     integer, intent(in) :: i

@@ -20,7 +20,7 @@ module study_rows
 
   !> One or more rows.
   type, extends(row_text_t) :: study_row_t
-    logical :: is_header = .false.       !! names of columns are put instead of values
+    logical :: is_header = .false.       !! names of columns are written instead of values
     logical :: has_strobes = .false.     !! the study has strobes
     logical :: has_place(n_places) = .false.   !! the study has columns of the pin at each place
     logical :: has_guide = .false.       !! the study has columns of the piston in its bore
