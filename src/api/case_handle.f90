@@ -40,6 +40,7 @@ module case_handle
     procedure :: set_accuracy
     procedure :: check
     procedure :: get
+    procedure :: number
     procedure :: is_given
     procedure :: text
     procedure :: set_cache
@@ -295,6 +296,22 @@ contains
     end if
     status = 0
   end subroutine get
+
+  !> The number of an element of a key, by its index in the table, as given. Error: there is none.
+  subroutine number(self, key, element, value, status)
+    class(case_handle_t), intent(inout) :: self
+    integer, intent(in) :: key, element   !! from 1 on
+    real(dp), intent(out) :: value
+    integer, intent(out) :: status
+    value = 0
+    status = status_case_file
+    if (key < 1 .or. key > size(self%values%keys)) return
+    associate (schema => self%values%keys(key), at => self%values%values(key))
+      if (schema%kind > integer_kind .or. element > schema%count) return
+      status = 0
+      value = merge(at%reals(element), real(at%whole, dp), schema%kind == real_kind)
+    end associate
+  end subroutine number
 
   !> Whether the case gives a key, by its index in the table.
   pure logical function is_given(self, key)

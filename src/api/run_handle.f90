@@ -226,7 +226,7 @@ contains
     call files%open(path, self%list, self%case%output%digits, self%has_events(), error)
     if (.not. allocated(error)) then
       do i = 1, self%rows%rows
-        call files%take_row(self%rows%values(:, i))
+        call files%accept_row(self%rows%values(:, i))
       end do
       do i = 1, self%rows%events
         call files%accept_event(self%rows%event(i))

@@ -232,7 +232,7 @@ contains
     is_complete = self%is_over .and. self%status == integration_done
   end function is_complete
 
-  !> The values of a row at the time reached. If the state there is not `in_domain` the model, there are none.
+  !> The values of a row at the time reached. If the state there is not in the domain of the model, there are none.
   subroutine evaluate_row(self, values, in_domain)
     class(run_t), intent(inout) :: self
     real(dp), intent(out) :: values(:)   !! in the order of the list

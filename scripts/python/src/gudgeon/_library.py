@@ -77,11 +77,15 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
 }
 
 
+def path() -> Path:
+    """The library of the package; the environment variable GUDGEON_LIBRARY names another one."""
+    return Path(os.environ.get("GUDGEON_LIBRARY") or Path(__file__).with_name("libgudgeon.so"))
+
+
 @cache
 def library() -> Any:
-    """The library of the package; the environment variable GUDGEON_LIBRARY names another one."""
-    path = os.environ.get("GUDGEON_LIBRARY") or str(Path(__file__).with_name("libgudgeon.so"))
-    loaded = c.CDLL(path)
+    """The functions of the library."""
+    loaded = c.CDLL(str(path()))
 
     class Functions:
         """Functions by their names without gudgeon_."""
