@@ -102,6 +102,7 @@ int gudgeon_groups(int count, struct gudgeon_group *);   /* the value is the num
 
 /* "complete", or a kind of short case: "dry", "film", "engine", ...; empty if there is none of this kind. */
 size_t gudgeon_template(const char *kind, char *text, size_t size);
+size_t gudgeon_schema(char *text, size_t size);   /* a JSON Schema of cases */
 size_t gudgeon_message(const void *handle, char *text, size_t size);
 size_t gudgeon_version(char *text, size_t size);
 

@@ -6,6 +6,7 @@ module gudgeon_c
   use error_handling, only: error_t
   use case_schema, only: key_table_t, case_schema_of, is_listed
   use case_file, only: template
+  use json_schema, only: json_schema_text
   use case_templates, only: short_template, template_kinds
   use trace_columns, only: column_list_t, column_name
   use scene_problem, only: event_contact_begins
@@ -534,6 +535,19 @@ contains
     length = len(all)
     call unlock_texts()
   end function template_of
+
+  integer(c_size_t) function schema(text, size) bind(c, name='gudgeon_schema') result(length)
+    type(c_ptr), value :: text
+    integer(c_size_t), value :: size
+    type(key_table_t) :: table
+    character(len=:), allocatable :: all
+    call lock_texts()
+    call case_schema_of(table)
+    all = json_schema_text(table)
+    call put_text(all, text, size)
+    length = len(all)
+    call unlock_texts()
+  end function schema
 
   integer(c_size_t) function message_of(handle, text, size) bind(c, name='gudgeon_message') result(length)
     type(c_ptr), value :: handle, text

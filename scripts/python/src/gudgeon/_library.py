@@ -72,6 +72,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "key": (_int, [_int, _int, c.POINTER(Key)]),
     "groups": (_int, [_int, c.POINTER(Group)]),
     "template": (_size, [_text, _text, _size]),
+    "schema": (_size, [_text, _size]),
     "message": (_size, [_handle, _text, _size]),
     "version": (_size, [_text, _size]),
 }
