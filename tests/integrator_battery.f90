@@ -1,5 +1,5 @@
 !> Measures the integrator: evaluations, steps and error over tolerance on four scenes and on the standard battery of non-stiff
-!> problems. Run by scripts/compare_adams.sh.
+!> problems. Run by scripts/bench/compare_adams.sh.
 !>
 !>     integrator_battery reference       prints a reference for every scene; intended for a build in extended precision
 !>     integrator_battery scenes FILE     prints the table, with errors against the references in FILE

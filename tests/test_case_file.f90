@@ -1,5 +1,6 @@
 !> Case files: which are accepted, which are refused and with which message, and that a resolved case gives the same case.
 module test_case_file
+  use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
   use error_handling, only: error_t, status_case_file
   use case_definition, only: case_t
@@ -164,9 +165,10 @@ contains
     call parse_case(text, 'x', none, back, error, again)
     call check%that(.not. allocated(error), 'a resolved case is read')
     call check%equal_text(again, text, 'resolved again')
-    call check%that(transfer(back%mechanism%crank_length, 1_8) == transfer(c%mechanism%crank_length, 1_8), 'bits of a length')
-    call check%that(transfer(back%joints(piston_pin)%clearance, 1_8) == transfer(c%joints(piston_pin)%clearance, 1_8), &
-      'bits of the clearance')
+    call check%that(transfer(back%mechanism%crank_length, 1_int64) == transfer(c%mechanism%crank_length, 1_int64), &
+      'bits of a length')
+    call check%that(transfer(back%joints(piston_pin)%clearance, 1_int64) == &
+      transfer(c%joints(piston_pin)%clearance, 1_int64), 'bits of the clearance')
     call check%that(index(text, '&lubrication') == 0 .and. index(text, '&contact') > 0, &
       'absent groups are not in the resolved case')
     call check%that(index(text, 'max_order = 12') > 0, 'defaults are in the resolved case')

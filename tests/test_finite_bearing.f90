@@ -70,7 +70,7 @@ contains
 
   !> Films from which the pin withdraws, the most difficult ones. With Reynolds's condition the mean of four grids shifted by a
   !> quarter of a node's distance is within 3e-4, a single grid within 8e-4; with Gumbel's condition within 2e-5.
-  !> (scripts/check_films.sh has all rows.)
+  !> (scripts/bench/check_films.sh has all rows.)
   subroutine forces_of_the_reference_level(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: rows(3, 5) = reshape([0.25_dp, 0.9_dp, 150.0_dp, 0.25_dp, 0.95_dp, 120.0_dp, &

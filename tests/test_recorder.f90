@@ -78,8 +78,8 @@ contains
     if (.not. allocated(error)) call build_scene(case, .false., scene, error)
     if (.not. allocated(error)) call choose_columns(case, .false., recorder%list, error)
     if (allocated(error)) error stop 'test_recorder: no such scene'
-    recorder%interval = interval
-    recorder%end_time = t_end
+    recorder%rows%interval = interval
+    recorder%rows%end_time = t_end
     recorder%sink => sink
     method%settings = settings_for(case, scene)
     method%strays_from = strays_from

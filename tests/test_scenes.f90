@@ -39,14 +39,14 @@ contains
   subroutine step_rejection_limits_entry(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: root, coarse, fine
-    character(len=long) :: common(2)
+    character(len=long) :: settings(2)
     real(dp) :: error(2)
 
-    common = [character(len=long) :: 'integrator.relative_tolerance=1e-9', 'integrator.revolutions=0.4']
-    root = run_case('cases/flores/dry_0100um.nml', common)
-    coarse = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: common, &
+    settings = [character(len=long) :: 'integrator.relative_tolerance=1e-9', 'integrator.revolutions=0.4']
+    root = run_case('cases/flores/dry_0100um.nml', settings)
+    coarse = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: settings, &
       'integrator.contact_entry=step_rejection', 'integrator.max_penetration=1e-8'])
-    fine = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: common, &
+    fine = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: settings, &
       'integrator.contact_entry=step_rejection', 'integrator.max_penetration=1e-10'])
     call check%that(size(root%event) >= 20, 'number of contacts')
     call check%that(root%report%figures%pin(piston_pin)%max_entry_penetration < 1e-14_dp, 'a root enters without penetration')
@@ -67,13 +67,13 @@ contains
   subroutine rejected_steps_are_not_counted(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace, fine
-    character(len=long) :: common(5)
+    character(len=long) :: settings(5)
     integer :: i, begun, wrong
 
-    common = [character(len=long) :: 'integrator.relative_tolerance=1e-7', 'integrator.revolutions=0.4', &
+    settings = [character(len=long) :: 'integrator.relative_tolerance=1e-7', 'integrator.revolutions=0.4', &
       'integrator.contact_entry=step_rejection', 'integrator.max_penetration=1e-9', 'output.samples_per_revolution=500000']
-    fine = run_case('cases/flores/dry_0100um.nml', common)
-    trace = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: common, 'output.every_step=T'])
+    fine = run_case('cases/flores/dry_0100um.nml', settings)
+    trace = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: settings, 'output.every_step=T'])
     associate (s => trace%report%statistics, figures => trace%report%figures, e => trace%event)
       call check%that(s%rejected_error > 50 .and. s%rejected_penetration > 10, 'enough steps are rejected')
       begun = 0
@@ -101,18 +101,18 @@ contains
   subroutine sticking_is_the_limit_of_ramps(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: coulomb, ramp
-    character(len=long) :: common(2)
+    character(len=long) :: settings(2)
     real(dp) :: error(3)
     integer :: i, n
     character(len=long), parameter :: speeds(3) = [character(len=long) :: 'friction.v1=1e-2', 'friction.v1=1e-3', &
       'friction.v1=1e-4']
 
-    common = [character(len=long) :: 'integrator.relative_tolerance=1e-9', 'integrator.revolutions=0.5']
-    coulomb = run_case('cases/flores/friction_100.nml', [character(len=long) :: common, 'friction.law=coulomb', &
+    settings = [character(len=long) :: 'integrator.relative_tolerance=1e-9', 'integrator.revolutions=0.5']
+    coulomb = run_case('cases/flores/friction_100.nml', [character(len=long) :: settings, 'friction.law=coulomb', &
       'friction.v0=0', 'friction.v1=0'])
     call check%that(.not. allocated(coulomb%error), 'a run with Coulomb friction')
     do i = 1, 3
-      ramp = run_case('cases/flores/friction_100.nml', [character(len=long) :: common, 'friction.v0=0', speeds(i)])
+      ramp = run_case('cases/flores/friction_100.nml', [character(len=long) :: settings, 'friction.v0=0', speeds(i)])
       n = min(size(ramp%event), size(coulomb%event), 10)
       call check%that(n == 10, 'number of contacts with Coulomb friction')
       error(i) = maxval(abs(ramp%event(:n)%time - coulomb%event(:n)%time))

@@ -1,6 +1,6 @@
 !> Some problems of the standard battery: the error at the end is proportional to the tolerance; runs in threads give identical
 !> results; rejected steps change nothing; the interpolant is as accurate as the steps. (The whole battery:
-!> scripts/compare_adams.sh.)
+!> scripts/bench/compare_adams.sh.)
 module test_standard_problems
   use kinds, only: dp
   use checks, only: checks_t
@@ -29,7 +29,7 @@ contains
     call interpolants(check)
   end subroutine run_test_standard_problems
 
-  !> The solution at the end of a problem, integrated in 80 bits (scripts/compare_adams.sh); B5, E2, E3, F1 and F2 agree with
+  !> The solution at the end of a problem, integrated in 80 bits (scripts/bench/compare_adams.sh); B5, E2, E3, F1 and F2 agree with
   !> DETEST.
   pure function end_of(name) result(y)
     character(len=*), intent(in) :: name

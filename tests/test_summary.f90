@@ -16,7 +16,7 @@ contains
 
   subroutine run_test_summary(check)
     class(checks_t), intent(inout) :: check
-    call a_status_is_one_field(check, 'done', '"done"')
+    call a_status_is_one_field(check, 'done', 'done')
     call a_status_is_one_field(check, '"a","b', '"""a"",""b"')
     call a_status_is_one_field(check, 'a""', '"a"""""')
     call times_by_method_stand_under_their_phases(check)

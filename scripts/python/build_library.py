@@ -19,7 +19,6 @@ COMPILE = (
     " -fPIC -fno-semantic-interposition -frecursive"
 )
 MANIFEST = """name = "gudgeon"
-version = "0.1.0"
 [build]
 auto-executables = false
 auto-tests = false

@@ -107,6 +107,7 @@ contains
         else if (.not. (cells%share > 0 .and. cells%share < 1)) then
           call fail(error, 'a circumferential groove must be narrower than the bearing', status_case_file)
         end if
+      case default   ! no supply
       end select
     end associate
   end subroutine check_supply

@@ -13,8 +13,7 @@ module case_run
   use whole_run, only: steps_between_looks
   use trace_files, only: trace_files_t
   use result_file, only: result_file_t, remove_result, write_text
-  use certificate, only: certificate_t, make_certificate
-  use certificate_text, only: certificate_table, certificate_summary, certificate_clause
+  use certificate, only: certificate_t, make_certificate, certificate_table, certificate_summary, certificate_clause
   use run_summary, only: summary_table
   use run_line, only: lines_for_user
   use run_progress, only: progress_t, clock, tell
@@ -232,7 +231,7 @@ contains
     if (self%is_twin .and. allocated(case%notes)) deallocate (case%notes)
     remark = ''
     if (allocated(self%certificate)) then
-      if (self%certificate%is_made) then
+      if (.not. allocated(self%certificate%reason)) then
         call write_text(self%base//'.certificate.csv', certificate_table(self%certificate), error)
         call keep_first(error, self%error)
       end if

@@ -128,6 +128,7 @@ contains
         next = name_here(scan)
         if (next /= 'end') call not_closed(scan, group, '&'//printable(next, shown))
         return
+      case default   ! a key
       end select
       if (list%n_entries == most) scan%message = 'too many keys'
       if (allocated(scan%message)) return

@@ -9,7 +9,7 @@ module reference_pages
   use trace_columns, only: choose_columns
   use trace_row, only: column_list_t, name_length
   use text_tools, only: replaced
-  use summary_quantities, only: quantity_t, quantities_of_runs, event_columns, wear_columns
+  use summary_quantities, only: quantity_t, quantities_of_runs, event_columns, wear_columns, study_columns
   implicit none
   private
   public :: keys_reference, results_reference
@@ -120,7 +120,8 @@ contains
     end do
     text = text//'## Columns of NAME.events.csv'//newline//newline//quantity_table(event_columns)//newline// &
       '## Columns of NAME.wear.csv'//newline//newline//quantity_table(wear_columns)//newline// &
-      '## Quantities of NAME.summary.csv'//newline//newline//quantity_table(quantities_of_runs)
+      '## Quantities of NAME.summary.csv'//newline//newline//quantity_table(quantities_of_runs)// &
+      newline//'## Columns of NAME.runs.csv and NAME.cycles.csv of a study'//newline//newline//quantity_table(study_columns)
   end function results_reference
 
   !> The columns of a kind of scene.

@@ -139,7 +139,7 @@ contains
   end subroutine add
 
   !> Claim the eccentricity, and what the elements need, in the state vector. The scale of the eccentricity is the clearance, that
-  !> of its rate the clearance divided by the time in which the crank turns by one radian. Measured (scripts/compare_adams.sh,
+  !> of its rate the clearance divided by the time in which the crank turns by one radian. Measured (scripts/bench/compare_adams.sh,
   !> simulation IV, c = 20 um): the error of the eccentricity at the end is 4e-5 c at the relative tolerance 1e-4, 4e-9 c at 1e-6,
   !> and 1e-14 c at 1e-12; in the coordinates (q, A, x) rounding alone causes 4e-12 c.
   !>

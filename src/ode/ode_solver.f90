@@ -132,19 +132,19 @@ contains
     class(observer_t), intent(inout) :: observer
     real(dp), intent(in) :: t_pause
     integer, intent(in) :: most_steps
-    real(dp) :: pause
+    real(dp) :: until
     integer :: steps
-    pause = t_pause
-    if (is_at_end(t_pause, self%t_end)) pause = self%t_end
+    until = t_pause
+    if (is_at_end(t_pause, self%t_end)) until = self%t_end
     steps = 0
     do while (.not. self%is_over)
       if (.not. self%is_kept) then
-        if (.not. self%t < pause .or. most_steps > 0 .and. steps >= most_steps) exit
+        if (.not. self%t < until .or. most_steps > 0 .and. steps >= most_steps) exit
         steps = steps + 1
         call take_step(self, problem, method, observer)
         if (.not. self%is_kept) cycle
       end if
-      if (self%t > pause) exit
+      if (self%t > until) exit
       self%is_kept = .false.
       call method%count_time(self%t)
       call observer%step_accepted(method, problem, self%t)

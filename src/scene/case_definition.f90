@@ -21,7 +21,7 @@ module case_definition
   use measured_pressure, only: measured_pressure_t
   implicit none
   private
-  public :: case_t, visit_case
+  public :: case_t, output_case_t, visit_case
 
   type, extends(has_parameters_t) :: mechanism_case_t
     real(dp) :: crank_length = 0, crank_mass = 0, crank_inertia = 0, crank_com(2) = 0

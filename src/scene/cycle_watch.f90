@@ -1,8 +1,4 @@
-!> Divides a run into the revolutions of its crank: assigns accepted points to revolutions, and finds on the interpolant of the
-!> method the instants at which a revolution ends or the crank passes a given angle.
-!>
-!> Revolution k ends when the crank has turned by 2 pi k from its start, in the sense of its starting speed (from rest: of its
-!> torque). If the crank swings back, it is still in the revolution that it has reached.
+!> Results of the revolutions of the crank, and samples at the instants at which it passes a given angle.
 module cycle_watch
   use kinds, only: dp
   use constants, only: two_pi
@@ -10,6 +6,7 @@ module cycle_watch
   use joint_places, only: n_places
   use scene_problem, only: scene_t, evaluation_t, phase_contact
   use crank_passage, only: find_passage
+  use revolutions, only: revolutions_t
   use step_peaks, only: n_peaks, of_pin_force, of_penetration
   use trace_columns, only: column_list_t, row_values
   use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt, most_parts
@@ -39,17 +36,18 @@ module cycle_watch
     real(dp), private :: works(most_parts) = 0, energy = 0   !! at the start of the revolution [J]
     type(cycle_t), private :: present
     integer :: ended = 0                  !! number of revolutions that have ended
+    integer :: followed = 0               !! number of those that have results: a run that goes on begins inside one
     integer, private :: passed = 0                 !! number of times that the crank has passed the strobe angle
     real(dp), private :: start_angle = 0, strobe_offset = 0, initial_energy = 0
     real(dp), private :: t = 0                     !! time of the last point [s]
     real(dp), private :: cycle_start = 0           !! time at which the present revolution began [s]
     real(dp), private :: force_integral(n_places) = 0, loss = 0   !! at the start of the revolution
     logical, private :: has_strobe = .false.
-    real(dp), allocatable :: y(:)                  !! state at the end of the present revolution, from `find_end`
+    logical, private :: is_whole = .true.          !! the present revolution has been followed from its beginning
+    real(dp), allocatable, private :: y(:)         !! work space for a state
   contains
     procedure :: begin
     procedure :: count_from
-    procedure :: find_end
     procedure :: end_cycle
     procedure :: record_strobes
     procedure :: lower_to_peaks
@@ -57,6 +55,7 @@ module cycle_watch
     procedure :: record_film
     procedure :: search_machine
     procedure :: last_cycle
+    procedure :: film_change
     procedure :: record_point
     procedure :: count_impact
     procedure :: record_skirt
@@ -66,18 +65,23 @@ module cycle_watch
 contains
 
   !> Begin a run at (t, y), where the scene has been evaluated if that is inside the model.
-  subroutine begin(self, scene, t, y, now, in_domain, initial_energy)
+  subroutine begin(self, scene, t, y, now, in_domain, initial_energy, crank)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(in) :: now
     logical, intent(in) :: in_domain
     real(dp), intent(in) :: initial_energy   !! [J]
+    type(revolutions_t), intent(in) :: crank   !! its revolutions so far
     if (in_domain) call self%machine%begin(scene, t, now)
     self%statistics = cycle_statistics_t()
     self%present = cycle_t()
     self%uncounted = self%settle
-    self%ended = 0
+    self%ended = crank%ended
+    self%followed = 0
+    self%direction = crank%direction
+    self%start_angle = crank%start_angle
+    self%is_whole = abs(scene%crank_angle(t, y) - crank%angle(crank%ended)) <= rounding
     self%passed = 0
     self%strobes = 0
     self%t = t
@@ -88,9 +92,6 @@ contains
     if (allocated(scene%parts)) self%works(:size(scene%parts)) = scene%works(t, y)
     self%energy = 0
     if (in_domain) self%energy = scene%chain%energy(now%motion)
-    self%direction = sign(1.0_dp, scene%chain%drive%torque)
-    if (abs(scene%start_speed) > 0) self%direction = sign(1.0_dp, scene%start_speed)
-    self%start_angle = scene%crank_angle(t, y)
     self%initial_energy = initial_energy
     self%strobe_offset = two_pi - modulo(-self%direction*(self%strobe_angle - self%start_angle), two_pi)
     self%has_strobe = .false.
@@ -109,23 +110,6 @@ contains
     self%statistics = cycle_statistics_t()
     self%strobes = 0
   end subroutine count_from
-
-  !> Find out whether the present revolution ends before (t_to, y_to), and when. The solution must be final up to there, inside the
-  !> last step of the method. A step may contain several ends of revolutions: handle the points before this end, end the revolution,
-  !> and call again.
-  subroutine find_end(self, method, scene, t_to, y_to, t_end, ends)
-    class(cycle_watch_t), intent(inout) :: self
-    class(ode_method_t), intent(inout) :: method
-    type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t_to, y_to(:)
-    real(dp), intent(out) :: t_end   !! the state at this time is left in self%y
-    logical, intent(out) :: ends
-    real(dp) :: travel
-    travel = travel_at(self, scene, t_to, y_to)
-    ends = travel >= next_end(self)
-    t_end = t_to
-    if (ends) t_end = passage(self, method, scene, next_end(self), t_to)
-  end subroutine find_end
 
   !> Sample the columns at the strobe angle, if the crank has passed it before (t_to, y_to), perhaps several times.
   subroutine record_strobes(self, method, scene, t_to, y_to)
@@ -181,17 +165,36 @@ contains
     call self%machine%search(method, scene, t, now, self%present)
   end subroutine search_machine
 
-  !> The last revolutions together, as one cycle; all must have ended.
-  pure type(cycle_t) function last_cycle(self, revolutions) result(cycle)
+  !> The last revolutions together, as one cycle, or those up to `earlier` revolutions before; all must have been followed.
+  pure type(cycle_t) function last_cycle(self, revolutions, earlier) result(cycle)
     class(cycle_watch_t), intent(in) :: self
     integer, intent(in) :: revolutions
+    integer, intent(in), optional :: earlier
     type(cycle_statistics_t) :: sum
-    integer :: k
-    do k = self%ended - revolutions + 1, self%ended
+    integer :: k, last
+    last = self%ended
+    if (present(earlier)) last = last - earlier
+    do k = last - revolutions + 1, last
       call sum%add(self%recent(mod(k, longest_period)))
     end do
     cycle = sum%total
   end function last_cycle
+
+  !> Change of the smallest film thickness of a pin from the last cycle but one to the last, relative to the former [-]; 0 before
+  !> the end of the third cycle, since the first one begins anywhere, and where the surfaces touch.
+  pure real(dp) function film_change(self, pin, revolutions)
+    class(cycle_watch_t), intent(in) :: self
+    integer, intent(in) :: pin           !! index in `places`
+    integer, intent(in) :: revolutions   !! in a cycle
+    type(cycle_t) :: last, before
+    film_change = 0
+    if (self%followed < 3*revolutions .or. 2*revolutions > longest_period) return
+    last = self%last_cycle(revolutions)
+    before = self%last_cycle(revolutions, revolutions)
+    associate (now => last%pin(pin)%min_film_thickness, then => before%pin(pin)%min_film_thickness)
+      if (now > 0 .and. then > 0) film_change = (now - then)/then
+    end associate
+  end function film_change
 
   !> Account for values of the quantities with peaks, at a pin in the present revolution.
   pure subroutine record_peaks(self, pin, is_touching, values, thinnest_angle)
@@ -241,22 +244,13 @@ contains
     self%present%pin(skirt)%max_force = force
   end subroutine record_skirt
 
-  !> End the run at (t, y). A revolution that is complete except for rounding is ended too.
+  !> End the run at (t, y): the crank may be at the strobe angle but for rounding.
   subroutine finish(self, scene, t, y)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
-    type(evaluation_t) :: now
-    logical :: in_domain
-    real(dp) :: travel
-    travel = travel_at(self, scene, t, y)
-    if (abs(travel - next_end(self)) <= rounding*(1 + self%ended)) then
-      self%y = y
-      call scene%evaluate(t, y, now, in_domain)
-      call self%end_cycle(scene, t, now)
-    end if
     if (.not. self%has_strobe) return
-    if (abs(travel - next_strobe(self)) <= rounding*(1 + self%passed)) call strobe(self, scene, t, y)
+    if (abs(travel_at(self, scene, t, y) - next_strobe(self)) <= rounding*(1 + self%passed)) call strobe(self, scene, t, y)
   end subroutine finish
 
   !> Angle turned through since the start, in the sense of the revolutions [rad].
@@ -266,12 +260,6 @@ contains
     real(dp), intent(in) :: t, y(:)
     travel_at = self%direction*(scene%crank_angle(t, y) - self%start_angle)
   end function travel_at
-
-  !> Angle of travel at which the present revolution ends [rad].
-  pure real(dp) function next_end(self)
-    class(cycle_watch_t), intent(in) :: self
-    next_end = two_pi*(self%ended + 1)
-  end function next_end
 
   !> Angle of travel at which the crank passes the strobe angle next [rad].
   pure real(dp) function next_strobe(self)
@@ -291,18 +279,18 @@ contains
       passage, self%y)
   end function passage
 
-  !> End the present revolution at time t, with the state in self%y, where the scene has been evaluated.
-  subroutine end_cycle(self, scene, t, now)
+  !> End the present revolution at (t, y), where the scene has been evaluated.
+  subroutine end_cycle(self, scene, t, y, now)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t
+    real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(in) :: now
     real(dp) :: force_integral(n_places), loss, works(most_parts), energy
-    force_integral = scene%force_integrals(self%y)
-    loss = scene%joint_loss(t, self%y)
+    force_integral = scene%force_integrals(y)
+    loss = scene%joint_loss(t, y)
     energy = scene%chain%energy(now%motion)
     works = 0
-    if (allocated(scene%parts)) works(:size(scene%parts)) = scene%works(t, self%y)
+    if (allocated(scene%parts)) works(:size(scene%parts)) = scene%works(t, y)
     call self%record_point(scene, t)
     self%present%duration = t - self%cycle_start
     self%present%pin(:n_places)%force_integral = force_integral - self%force_integral
@@ -312,7 +300,8 @@ contains
     self%present%energy_change = energy - self%energy
     self%ended = self%ended + 1
     self%recent(mod(self%ended, longest_period)) = self%present
-    if (self%ended > self%uncounted) then
+    if (self%is_whole) self%followed = self%followed + 1
+    if (self%is_whole .and. self%ended > self%uncounted) then
       call self%statistics%add(self%present)
       if (self%keeps_cycles) then
         associate (n => self%statistics%cycles)
@@ -321,6 +310,7 @@ contains
         end associate
       end if
     end if
+    self%is_whole = .true.
     self%present = cycle_t()
     self%cycle_start = t
     self%force_integral = force_integral

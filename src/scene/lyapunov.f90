@@ -161,16 +161,16 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(companion_t), intent(inout) :: companion
-    type(case_t) :: close
+    type(case_t) :: tight
     type(error_t), allocatable :: ignored
-    close = case
-    close%integrator%relative_tolerance = tolerance
-    close%integrator%absolute_tolerance = 0
+    tight = case
+    tight%integrator%relative_tolerance = tolerance
+    tight%integrator%absolute_tolerance = 0
     allocate (companion%scene, source=scene)
     companion%scene%enters_at_step_end = .false.   ! contacts are entered at the root of the event function
     if (allocated(companion%scene%turns)) companion%scene%turns%wanted = 1e30_dp   ! never reached
     call new_method('auto', companion%method, ignored)
-    companion%method%settings = settings_for(close, companion%scene)
+    companion%method%settings = settings_for(tight, companion%scene)
     companion%t = t
     companion%y = y
     companion%direction = sign(1.0_dp, companion%scene%crank_speed(t, y))

@@ -13,7 +13,6 @@ module pin_record
   use trace_sink, only: trace_event_t
   use film_figures, only: film_figures_t
   use run_figures, only: run_figures_t
-  use settling, only: settling_t
   implicit none
   private
   public :: pin_record_t
@@ -22,7 +21,6 @@ module pin_record
     real(dp) :: validity_limit = huge(1.0_dp)  !! largest impact speed for which the contact law is valid [m/s]
     real(dp) :: deepest = huge(1.0_dp)         !! largest penetration for which the contact geometry is valid [m]
     type(trace_event_t), private :: contact    !! present or last contact
-    type(settling_t) :: settling               !! of its film
     logical, private :: reports_film = .false.
     real(dp), private :: film_time = 0         !! time up to which the results of its film have been integrated [s]
     type(wear_record_t), allocatable :: wear   !! not allocated: wear is not counted
@@ -48,7 +46,6 @@ contains
     self%contact%pin = pin
     if (self%joint == 0) return
     self%reports_film = scene%joints(self%joint)%reports_film
-    if (allocated(scene%gas)) self%settling%revolutions = scene%gas%revolutions
     if (allocated(scene%joints(self%joint)%wear)) then
       allocate (self%wear)
       call self%wear%prepare(self%joint, scene)

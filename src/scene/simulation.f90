@@ -119,22 +119,22 @@ contains
     associate (recorder => self%recorder, scene => self%scene)
       recorder%list = list
       if (case%output%sampling == 'crank_angle') then
-        recorder%angles%per_revolution = case%output%samples_per_revolution
-        recorder%angles%origin = case%output%angle_origin_deg*degree
+        recorder%rows%angles%per_revolution = case%output%samples_per_revolution
+        recorder%rows%angles%origin = case%output%angle_origin_deg*degree
       else
-        recorder%interval = sample_interval(case)
+        recorder%rows%interval = sample_interval(case)
       end if
-      recorder%first_sample = case%output%start_time
+      recorder%rows%first_sample = case%output%start_time
       recorder%periods%is_on = case%run%is_until_periodic()
       recorder%periods%longest = case%run%period_revolutions
       recorder%periods%tolerance = case%run%periodic_tolerance
       recorder%periods%most_revolutions = case%run%most_revolutions
       recorder%periods%keeps_one_more = recorder%periods%is_on .and. case%output%window == 'last_period'
-      recorder%end_time = latest_end(case)
-      recorder%turn_limit%longest = longest_turn(case)
-      recorder%every_step = case%output%every_step
-      recorder%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
-      recorder%revolution_time = two_pi/scene%speed_scale()
+      recorder%rows%end_time = latest_end(case)
+      recorder%limits%turn_limit%longest = longest_turn(case)
+      recorder%rows%every_step = case%output%every_step
+      recorder%limits%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
+      recorder%limits%revolution_time = two_pi/scene%speed_scale()
       recorder%sink => sink
       if (present(cycles)) self%has_cycles = allocated(cycles)
       if (self%has_cycles) then
@@ -154,7 +154,7 @@ contains
       end if
       call recorder%begin(scene, t, y)
       self%t = t
-      call self%integration%begin(scene, self%method, t, y, recorder%end_time, case%integrator%max_steps)
+      call self%integration%begin(scene, self%method, t, y, recorder%rows%end_time, case%integrator%max_steps)
       call inputs_of(scene, self%inputs)
       self%input = [(input_value(scene, self%inputs(i), t, y), i=1, size(self%inputs))]
     end associate
@@ -211,7 +211,7 @@ contains
     real(dp) :: until
     integer :: i
     if (.not. self%has_new_input .and. self%t < self%ramp_end) return
-    until = min(t, self%recorder%end_time)
+    until = min(t, self%recorder%rows%end_time)
     call self%integration%cut(self%scene, self%method, self%recorder, self%t)
     if (self%integration%is_over) return
     self%ramp_end = huge(1.0_dp)
@@ -280,9 +280,9 @@ contains
   real(dp) function expected_end(self)
     class(run_t), intent(in) :: self
     expected_end = simulated_time(self%case)
-    associate (travel => abs(self%recorder%figures%crank_travel))
+    associate (travel => abs(self%recorder%extremes%figures%crank_travel))
       if (allocated(self%scene%turns) .and. travel > 0) &
-        expected_end = min(self%recorder%end_time, self%t*self%scene%turns%wanted*two_pi/travel)
+        expected_end = min(self%recorder%rows%end_time, self%t*self%scene%turns%wanted*two_pi/travel)
     end associate
   end function expected_end
 
@@ -296,14 +296,14 @@ contains
       if (recorder%periods%has_ended) then
         status = integration_done
         t = recorder%periods%t
-        y = recorder%periods%y
+        y = recorder%state_at_end
         call move_alloc(recorder%scene_at_end, self%scene)
-      else if (recorder%turn_limit%is_over) then
+      else if (recorder%limits%turn_limit%is_over) then
         status = crank_creeps
-        t = recorder%figures%time
+        t = recorder%extremes%figures%time
         call self%method%interpolate(t, y)
       else
-        if (status == integration_interrupted .and. recorder%over_budget) status = revolution_budget_spent
+        if (status == integration_interrupted .and. recorder%limits%over_budget) status = revolution_budget_spent
         call judge_turns(self%scene, t, y, status)
       end if
       call recorder%finish(self%scene, t, y)
@@ -331,7 +331,7 @@ contains
     if (allocated(self%measurement)) report%exponent = self%measurement%exponent
     report%statistics = self%method%totals()
     if (allocated(self%method%time_with)) report%time_with = self%method%time_with
-    report%figures = self%recorder%figures
+    report%figures = self%recorder%extremes%figures
     report%wear = self%recorder%wear(self%scene)
     allocate (report%answers(0))
     if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, self%recorder%periods)
@@ -373,6 +373,7 @@ contains
       if (scene%turns%outcome == turned_back) status = crank_turned_back
     case (integration_done)
       if (scene%turns%made(scene%crank_angle(t, y)) < scene%turns%wanted*(1 - rounding)) status = turns_not_made
+    case default   ! why the run has ended otherwise
     end select
   end subroutine judge_turns
 

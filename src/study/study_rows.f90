@@ -11,6 +11,7 @@ module study_rows
   use simulation, only: run_report_t
   use result_notes, only: relative_residual
   use archard_wear, only: of_pin, of_bore
+  use summary_quantities, only: study_columns, unit_of
   use number_text, only: number_writer_t
   use row_text, only: row_text_t
   implicit none
@@ -27,6 +28,7 @@ module study_rows
     logical :: has_wear = .false.        !! the study has columns of wear
     logical :: has_motion = .false.      !! the study has columns of the period or the Lyapunov exponent
     type(number_writer_t) :: numbers
+    character(len=:), allocatable :: prefix   !! place of the joint whose columns are put
   contains
     procedure :: choose
     procedure, private :: add_named_real, add_named_whole
@@ -35,14 +37,14 @@ module study_rows
 
 contains
 
-  !> Append a number, or the name of its column; an empty field if the scene does not have the quantity.
+  !> Append a number, or the name of its column with its unit; an empty field if the scene does not have the quantity.
   pure subroutine add_named_real(self, name, value, is_known)
     class(study_row_t), intent(inout) :: self
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !! as it is declared in `study_columns`
     real(dp), intent(in) :: value
     logical, intent(in) :: is_known
     if (self%is_header) then
-      call self%add_text(name)
+      call self%add_text(self%prefix//with_unit(name))
     else
       call self%add_number(self%numbers, value, is_known)
     end if
@@ -54,13 +56,22 @@ contains
     integer, intent(in) :: number
     logical, intent(in) :: is_known
     if (self%is_header) then
-      call self%add_text(name)
+      call self%add_text(self%prefix//with_unit(name))
     else if (is_known) then
       call self%add_whole(number)
     else
       call self%add_text('')
     end if
   end subroutine add_named_whole
+
+  !> The name of a column with its unit.
+  pure function with_unit(name) result(text)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: text
+    text = unit_of(study_columns, name)
+    if (text /= '') text = '['//text//']'
+    text = name//text
+  end function with_unit
 
   !> Choose the columns that not all studies have: those of strobes, and those that the base case has or a parameter may add.
   pure subroutine choose(self, keys, base, has_strobes)
@@ -142,36 +153,36 @@ contains
     s = watch%statistics
     if (.not. is_done) call s%add(cycle_t(duration=1.0_dp))   ! prevents divisions by 0
     call row%clear()
+    row%prefix = ''
     call row%add('run', run, .true.)
     do i = 1, size(values)
       call row%add_text(values(i))
     end do
     call row%add_text(outcome)
-    call row%add('cycles[-]', s%cycles, is_done)
+    call row%add('cycles', s%cycles, is_done)
     call add_motion(row, s, watch%direction, case, is_done, .true.)
-    call row%add('energy_residual[-]', relative_residual(report), has_begun)
-    call row%add('rhs_evaluations[-]', report%statistics%evaluations, has_begun)
-    call row%add('simulated_time[s]', report%figures%time, has_begun)
-    call row%add('notes[-]', notes, has_begun)
-    if (row%has_strobes) call row%add('strobes[-]', watch%strobes, is_done)
+    call row%add('energy_residual', relative_residual(report), has_begun)
+    call row%add('rhs_evaluations', report%statistics%evaluations, has_begun)
+    call row%add('simulated_time', report%figures%time, has_begun)
+    call row%add('notes', notes, has_begun)
+    if (row%has_strobes) call row%add('strobes', watch%strobes, is_done)
     call add_further_joints(row, s, case, is_done, .true.)
     if (row%has_motion) then
-      call row%add('period_revolutions[-]', report%periods%period, is_done .and. report%periods%is_on)
-      call row%add('lyapunov_exponent[1/revolution]', report%exponent%mean, is_done .and. report%exponent%is_known)
-      call row%add('lyapunov_exponent_error[1/revolution]', report%exponent%error, is_done .and. report%exponent%is_known)
+      call row%add('period_revolutions', report%periods%period, is_done .and. report%periods%is_on)
+      call row%add('lyapunov_exponent', report%exponent%mean, is_done .and. report%exponent%is_known)
+      call row%add('lyapunov_exponent_error', report%exponent%error, is_done .and. report%exponent%is_known)
     end if
     do i = 1, n_places
-      if (row%has_wear .and. row%has_place(in_order(i))) call add_wear(row, report, in_order(i), name_prefix(in_order(i)), is_done)
+      if (row%has_wear .and. row%has_place(in_order(i))) call add_wear(row, report, in_order(i), is_done)
     end do
     call row%end_row()
   end subroutine add_run
 
   !> Append the columns of the worn surfaces of one joint: of the whole run, also of the revolutions that are not counted.
-  subroutine add_wear(row, report, pin, prefix, is_done)
+  subroutine add_wear(row, report, pin, is_done)
     class(study_row_t), intent(inout) :: row
     type(run_report_t), intent(in) :: report
-    integer, intent(in) :: pin
-    character(len=*), intent(in) :: prefix
+    integer, intent(in) :: pin   !! index in `places`
     logical, intent(in) :: is_done
     real(dp) :: volume(2), depth(2)
     logical :: is_known
@@ -187,10 +198,12 @@ contains
         depth = maxval(report%wear(i)%depth, 1)
       end do
     end if
-    call row%add(prefix//'worn_volume_pin[m3]', volume(of_pin), is_known)
-    call row%add(prefix//'worn_volume_bore[m3]', volume(of_bore), is_known)
-    call row%add(prefix//'max_wear_depth_pin[m]', depth(of_pin), is_known)
-    call row%add(prefix//'max_wear_depth_bore[m]', depth(of_bore), is_known)
+    row%prefix = name_prefix(pin)
+    call row%add('worn_volume_pin', volume(of_pin), is_known)
+    call row%add('worn_volume_bore', volume(of_bore), is_known)
+    call row%add('max_wear_depth_pin', depth(of_pin), is_known)
+    call row%add('max_wear_depth_bore', depth(of_bore), is_known)
+    row%prefix = ''
   end subroutine add_wear
 
   !> Append a row for each revolution counted.
@@ -215,9 +228,10 @@ contains
     type(case_t), intent(in) :: case
     type(cycle_statistics_t) :: s
     call s%add(cycle)
+    row%prefix = ''
     call row%add('run', run, .true.)
     call row%add('cycle', number, .true.)
-    call row%add('duration[s]', cycle%duration, .true.)
+    call row%add('duration', cycle%duration, .true.)
     call add_motion(row, s, direction, case, .true., .false.)
     call add_further_joints(row, s, case, .true., .false.)
     call row%end_row()
@@ -233,8 +247,8 @@ contains
     associate (first => in_order(1))
       call add_pin(row, s, first, is_known .and. case%joints(first)%has_clearance(), is_known, with_means)
     end associate
-    call row%add('mean_crank_speed[rad/s]', direction*two_pi*s%cycles/s%total%duration, is_known)
-    call row%add('dissipated_energy[J]', s%total%dissipated_energy/s%cycles, is_known .and. case%has_play())
+    call row%add('mean_crank_speed', direction*two_pi*s%cycles/s%total%duration, is_known)
+    call row%add('dissipated_energy', s%total%dissipated_energy/s%cycles, is_known .and. case%has_play())
   end subroutine add_motion
 
   !> Append the columns of further pins and of the piston in its bore, if the study has them.
@@ -251,13 +265,15 @@ contains
     end do
     if (.not. row%has_guide) return
     is_loose = is_known .and. case%has_loose_guide()
+    row%prefix = 'guide_'
     associate (total => s%total%pin(skirt))
-      call row%add('guide_contact_time_fraction[-]', total%contact_time/s%total%duration, is_loose)
-      call add_impacts(row, 'guide_', total%impacts, s%cycles, is_loose, with_means)
-      call row%add('guide_max_penetration[m]', total%max_penetration, is_loose)
-      call row%add('guide_max_force[N]', total%max_force, is_loose)
-      if (with_means) call row%add('guide_max_force_mean[N]', s%force_sum(skirt)/s%cycles, is_loose)
+      call row%add('contact_time_fraction', total%contact_time/s%total%duration, is_loose)
+      call add_impacts(row, total%impacts, s%cycles, is_loose, with_means)
+      call row%add('max_penetration', total%max_penetration, is_loose)
+      call row%add('max_force', total%max_force, is_loose)
+      if (with_means) call row%add('max_force_mean', s%force_sum(skirt)/s%cycles, is_loose)
     end associate
+    row%prefix = ''
   end subroutine add_further_joints
 
   subroutine add_pin(row, s, pin, has_clearance, has_force, with_means)
@@ -265,28 +281,27 @@ contains
     type(cycle_statistics_t), intent(in) :: s
     integer, intent(in) :: pin   !! index in `places`
     logical, intent(in) :: has_clearance, has_force, with_means
-    character(len=:), allocatable :: prefix
-    prefix = name_prefix(pin)
+    row%prefix = name_prefix(pin)
     associate (total => s%total%pin(pin), duration => s%total%duration)
-      call row%add(prefix//'min_film_thickness[m]', total%min_film_thickness, has_clearance)
-      if (with_means) call row%add(prefix//'min_film_thickness_mean[m]', s%film_sum(pin)/s%cycles, has_clearance)
-      call row%add(prefix//'contact_time_fraction[-]', total%contact_time/duration, has_clearance)
-      call add_impacts(row, prefix, total%impacts, s%cycles, has_clearance, with_means)
-      call row%add(prefix//'max_penetration[m]', total%max_penetration, has_clearance)
-      call row%add(prefix//'max_pin_force[N]', total%max_force, has_force)
-      if (with_means) call row%add(prefix//'max_pin_force_mean[N]', s%force_sum(pin)/s%cycles, has_force)
-      call row%add(prefix//'mean_pin_force[N]', total%force_integral/duration, has_force)
+      call row%add('min_film_thickness', total%min_film_thickness, has_clearance)
+      if (with_means) call row%add('min_film_thickness_mean', s%film_sum(pin)/s%cycles, has_clearance)
+      call row%add('contact_time_fraction', total%contact_time/duration, has_clearance)
+      call add_impacts(row, total%impacts, s%cycles, has_clearance, with_means)
+      call row%add('max_penetration', total%max_penetration, has_clearance)
+      call row%add('max_pin_force', total%max_force, has_force)
+      if (with_means) call row%add('max_pin_force_mean', s%force_sum(pin)/s%cycles, has_force)
+      call row%add('mean_pin_force', total%force_integral/duration, has_force)
     end associate
+    row%prefix = ''
   end subroutine add_pin
 
   !> Append the number of impacts: the mean over the revolutions, or that of one revolution.
-  subroutine add_impacts(row, prefix, impacts, cycles, is_known, as_mean)
+  subroutine add_impacts(row, impacts, cycles, is_known, as_mean)
     class(study_row_t), intent(inout) :: row
-    character(len=*), intent(in) :: prefix
     integer, intent(in) :: impacts, cycles
     logical, intent(in) :: is_known, as_mean
-    if (as_mean) call row%add(prefix//'impacts[-]', real(impacts, dp)/cycles, is_known)
-    if (.not. as_mean) call row%add(prefix//'impacts[-]', impacts, is_known)
+    if (as_mean) call row%add('impacts', real(impacts, dp)/cycles, is_known)
+    if (.not. as_mean) call row%add('impacts', impacts, is_known)
   end subroutine add_impacts
 
   !> Append a row for each strobe.

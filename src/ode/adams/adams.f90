@@ -10,7 +10,7 @@
 !> - while order and step size rise after a start, a step may grow as far as its error at the present order allows, up to 64 times,
 !>   instead of only twice: the published doubling needs 20 steps from the first step of order 1 to the step size of free flight;
 !> - later a step may also grow by a quarter instead of only by doubling; the order may rise at varying step size too, except while
-!>   stability limits the step, where the higher order only reduces the limit. Measured together (scripts/compare_adams.sh,
+!>   stability limits the step, where the higher order only reduces the limit. Measured together (scripts/bench/compare_adams.sh,
 !>   evaluations at 1e-6 ... 1e-12): dry contact -23 ... -36 %, film scenes -12 ... -18 %, the standard battery +13 % at 1e-3, -22 %
 !>   at 1e-12;
 !> - steps are shortened where the problem says that f is about to lose its smoothness;
