@@ -19,12 +19,11 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(TOP / "scripts" / "python" / "src"))
 os.environ.setdefault("GUDGEON_LIBRARY", str(TOP / "build" / "library" / "libgudgeon.so"))
-import fmpy  # noqa: E402
-import numpy as np  # noqa: E402
-from fmpy.fmi1 import FMICallException  # noqa: E402
-from fmpy.validation import validate_fmu  # noqa: E402
-
-import gudgeon  # noqa: E402
+import fmpy
+import gudgeon
+import numpy as np
+from fmpy.fmi1 import FMICallException
+from fmpy.validation import validate_fmu
 
 CASES = ["sim_I", "friction/coulomb_static", "gas/compressor"]
 ALL_CASES = [

@@ -22,9 +22,8 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(TOP / "scripts" / "python" / "src"))
 os.environ.setdefault("GUDGEON_LIBRARY", str(TOP / "build" / "library" / "libgudgeon.so"))
-import numpy as np  # noqa: E402
-
-import gudgeon  # noqa: E402
+import gudgeon
+import numpy as np
 
 #: One case of each kind that ends soon; tables of films take too long here.
 CASES = [
@@ -292,7 +291,7 @@ def memory() -> None:
 
     case = case_of("sim_I")
     sizes = []
-    for part in range(3):
+    for _ in range(3):
         for _ in range(150):
             stepper = case.begin(end=0.002)
             stepper.advance(0.001)

@@ -14,8 +14,8 @@ module gudgeon_fmi2
   integer(c_int), parameter :: co_simulation = 1
   integer(c_int), parameter :: do_step_status = 0, last_successful_time = 2, terminated = 3
 
-  character(kind=c_char), target, save :: version(4) = ['2', '.', '0', c_null_char]
-  character(kind=c_char), target, save :: platform(8) = ['d', 'e', 'f', 'a', 'u', 'l', 't', c_null_char]
+  character(kind=c_char), target :: version(4) = ['2', '.', '0', c_null_char]
+  character(kind=c_char), target :: platform(8) = ['d', 'e', 'f', 'a', 'u', 'l', 't', c_null_char]
 
   type, bind(c) :: callbacks_t
     type(c_funptr) :: logger, allocate_memory, free_memory, step_finished

@@ -10,7 +10,7 @@ module gudgeon_fmi3
   implicit none
   private
 
-  character(kind=c_char), target, save :: version(4) = ['3', '.', '0', c_null_char]
+  character(kind=c_char), target :: version(4) = ['3', '.', '0', c_null_char]
 
   type :: unit_t
     type(fmi_instance_t) :: instance

@@ -14,8 +14,7 @@ module run_handle
   use simulation, only: run_t, run_report_t
   use scene_inputs, only: input_t, inputs
   use run_summary, only: summary_table
-  use certificate, only: certificate_t, make_certificate
-  use certificate_text, only: certificate_summary, certificate_table
+  use certificate, only: certificate_t, make_certificate, certificate_summary, certificate_table
   use run_progress, only: clock
   use row_store, only: row_store_t
   use case_handle, only: case_handle_t
@@ -176,6 +175,7 @@ contains
         row%value = ieee_value(1.0_dp, ieee_quiet_nan)
         if (verify(row%text, '+-.0123456789eE') > 0 .or. scan(row%text, '0123456789') == 0) cycle
         read (row%text, *, iostat=ios) row%value
+        if (ios /= 0) row%value = ieee_value(1.0_dp, ieee_quiet_nan)
       end associate
     end do
     rows = found(:n)
@@ -197,7 +197,7 @@ contains
     call make_certificate(self%case, self%report, .false., certificate, error)
     if (allocated(error)) certificate%reason = error%message
     self%certificate_table = ''
-    if (certificate%is_made) self%certificate_table = certificate_table(certificate)
+    if (.not. allocated(certificate%reason)) self%certificate_table = certificate_table(certificate)
     self%table = self%table//certificate_summary(certificate)
     call read_table(self%table, self%summary)
     call self%keep(error, status)

@@ -6,7 +6,7 @@ module text_lock
   private
   public :: lock_texts, unlock_texts
 
-  integer(c_int64_t), save :: mutex(8) = 0   !! a mutex of the system; on Linux one of zeros is unlocked
+  integer(c_int64_t) :: mutex(8) = 0   !! a mutex of the system; on Linux one of zeros is unlocked
 
   interface
     integer(c_int) function c_lock(mutex) bind(c, name='pthread_mutex_lock')

@@ -167,15 +167,15 @@ contains
     class(run_t), intent(inout) :: self
     real(dp), intent(in) :: t
     integer, intent(in) :: most_steps
-    real(dp) :: pause
+    real(dp) :: until
     if (.not. (self%has_ended .or. self%is_over)) then
       do
         call accept_inputs(self, t)
-        pause = min(t, self%ramp_end)
-        call self%integration%go_to(self%scene, self%method, self%recorder, pause, most_steps)
+        until = min(t, self%ramp_end)
+        call self%integration%go_to(self%scene, self%method, self%recorder, until, most_steps)
         self%t = self%integration%t
-        if (self%integration%is_kept) self%t = pause
-        if (self%integration%is_over .or. most_steps > 0 .or. .not. pause < t .or. self%t < pause) exit
+        if (self%integration%is_kept) self%t = until
+        if (self%integration%is_over .or. most_steps > 0 .or. .not. until < t .or. self%t < until) exit
       end do
       if (self%integration%is_over) call conclude(self)
       if (most_steps > 0) return

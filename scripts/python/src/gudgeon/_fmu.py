@@ -79,7 +79,7 @@ def _with_its_files(case: Case, resources: Path) -> str:
         if key.is_path and (path := case[name] if case.is_given(key) else ""):
             source = Path(path) if Path(path).is_absolute() else Path(case._folder) / path
             shutil.copy(source, resources / source.name)
-            text = re.sub(rf"(?m)^  {key.name} = '.*'$", lambda _: f"  {key.name} = '{source.name}'", text)  # noqa: B023
+            text = re.sub(rf"(?m)^  {key.name} = '.*'$", lambda _: f"  {key.name} = '{source.name}'", text)
     return text
 
 

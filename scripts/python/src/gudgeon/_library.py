@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import ctypes as c
 import os
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any
 
 _handle, _text, _size, _int = c.c_void_p, c.c_char_p, c.c_size_t, c.c_int
 

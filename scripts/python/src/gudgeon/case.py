@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Union
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _library
 from ._keys import GroupInfo, Key, groups, keys
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from .run import Certificate, Run
     from .stepper import Stepper
 
-Value = Union[float, int, bool, str, Sequence[float], None]
+Value = "float | int | bool | str | Sequence[float] | None"
 
 
 class CaseError(ValueError):

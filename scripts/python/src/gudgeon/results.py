@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+
 from gudgeon.program import CHECKOUT, MissingResult, release_program
 
 COLUMN = re.compile(r"^(?P<name>\w+)\[(?P<unit>.*)\]$")

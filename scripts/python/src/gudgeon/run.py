@@ -6,12 +6,11 @@ import ctypes
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _library
-from ._library import library, text_from
+from ._library import library
 from .case import Case, Column, _columns, _meant
 
 if TYPE_CHECKING:
