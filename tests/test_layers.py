@@ -27,7 +27,7 @@ LAYERS = [
     ["scene"],
     ["io"],
     ["study"],
-    ["main"],
+    ["api", "main"],
 ]
 MOST = 132  # largest number of characters in a line
 
