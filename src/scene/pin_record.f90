@@ -98,7 +98,7 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
-    logical, intent(in) :: is_end   !! t is the end of the step, or of its final part, not only that of a revolution
+    logical, intent(in) :: is_end   !! t is the end of the step, or of its final part; else that of a revolution inside it
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
     real(dp) :: known(n_peaks), largest(n_peaks)
@@ -122,9 +122,13 @@ contains
     if (present(cycles)) call cycles%record_peaks(self%pin, touches, largest, angle_at(self%thinnest_time))
     if (present(cycles) .and. self%joint > 0) call follow_turn(self, scene, t, now, cycles)
     if (self%reports_film) call sum_film(self, method, scene, t, now, figures, cycles)
-    if (.not. (allocated(self%wear) .and. (is_end .or. present(cycles)))) return
+    if (.not. allocated(self%wear)) return
     before = self%wear%evaluations
-    call self%wear%follow(method, scene, t)
+    if (is_end) then
+      call self%wear%follow(method, scene, t)
+    else
+      call self%wear%look_ahead(method, scene, t)
+    end if
     figures%evaluations = figures%evaluations + (self%wear%evaluations - before)
 
   contains

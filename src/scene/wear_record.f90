@@ -50,10 +50,12 @@ module wear_record
     real(dp), private :: step_ratios(2) = 0    !! largest change of depth over the clearance, and over the mean penetration
     real(dp), allocatable, private :: before(:, :)   !! load path of each bin before the last change of the bore, as it was [N m]
     real(dp), allocatable, private :: marks(:, :, :) !! the same at the ends of revolutions, (bin, surface, mod(k, ...)) [N m]
-    integer, private :: last_mark = 0          !! revolution marked last
+    real(dp), allocatable, private :: ahead(:, :)    !! load path at the end of a revolution inside the present step [N m]
+    integer, private :: last_mark = 0                !! revolution marked last
   contains
     procedure :: prepare
     procedure :: follow
+    procedure :: look_ahead
     procedure :: mark_revolution
     procedure :: growth
     procedure :: declare
@@ -208,12 +210,28 @@ contains
     self%time = t
   end subroutine follow
 
-  !> Mark the wear counted so far as that at the end of revolution k.
+  !> Find the wear at the end of a revolution at t, inside the last step. It is counted only when the step ends, so that it does not
+  !> depend on whether revolutions are followed.
+  subroutine look_ahead(self, method, scene, t)
+    class(wear_record_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(wear_record_t) :: copy
+    copy = self
+    call copy%follow(method, scene, t)
+    self%evaluations = copy%evaluations
+    self%ahead = load_path(copy)
+  end subroutine look_ahead
+
+  !> Mark the wear at the end of revolution k: that found ahead inside a step, or that counted so far.
   subroutine mark_revolution(self, k)
     class(wear_record_t), intent(inout) :: self
     integer, intent(in) :: k
     self%last_mark = k
-    self%marks(:, :, mod(k, size(self%marks, 3))) = load_path(self)
+    if (.not. allocated(self%ahead)) self%ahead = load_path(self)
+    self%marks(:, :, mod(k, size(self%marks, 3))) = self%ahead
+    deallocate (self%ahead)
   end subroutine mark_revolution
 
   !> Largest depth by which a bin of the pin and one of the bore has worn in the last revolutions [m]. All of them, and the one
