@@ -190,8 +190,6 @@ contains
     class(bristle_law_t), intent(in) :: self
     real(dp), intent(in) :: states(:)
     type(trace_row_t), intent(inout) :: row
-    associate (unused => self)
-    end associate
     call row%add('bristle[m]', states(1), 'mean deflection of the bristles, the state of the friction law')
   end subroutine add_columns
 end module bristle_law

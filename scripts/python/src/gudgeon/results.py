@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+
 from gudgeon.program import CHECKOUT, MissingResult, release_program
 
 COLUMN = re.compile(r"^(?P<name>\w+)\[(?P<unit>.*)\]$")
