@@ -10,6 +10,7 @@ With --all every shipped case is compared. Ends with `N passed, N failed`; the e
 import math
 import os
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -283,6 +284,17 @@ def threads() -> None:
     check(not wrong, f"threads do not disturb each other: {wrong[:3]}")
 
 
+def pages() -> None:
+    """The page of a run of this process has its title, its case and its largest force."""
+    run = case_of("sim_V_oscillating").run(end=0.02, ideal_twin=True)
+    with tempfile.TemporaryDirectory() as folder:
+        text = run.report(Path(folder) / "run.html").read_text()
+    check(str(run.case.case.title) in text and "&lubrication" in text.replace("&amp;", "&"), "the page of a run has its title and its case")
+    largest = np.hypot(run["pin_force_x"], run["pin_force_y"]).max()
+    found = re.search(r'"pin_force": ([-+0-9.e]+)', text)
+    check(found is not None and abs(float(found[1]) / largest - 1) < 1e-12, f"the page of a run has its largest force: {found}, {largest}")
+
+
 def memory() -> None:
     """Resident memory does not grow over many instances."""
 
@@ -320,7 +332,7 @@ def main() -> int:
     if "--all" in sys.argv:
         found = sorted((TOP / "cases").rglob("*.nml"))
         names = [str(p.relative_to(TOP / "cases").with_suffix("")) for p in found if "studies" not in p.parts]
-    for part in (lambda: against_program(program, names), cases, runs, steps, sweeps, threads, memory, lambda: writes_nowhere(program)):
+    for part in (lambda: against_program(program, names), cases, runs, steps, sweeps, threads, pages, memory, lambda: writes_nowhere(program)):
         try:
             part()
         except Exception:

@@ -80,8 +80,10 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
 
 
 def path() -> Path:
-    """The library of the package; the environment variable GUDGEON_LIBRARY names another one."""
-    return Path(os.environ.get("GUDGEON_LIBRARY") or Path(__file__).with_name("libgudgeon.so"))
+    """The library of the package, or of the checkout in which the package is; the environment variable GUDGEON_LIBRARY names another."""
+    own = Path(__file__).with_name("libgudgeon.so")
+    built = Path(__file__).resolve().parents[4] / "build" / "library" / own.name   # by build_library.py
+    return Path(os.environ.get("GUDGEON_LIBRARY") or (built if built.exists() and not own.exists() else own))
 
 
 @cache

@@ -215,6 +215,15 @@ class Run:
         ax.legend()
         return ax
 
+    def report(self, path: str | Path | None = None) -> Path:
+        """Write the page of the run, as `gudgeon-plot report` does: animation, plots, case, summary, warnings. By default NAME.html."""
+        from .report.page import page
+        from .results import drawable
+
+        path = Path(path or f"{self.name}.html")
+        path.write_text(page(drawable(self), drawable(self.twin) if self.twin else None), encoding="utf-8")
+        return path
+
     def __repr__(self) -> str:
         return f"<Run {self.name}: {self.summary.get('status', '')}, {len(self)} rows, {len(self._columns)} columns>"
 
