@@ -53,11 +53,13 @@ pathlib.Path(sysconfig.get_path("purelib"), "gudgeon.pth").write_text(str(pathli
 }
 
 # fpm 0.12 still links the objects of source files that have been moved or removed, without a message. Therefore all programs are
-# built again if the list of source files has changed since the last set-up.
+# built again if a source file of the last set-up is gone.
 gudgeon_sources() {
   gudgeon_list=$(find src tests scripts -name '*.f90' | sort)
   [ "$gudgeon_list" = "$(cat build/sources 2>/dev/null)" ] && return 0
-  rm -rf build/gfortran_* scripts/bench/build/gfortran_*
+  for gudgeon_file in $(cat build/sources 2>/dev/null || echo none); do
+    [ -f "$gudgeon_file" ] || { rm -rf build/gfortran_* scripts/bench/build/gfortran_* tests/build/gfortran_*; break; }
+  done
   mkdir -p build && printf '%s\n' "$gudgeon_list" >build/sources
 }
 
@@ -112,6 +114,6 @@ case "${0##*/} $#" in
     ;;
 esac
 unset -f gudgeon_apt gudgeon_link gudgeon_venv gudgeon_pip gudgeon_python gudgeon_sources gudgeon_setup
-unset gudgeon_sudo gudgeon_dir gudgeon_packages gudgeon_list
+unset gudgeon_sudo gudgeon_dir gudgeon_packages gudgeon_list gudgeon_file
 # the status of the last command is that of the set-up, whether this file is sourced or run
 [ "$gudgeon_status" = 0 ]

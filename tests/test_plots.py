@@ -16,6 +16,7 @@ import tempfile
 import unittest
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 TOP = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TOP / "scripts" / "bench"))
@@ -43,6 +44,7 @@ from gudgeon.results import (
     Run,
     WindowResults,
     case_files,
+    drawable,
     load_run,
     read_case,
 )
@@ -1071,6 +1073,20 @@ class Reading(unittest.TestCase):
             },
         )
         np.testing.assert_allclose(made.contacts.to_numpy(), [[0.1, 0.3, 7, 8], [0.75, 1, 1, 5]])
+
+    def test_a_run_of_this_process_is_drawn(self) -> None:
+        class Quantities(dict):
+            units = {"contacts": "1"}
+
+        columns = pd.DataFrame({"time": [0.0, 1.0], "film_thickness": [2e-5, 1e-5]})
+        own = SimpleNamespace(
+            name="own", to_pandas=lambda: columns, units={"time": "s", "film_thickness": "m"}, summary=Quantities(contacts=1),
+            events=pd.DataFrame({"joint": ["crank_pin", "piston_pin"], "time": [0.1, 0.2]}),
+            case=SimpleNamespace(to_nml=lambda complete: "&joint\n  kind = 'clearance'\n  clearance = 2e-5   ! m\n/\n"),
+        )
+        made = drawable(own)
+        self.assertEqual((made.clearance, made.summary, list(made.events["time"])), (2e-5, {"contacts": ("1", "1")}, [0.2]))
+        np.testing.assert_array_equal(made["film_thickness"], [2e-5, 1e-5])
 
     def test_missing_results_say_what_to_run(self) -> None:
         with tempfile.TemporaryDirectory() as work:

@@ -17,7 +17,7 @@ module case_file
   use problem_list, only: behind_file
   implicit none
   private
-  public :: read_case, parse_case, read_case_values, complete_case, template
+  public :: read_case, parse_case, read_case_values, parse_values, apply_override, complete_case, template
 
   integer, parameter :: largest_file = 1   !! MB; case files are a few kilobytes long
 
@@ -61,6 +61,7 @@ contains
     if (.not. allocated(error)) call parse_values(text, path, overrides, values, is_bearing)
   end subroutine read_case_values
 
+  !> The values of a case file's text and of overrides; see `read_case_values`. `path` gives its name in messages.
   subroutine parse_values(text, path, overrides, values, is_bearing)
     character(len=*), intent(in) :: text, path, overrides(:)
     type(case_values_t), intent(out) :: values

@@ -32,6 +32,7 @@ module model_parameters
     character(len=170) :: description = ''
     character(len=12) :: family = ''         !! keys of the group with the same family are alternatives, of which one may be given
     character(len=32) :: beside = ''         !! key of the family that may be given together with this one, as a bound
+    logical :: is_path = .false.             !! a text that names a file, relative to the case file
     logical :: only_here = .false.           !! must not be given if the selected law does not have it
   end type key_t
 
@@ -189,16 +190,17 @@ contains
   end subroutine word
 
   !> Declare a text; with `many`, several texts are joined by commas. It is required if it has no default.
-  subroutine text(self, key, value, says, default, many, example)
+  subroutine text(self, key, value, says, default, many, example, is_path)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, says
     character(len=:), allocatable, intent(inout) :: value
     character(len=*), intent(in), optional :: default, example
-    logical, intent(in), optional :: many
+    logical, intent(in), optional :: many, is_path   !! is_path: the name of a file
     type(key_t) :: new
     if (self%passes) return
     new = described(key, text_kind, says, default=default, example=example)
     if (present(many)) new%count = merge(1000, 1, many)
+    if (present(is_path)) new%is_path = is_path
     call self%visit(new, text=value)
   end subroutine text
 
