@@ -218,7 +218,8 @@ contains
           wanted = ''
           place = lowercase(entry%tokens(1)%text)
           if (found /= '') wanted = 'given twice'
-          if (.not. any(places%name == place)) wanted = 'must be one of '//joined(places(in_order)%name)//likely_word(place, joined(places(in_order)%name))
+          if (.not. any(places%name == place)) &
+            wanted = 'must be one of '//joined(places(in_order)%name)//likely_word(place, joined(places(in_order)%name))
         end if
         if (wanted /= '') then
           call fail(error, list%at(entry%line)//'&'//entry%group//' place = '//printable(place, 48)//': '//wanted, &
