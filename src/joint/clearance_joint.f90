@@ -138,7 +138,7 @@ contains
   end subroutine add
 
   !> Claim the eccentricity, and what the elements need, in the state vector. The scale of the eccentricity is the clearance, that
-  !> of its rate the clearance divided by the time in which the crank turns by one radian (errors: data/measured/choices.md).
+  !> of its rate the clearance divided by the time in which the crank turns by one radian (errors: data/manual/choices.md).
   !>
   !> Where the crank hardly turns the pin has a speed scale of its own, `own_speed`. The scale of the rate is then a hundredth
   !> of the speed that crosses the clearance, since a pin that starts at rest is slow at first and may remain slow.

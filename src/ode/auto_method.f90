@@ -64,7 +64,7 @@ contains
   end subroutine start
 
   !> Largest number of additional evaluations by Radau in a mode before Adams takes over again. It is larger at tight tolerances,
-  !> where the steps of Radau's highest formula grow slowly after a start (data/measured/choices.md).
+  !> where the steps of Radau's highest formula grow slowly after a start (data/manual/choices.md).
   pure real(dp) function most_loss(self)
     class(auto_t), intent(in) :: self
     real(dp), parameter :: tight = 5e-9_dp   !! relative tolerance

@@ -18,7 +18,7 @@ module scene_builder
   private
   public :: build_scene, assemble_scene, simulated_time, latest_end, longest_turn, sample_interval, settings_for
 
-  !> Larger tolerances are replaced by this one: they would save nothing (data/measured/choices.md), and the accumulated errors of
+  !> Larger tolerances are replaced by this one: they would save nothing (data/manual/choices.md), and the accumulated errors of
   !> the steps would exceed the allowed error of results.
   real(dp), parameter :: loosest_tolerance = 1e-3_dp
 
@@ -26,7 +26,7 @@ module scene_builder
 
   !> Errors of the crank speed and of the work persist, and with them errors of the energy: they accumulate over thousands of steps,
   !> whereas errors of the pin decay in its film or its contacts. These components are therefore held to a smaller fraction of the
-  !> tolerance, but not below rounding (gain and cost: data/measured/choices.md).
+  !> tolerance, but not below rounding (gain and cost: data/manual/choices.md).
   real(dp), parameter :: lasting_share = 0.01_dp   !! for crank speed and work
   real(dp), parameter :: angle_share = 0.1_dp      !! for the crank angle, whose errors persist too but influence the energy less
   real(dp), parameter :: finest_tolerance = 1e-13_dp

@@ -379,7 +379,7 @@ contains
   end subroutine judge_turns
 
   !> Largest energy residual of a completed run, relative to the largest energy: ten tolerances for each revolution, since local
-  !> errors add up, and at least a thousand tolerances, which hardly any scene reaches (data/measured/choices.md). The limit is
+  !> errors add up, and at least a thousand tolerances, which hardly any scene reaches (data/manual/choices.md). The limit is
   !> never above 5 %, which makes any result useless, and never below 1e-10, which may be rounding.
   pure real(dp) function energy_limit(tolerance, crank_travel)
     real(dp), intent(in) :: tolerance      !! relative

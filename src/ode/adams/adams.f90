@@ -10,7 +10,7 @@
 !> - while order and step size rise after a start, a step may grow as far as its error at the present order allows, up to 64 times,
 !>   instead of only twice;
 !> - later a step may also grow by a quarter instead of only by doubling; the order may rise at varying step size too, except while
-!>   stability limits the step, where the higher order only reduces the limit (gain and cost of both: data/measured/choices.md);
+!>   stability limits the step, where the higher order only reduces the limit (gain and cost of both: data/manual/choices.md);
 !> - steps are shortened where the problem says that f is about to lose its smoothness;
 !> - trial states outside the model, and steps that the problem refuses, are rejected like errors;
 !> - the interpolant also matches y at the beginning of the step, so that it and its derivative are continuous;
@@ -134,7 +134,7 @@ module adams
 
     !> Shorten a step that ends near the instant at which f loses its smoothness. Error estimates of high order do not detect a
     !> branch point ahead. The force of dry contact ends with the power 1.5 of the remaining time: a step is limited to a sixth of
-    !> that time (data/measured/choices.md).
+    !> that time (data/manual/choices.md).
     pure module subroutine shorten_before_kink(self)
       class(adams_t), intent(inout) :: self
     end subroutine shorten_before_kink
@@ -142,7 +142,7 @@ module adams
     !> Count what limited the step. It was stability if h rho is near the limit of the order although the fastest mode, with the
     !> rate rho, has decayed. rho is |f_new - f_predicted|/|y_new - y_predicted| (as in Hairer & Wanner 1996, IV.2), or 0 if the
     !> correction is within rounding. `bound`, with a wider criterion, prevents the order from rising (gain, and the exactness of
-    !> rho: data/measured/choices.md).
+    !> rho: data/manual/choices.md).
     pure module subroutine count_limit(self, errors)
       class(adams_t), intent(inout) :: self
       type(error_estimates_t), intent(in) :: errors

@@ -235,7 +235,7 @@ contains
 
   !> The Jacobian of a trial is evaluated at three quarters of the step, on the extrapolated polynomial of the last step: the
   !> stiffness of a film changes within a step, and with a Jacobian among the stages Newton's method contracts faster than with that
-  !> of the beginning (gain: data/measured/choices.md). After a start, and if f is not defined at that point (all derivatives are
+  !> of the beginning (gain: data/manual/choices.md). After a start, and if f is not defined at that point (all derivatives are
   !> 0), the Jacobian at the beginning is used.
   subroutine find_jacobian(self, problem)
     class(radau_t), intent(inout) :: self

@@ -53,7 +53,7 @@ contains
   end procedure first_level
 
   !> The tolerance used: at most `loosest`. With larger ones the errors of the stages make Newton's method alternate between both
-  !> sides of a kink of a film's force, and the cost increases (data/measured/choices.md).
+  !> sides of a kink of a film's force, and the cost increases (data/manual/choices.md).
   pure real(dp) function working_tolerance(self)
     class(radau_t), intent(in) :: self
     real(dp), parameter :: loosest = 1e-3_dp
@@ -64,7 +64,7 @@ contains
   !> estimate is therefore 0.1 tolerance^((s+1)/2s) (Hairer & Wanner). In a stiff film this order is not reached, which matters at
   !> tight tolerances: there the exponent is at least 3/4, which keeps the error of the smooth simulations near the tolerance. The
   !> required remainder of Newton's iteration is six times that of Hairer & Wanner, who estimate it from the steps alone
-  !> (data/measured/choices.md).
+  !> (data/manual/choices.md).
   pure subroutine set_tolerances(self)
     class(radau_t), intent(inout) :: self
     real(dp) :: tolerance, exponent_of, s
