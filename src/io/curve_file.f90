@@ -3,7 +3,7 @@
 module curve_file
   use kinds, only: dp
   use constants, only: pi
-  use text_tools, only: printable, integer_text, replaced, next_line
+  use text_tools, only: printable, integer_text, replaced, next_row, joined
   use value_reader, only: read_real
   implicit none
   private
@@ -53,17 +53,13 @@ contains
     message = ''
     line = 0
     at = 1
-    if (index(text, char(239)//char(187)//char(191)) == 1) at = 4   ! byte order mark
     n = min(most_rows, 1 + count([(text(n:n) == achar(10), n=1, len(text))]))
     allocate (x(n), y(n), lines(n))
     n = 0
     has_header = .false.
-    do while (at <= len(text) .and. message == '')
-      call next_line(text, at, row)
-      if (index(row, achar(13), back=.true.) == len(row)) row = row(:len(row) - 1)
-      row = trim(adjustl(row))
-      line = line + 1
-      if (row == '' .or. index(row, '#') == 1) cycle
+    do while (message == '')
+      call next_row(text, at, line, row)
+      if (row == '') exit
       if (.not. has_header) then
         call read_pair(row, [x_is, y_is], read_unit, factors, message)
         has_header = .true.
@@ -131,7 +127,7 @@ contains
       end do
     end if
     message = printable(name, 40)//': the header must name this column with its unit, the '//trim(quantity%name)// &
-      ' in one of '//unit_list(quantity)//', as in '//replaced(trim(quantity%name), ' ', '_')//'['// &
+      ' in one of '//joined(quantity%units%name)//', as in '//replaced(trim(quantity%name), ' ', '_')//'['// &
       trim(quantity%units(1)%name)//']'
   end subroutine read_unit
 
@@ -143,16 +139,6 @@ contains
     plain = replaced(replaced(unit, degree_sign, 'deg'), raised_dot, '')
     plain = replaced(replaced(replaced(plain, ' ', ''), '.', ''), '*', '')
   end function plain
-
-  pure function unit_list(quantity) result(list)
-    type(quantity_t), intent(in) :: quantity
-    character(len=:), allocatable :: list
-    integer :: i
-    list = trim(quantity%units(1)%name)
-    do i = 2, size(quantity%units)
-      if (quantity%units(i)%name /= '') list = list//', '//trim(quantity%units(i)%name)
-    end do
-  end function unit_list
 
   subroutine read_number(field, quantity, value, message)
     character(len=*), intent(in) :: field

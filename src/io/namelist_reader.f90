@@ -186,14 +186,14 @@ contains
   subroutine read_index(scan, n)
     type(scanner_t), intent(inout) :: scan
     integer, intent(out) :: n
-    character(len=:), allocatable :: in_domain
+    character(len=:), allocatable :: content
     integer :: length
     n = 0
     length = index(scan%text(scan%at:min(scan%at + 20, len(scan%text))), ')')
     if (length == 0) return
-    in_domain = trim(adjustl(scan%text(scan%at + 1:scan%at + length - 2)))
-    if (len(in_domain) < 1 .or. len(in_domain) > 4 .or. verify(in_domain, digits) > 0) return
-    read (in_domain, *) n
+    content = trim(adjustl(scan%text(scan%at + 1:scan%at + length - 2)))
+    if (len(content) < 1 .or. len(content) > 4 .or. verify(content, digits) > 0) return
+    read (content, *) n
     scan%at = scan%at + length
   end subroutine read_index
 

@@ -6,7 +6,7 @@ module simulation
   use case_definition, only: case_t
   use ode_method, only: ode_method_t, step_statistics_t, left_domain
   use ode_methods, only: new_method
-  use ode_solver, only: integrate, integration_t, silent_observer_t, integration_done, integration_stopped, &
+  use ode_solver, only: integration_t, integration_done, integration_stopped, &
     integration_interrupted, step_limit_reached, evaluation_limit_reached
   use scene_problem, only: scene_t, evaluation_t
   use scene_inputs, only: inputs, inputs_of, input_value, change_input
@@ -355,7 +355,7 @@ contains
   end subroutine finish
 
   !> Energy residual, relative to the largest energy, from which the user of a completed run is told: 1e-3, which is visible in
-  !> results, or a hundred tolerances, which at most 1 in 1000 extreme scenes reach. A residual up to 1e-10 may be rounding.
+  !> results, or a hundred tolerances, which hardly any scene reaches. A residual up to 1e-10 may be rounding.
   pure real(dp) function remarkable_residual(tolerance)
     real(dp), intent(in) :: tolerance      !! relative
     remarkable_residual = max(1e-10_dp, min(1e-3_dp, 100*tolerance))
@@ -379,9 +379,8 @@ contains
   end subroutine judge_turns
 
   !> Largest energy residual of a completed run, relative to the largest energy: ten tolerances for each revolution, since local
-  !> errors add up, and at least a thousand tolerances. Of 1767 extreme scenes that ended, half stay below 0.003 tolerances and 99.5
-  !> % below 46; 10^4 revolutions of simulation V reach 1250 (tests/README.md). The limit is never above 5 %, which makes any result
-  !> useless, and never below 1e-10, which may be rounding.
+  !> errors add up, and at least a thousand tolerances, which hardly any scene reaches (data/manual/choices.md). The limit is
+  !> never above 5 %, which makes any result useless, and never below 1e-10, which may be rounding.
   pure real(dp) function energy_limit(tolerance, crank_travel)
     real(dp), intent(in) :: tolerance      !! relative
     real(dp), intent(in) :: crank_travel   !! [rad]

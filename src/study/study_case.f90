@@ -17,7 +17,7 @@ module study_case
   private
   public :: study_case_t
 
-  !> The values of the base case, modified for each run. Each thread has its own copy.
+  !> The values of the base case, modified for each run. Each process has its own copy.
   type :: study_case_t
     type(case_t) :: case                             !! case of the present run
     type(case_values_t) :: values                    !! its values, and all defaults
