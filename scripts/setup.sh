@@ -8,6 +8,7 @@
 #   scripts/setup.sh --studies  also the packages of gudgeon-plot sensitivity, scripts/run_studies.sh and scripts/cluster
 #   scripts/setup.sh --manual   also FORD, which scripts/manual.sh needs
 #   scripts/setup.sh --lint     also the linters of Fortran and Python
+#   scripts/setup.sh --embedding  also what the tests of the library, the Python package and functional mock-up units need
 #
 # Root or sudo is needed only to install Debian packages. fpm and gudgeon-plot are installed in .venv, with links to them in
 # /usr/local/bin or ~/.local/bin. This file is POSIX sh; if it is sourced, it changes no option of the calling shell.
@@ -100,10 +101,10 @@ case "${0##*/} $#" in
           gudgeon_apt chromium chromium-driver || gudgeon_status=1
         fi
         ;;
-      --studies) gudgeon_packages="-r scripts/python/requirements.txt -r scripts/python/requirements-studies.txt" ;;
+      --studies | --embedding) gudgeon_packages="-r scripts/python/requirements.txt -r scripts/python/requirements-${1#--}.txt" ;;
       --manual | --lint) gudgeon_packages="-r scripts/python/requirements-${1#--}.txt" ;;
       *)
-        echo "setup: usage: scripts/setup.sh [--python | --browser | --studies | --manual | --lint]" >&2
+        echo "setup: usage: scripts/setup.sh [--python | --browser | --studies | --manual | --lint | --embedding]" >&2
         gudgeon_status=2
         ;;
     esac

@@ -64,7 +64,7 @@ run_stages() { tr '\n' '\0' | xargs -0 -n 1 -P 2 scripts/test.sh --stage "$work"
 # Programs are built and packages are installed first, so that later stages find them.
 run_stages <<'END'
 programs|scripts/build.sh && fpm @strict --runner true && fpm build --no-prune && fpm build --directory scripts/bench && echo "1 passed, 0 failed"
-Python packages, browser|for kind in python browser studies manual lint; do scripts/setup.sh --$kind || exit 1; done; echo "1 passed, 0 failed"
+Python packages, browser|for kind in python browser studies manual lint embedding; do scripts/setup.sh --$kind || exit 1; done; echo "1 passed, 0 failed"
 END
 
 stages() {   # the longest first
@@ -76,6 +76,7 @@ parameter studies|tests/test_sweep.sh
 pictures|tests/test_plots.py
 random changes of case files|tests/test_fuzz.py
 sensitivity and cluster studies|tests/test_studies.py
+C interface, Python package, mock-up units|tests/test_embedding.sh
 statements of the dissertation|.venv/bin/python scripts/bench/check_findings.py --check
 analysis of settled cycles|.venv/bin/python tests/test_orders.py
 summaries against traces|tests/test_summaries.py
