@@ -10,7 +10,7 @@ program gudgeon
   use case_schema, only: key_table_t, case_schema_of
   use bearing_definition, only: bearing_schema_of
   use case_text, only: template_text
-  use reference_pages, only: keys_reference, results_reference
+  use reference_pages, only: keys_reference, results_reference, oils_reference
   use gudgeon_progress, only: progress_wanted, tell, say
   use text_tools, only: printable
   use gudgeon_posix, only: fill_standard_descriptors, signal_set_t, hold_interrupts, interrupted, ignore_write_signals
@@ -57,6 +57,8 @@ contains
       call say(short_template(options%kind), status)
     else if (options%template) then
       call say(template(), status)
+    else if (options%reference == 'oils') then
+      call say(oils_reference(), status)
     else if (options%reference == 'results') then
       call say(results_reference(), status)
     else

@@ -17,6 +17,7 @@ program gudgeon_tests
   use test_film_equations, only: run_test_film_equations
   use test_film_transition, only: run_test_film_transition
   use test_oil_viscosity, only: run_test_oil_viscosity
+  use test_units, only: run_test_units
   use test_elastic_film, only: run_test_elastic_film
   use test_case_file, only: run_test_case_file
   use test_certificate, only: run_test_certificate
@@ -103,6 +104,7 @@ program gudgeon_tests
   call run('film_equations', run_test_film_equations)
   call run('film_transition', run_test_film_transition)
   call run('oil_viscosity', run_test_oil_viscosity)
+  call run('units', run_test_units)
   call run('elastic_film', run_test_elastic_film)
   call run('case_file', run_test_case_file)
   call run('certificate', run_test_certificate)

@@ -149,6 +149,7 @@ contains
       type(joint_case_t), intent(in) :: joint
       type(pin_figures_t), intent(in) :: pin
       if (allocated(joint%film)) then
+        if (joint%oil%has_name()) call add(prefix//'oil', joint%oil%name, '')
         if (joint%oil%is_known()) call add(prefix//'viscosity', peak(joint%oil%dynamic_viscosity()), 'Pa s')
         if (joint%film%table_of /= '') then
           call add(prefix//'film_table_error', real_text(joint%film%table_error), '1')
