@@ -12,7 +12,7 @@ program gudgeon
   use case_text, only: template_text
   use json_schema, only: json_schema_text
   use shell_pages, only: completion_text, manual_text
-  use reference_pages, only: keys_reference, results_reference
+  use reference_pages, only: keys_reference, results_reference, oils_reference
   use run_progress, only: progress_wanted, tell, say
   use text_tools, only: printable
   use posix_files, only: fill_standard_descriptors, signal_set_t, hold_interrupts, interrupted, ignore_write_signals
@@ -63,6 +63,8 @@ contains
       call say(manual_text(), status)
     else if (options%completion /= '') then
       call say(completion_text(options%completion), status)
+    else if (options%reference == 'oils') then
+      call say(oils_reference(), status)
     else if (options%reference == 'results') then
       call say(results_reference(), status)
     else

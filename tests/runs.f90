@@ -1,6 +1,8 @@
 !> Tests of cases: their reading, scenes and whole runs, results and studies. See `suites` for the command line.
 program runs
   use suites, only: suites_t
+  use test_units, only: run_test_units
+  use test_oil_names, only: run_test_oil_names
   use test_case_file, only: run_test_case_file
   use test_law_refusals, only: run_test_law_refusals
   use test_curve_files, only: run_test_curve_files
@@ -47,6 +49,8 @@ program runs
   type(suites_t) :: all
 
   call all%begin()
+  call all%run('units', run_test_units)
+  call all%run('oil_names', run_test_oil_names)
   call all%run('case_file', run_test_case_file)
   call all%run('law_refusals', run_test_law_refusals)
   call all%run('curve_files', run_test_curve_files)

@@ -53,7 +53,7 @@ contains
     call refused(head//'1,2'//n, 2, 'needs a header and at least two rows')
     call refused('0,1'//n//'1,2'//n, 1, '0: '//units//'crank angle in one of deg, degrees, degCA, rad, as in crank_angle[deg]')
     call refused('crank_angle[deg],pressure[atm]'//n, 1, 'pressure[atm]: '//units// &
-      'pressure in one of Pa, hPa, kPa, MPa, mbar, bar, psi, as in pressure[Pa]')
+      'pressure in one of Pa, hPa, kPa, MPa, GPa, mbar, bar, psi, as in pressure[Pa]')
     call refused('crank_angle[deg];pressure[bar]'//n, 1, 'crank_angle[deg];pressure[bar]: needs two columns '// &
       'separated by a comma')
     call refused(head//'0,1,5', 2, '0,1,5: needs two columns separated by a comma')

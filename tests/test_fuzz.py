@@ -34,6 +34,9 @@ NUMBERS = (b"0", b"-0.0", b"1e30", b"-1e30", b"1e-30", b"1e31", b"1d308", b"1e99
            b"infinity", b"1e", b"1e+", b".", b"-", b"+", b"0x10", b"1.0.0", b"1,2", b"2*1.0", b"0*1", b"9999*1", b"99999*1", b"1 2 3",
            b"2147483647", b"2147483648", b"-2147483648", b"1_8", b"'1'", b"", b"1e10", b"1e-10", b"1e-15", b"0.5", b"1", b"2", b"90", b"T",
            b".false.", b"1/3", b"(1,2)", b"1e5", b"1e-5", b"1000", b"1e-3", b"1e15", b"-1")
+UNITS = (*(b"m km cm mm um nm in m2 mm^2 cm4 kg g mg t lb kg.m2 kg*cm^2 kg/m3 g/cm3 kg/l s ms us min h m/s mm/s rad/s rpm 1/min deg/s deg rad N kN "
+           b"MN mN lbf Pa hPa kPa MPa GPa mbar bar psi N.m Nm mN.m J mJ kJ Pa.s mPa.s cP P m2/s mm2/s cSt St 1/Pa 1/MPa K degC degF C F Hz m2/N "
+           b"mm3/N/m N.s/m MM furlong u 1/ 1/1 / /m // m/ e e5 d1 x=1 mm=2".split()), "15 µm".encode()[3:], "°C".encode(), "μm".encode())
 BYTES = b"\0\t\n\r !\"'&/=,()*.+-0123456789eEdDaZ_%\x7f\x80\xc3\xe9\xff\xfe"
 
 
@@ -83,6 +86,16 @@ def scale(text: bytes, rng: random.Random) -> bytes:
     one = rng.choice(found)
     new = b"%.17g" % (float(one[0].replace(b"d", b"e")) * 10.0 ** rng.uniform(-12, 12))
     return text[:one.start()] + new + text[one.end():]
+
+
+def unit(text: bytes, rng: random.Random) -> bytes:
+    """Put a unit behind a number, or something like one."""
+    found = items(text, rb"(?<=[= ,])\d+\.?\d*(?:[ed][-+]?\d+)?")
+    if not found:
+        return text
+    one = rng.choice(found)
+    written = rng.choice(UNITS) if rng.random() < 0.7 else rng.choice(UNITS) + bytes(rng.choice(BYTES) for _ in range(rng.choice((1, 2))))
+    return text[:one.end()] + rng.choice((b"", b" ", b" ", b"  ", b"\t")) + written + text[one.end():]
 
 
 def rename(text: bytes, rng: random.Random) -> bytes:
@@ -147,8 +160,8 @@ def size(text: bytes, rng: random.Random) -> bytes:
         lambda: text[:at] + b"&" * long, lambda: text * 20))()
 
 
-MUTATIONS = (flip, insert, delete, cut, value, scale, rename, lines, groups, encoding, size)
-WEIGHTS = (4, 4, 3, 1, 6, 8, 4, 3, 3, 2, 1)
+MUTATIONS = (flip, insert, delete, cut, value, scale, unit, rename, lines, groups, encoding, size)
+WEIGHTS = (4, 4, 3, 1, 6, 8, 8, 4, 3, 3, 2, 1)
 
 
 def mutant(case: bytes, rng: random.Random) -> tuple[bytes, str]:

@@ -40,6 +40,26 @@ same() {   # same NAME FOLDER: all files of the grid are those of one process
 run sweep -j 4 -o "$work/four" "$work/grid.nml"
 same "four processes" "$work/four"
 
+# units
+study units <<'END'
+&study case = 'base.nml', cycles = T, strobe_columns = 'crank_angle, eccentricity_x', strobe_angle_deg = 90 /
+&parameter key = 'joint.clearance', from = 10 um, to = 0.04mm, count = 4, scale = 'log' /
+&parameter key = 'initial.crank_speed', values = 100 rad/s, '200 rad/s, 300rad/s' /
+END
+run sweep -o "$work/units" "$work/units.nml"
+check "a study with units, status $status" [ "$status" = 0 ]
+sed 's/,3e2,/,300,/' "$work/one/grid.runs.csv" >"$work/in_si.csv"
+check "a study with units is the study in SI" cmp -s "$work/in_si.csv" "$work/units/units.runs.csv"
+sed 's/0.04mm/40 K/' "$work/units.nml" >"$work/kelvin.nml"
+refused "a unit of another kind" 3 "kelvin.nml:2: &parameter to = 40 K: K is a temperature; clearance is a length (m, km" "$work/kelvin.nml"
+sed "s/200 rad/200 rda/" "$work/units.nml" >"$work/rda.nml"
+refused "a unit that there is not" 3 "rda.nml:3: &parameter values = 200 rda/s: unknown unit; did you mean rad/s?" "$work/rda.nml"
+study tables <<'END'
+&study case = 'base.nml', table = 'tables.csv' /
+END
+printf 'joint.clearance\n1e-5\n20 um\n' >"$work/tables.csv"
+refused "a unit in a table" 3 "tables.csv:3: column 1, joint.clearance = 20 um: must be a number without unit" "$work/tables.nml"
+
 # parts
 run sweep -o "$work/parts" --rows 1:5 "$work/grid.nml"
 check "a part of the rows, got $(cat "$work/out")" grep -q '5 runs; .*; .*grid.chunks$' "$work/out"

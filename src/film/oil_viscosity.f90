@@ -7,11 +7,13 @@
 module oil_viscosity
   use kinds, only: dp
   use model_parameters, only: has_parameters_t, parameter_list_t
+  use named_oils, only: named_oil_t, oil_temperatures => known_temperatures, find_oil, unknown_oil
   implicit none
   private
   public :: oil_t
 
   type, extends(has_parameters_t) :: oil_t
+    character(len=:), allocatable :: name     !! of a named oil, which sets the law, the known values and the density; else empty
     character(len=:), allocatable :: law      !! given, walther or vogel
     real(dp) :: temperature = 0               !! T, of the film [K]
     real(dp) :: known_temperatures(2) = 0     !! [K]
@@ -20,6 +22,8 @@ module oil_viscosity
     real(dp) :: vogel_temperature = 0         !! T0 [K]
   contains
     procedure :: parameters
+    procedure :: read_name
+    procedure :: has_name
     procedure :: is_known
     procedure :: conflict
     procedure :: kinematic_viscosity
@@ -36,6 +40,8 @@ contains
     class(oil_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     character(len=*), parameter :: temperatures = '>= 200 and <= 700'
+    call list%text('oil', self%name, 'named oil, such as SAE 30 or ISO VG 46 (gudgeon --reference oils), for viscosity_law '// &
+      'walther, known viscosities and density', '')
     call list%word('viscosity_law', self%law, 'given, walther, vogel', 'given', &
       'given: by the key viscosity; walther (ASTM D341), vogel: at the temperature of the film')
     call list%add('temperature', self%temperature, 'temperature of the film', 'K', temperatures, default='0.0', usual='250 to 450')
@@ -50,6 +56,25 @@ contains
       'vogel: temperature at which the law has infinite viscosity', 'K', '>= 0', &
       default='178.15', usual='100 to 250')
   end subroutine parameters
+
+  !> Set the parameters that a named oil gives. A name that no oil has is found by `conflict`.
+  subroutine read_name(self)
+    class(oil_t), intent(inout) :: self
+    type(named_oil_t) :: oil
+    if (.not. self%has_name()) return
+    self%law = 'walther'
+    oil = find_oil(self%name)
+    self%known_temperatures = oil_temperatures
+    self%known_viscosities = oil%viscosities
+    self%density = oil%density
+    if (oil%name /= '') self%name = trim(oil%name)
+  end subroutine read_name
+
+  pure logical function has_name(self)
+    class(oil_t), intent(in) :: self
+    has_name = .false.
+    if (allocated(self%name)) has_name = self%name /= ''
+  end function has_name
 
   !> Whether the viscosity is computed from an oil and a temperature.
   pure logical function is_known(self)
@@ -66,7 +91,11 @@ contains
     real(dp), parameter :: thinnest = 0.21_dp*mm2
     key = ''
     wanted = 'required with viscosity_law = '''//self%law//''''
-    if (.not. self%temperature > 0) then
+    if (self%has_name()) wanted = 'required with oil = '''//self%name//''''
+    if (self%has_name() .and. .not. self%density > 0) then
+      key = 'oil'
+      wanted = unknown_oil(self%name)
+    else if (.not. self%temperature > 0) then
       key = 'temperature'
     else if (.not. minval(self%known_temperatures) > 0) then
       key = 'known_temperatures'

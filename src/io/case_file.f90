@@ -14,6 +14,7 @@ module case_file
   use case_text, only: template_text, resolved_text
   use bearing_definition, only: bearing_schema_of
   use namelist_reader, only: namelist_t, read_namelist
+  use oil_values, only: replace_oils
   use problem_list, only: behind_file
   implicit none
   private
@@ -123,6 +124,7 @@ contains
                values%problems%concerns('initial') .or. any([(values%problems%concerns(joint_group(i)), i=1, n_places)]))) then
       call values%problems%settle()
       call load_case(values, this)
+      call replace_oils(values)
       call check_rules(this, values)
     end if
     call values%problems%report(error)

@@ -95,8 +95,8 @@ contains
       element = unusual_element(place)
       associate (key => values%keys(place))
         call read_bounds(trim(key%usual), least, most)
-        call note(place, ': usually '//trim(key%usual)// &
-          likely_unit(trim(key%unit), values%values(place)%reals(element), least, most), element)
+        call note(place, ': usually '//trim(key%usual)//meant_unit(place, values%values(place)%reals(element), least, most), &
+          element)
       end associate
     end subroutine note_size
 
@@ -111,10 +111,19 @@ contains
         line = shown_group(trim(key%group))//' '//trim(key%name)
         if (element > 1) line = line//'(2)'
         line = line//' = '//trim(values%values(place)%written(element))
-        if (key%unit /= '') line = line//' '//trim(key%unit)
+        if (key%unit /= '' .and. .not. values%values(place)%has_unit) line = line//' '//trim(key%unit)
         call add_line(line//text)
       end associate
     end subroutine note
+
+    !> The unit that was probably meant, of a number without a unit.
+    function meant_unit(place, number, least, most) result(text)
+      integer, intent(in) :: place
+      real(dp), intent(in) :: number, least, most
+      character(len=:), allocatable :: text
+      text = ''
+      if (.not. values%values(place)%has_unit) text = likely_unit(trim(values%keys(place)%unit), number, least, most)
+    end function meant_unit
 
     !> Note a number whose ratio to `scale` should be from `least` to `most`. In `says` # stands for this ratio and @ for the scale;
     !> `hint` is what may have been meant instead, if no other unit explains the number.
@@ -132,7 +141,7 @@ contains
       if (ratio >= least*(1 - rounding) .and. ratio <= most*(1 + rounding)) return
       usual = ', usually '//short_text(least)//' to '//short_text(most)
       if (.not. least > 0) usual = ', usually up to '//short_text(most)
-      meant = likely_unit(trim(values%keys(values%place_of(group, name))%unit), number, least*scale, most*scale)
+      meant = meant_unit(values%place_of(group, name), number, least*scale, most*scale)
       if (present(hint) .and. (meant == '' .or. ratio < near*most)) meant = ': '//hint//'?'
       text = replaced(replaced(says, '#', short_text(ratio, 3)), '@', short_text(scale))
       call remark(group, name, text//usual//meant, others)

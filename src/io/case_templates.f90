@@ -8,7 +8,7 @@ module case_templates
   character(len=*), parameter :: template_kinds = 'dry, film, engine, compressor, slap, elastic, wear'
 
   character, parameter :: n = achar(10)
-  character(len=*), parameter :: si = ' All values are in SI units.'//n
+  character(len=*), parameter :: si = ' Values without a unit are in SI units.'//n
 
   !> A slow mechanism with a dry pin.
   character(len=*), parameter :: rig = &
@@ -18,7 +18,7 @@ module case_templates
     "  piston_mass = 0.14"//n// &
     "/"//n// &
     "&drive kind = 'constant_speed' /"//n// &
-    "&initial crank_speed = 20.9 /   ! rad/s: 200 rpm"//n
+    "&initial crank_speed = 200 rpm /"//n
 
   !> A small engine for industry: 163 cm^3, full load.
   character(len=*), parameter :: engine = &
@@ -28,7 +28,7 @@ module case_templates
     "  piston_mass = 0.20                                                                ! with rings and pin"//n// &
     "/"//n// &
     "&drive kind = 'constant_speed' /"//n// &
-    "&initial crank_speed = 377.0 /   ! rad/s: 3600 rpm"//n// &
+    "&initial crank_speed = 3600 rpm /"//n// &
     "&combustion"//n// &
     "  cycle = 'four_stroke', bore = 0.068, compression_ratio = 8.5, heat_capacity_ratio = 1.32"//n// &
     "  heat = 350.0                                                                      ! J in each cycle"//n// &
@@ -38,13 +38,13 @@ module case_templates
   character(len=*), parameter :: dry_case = &
     "! A dry pin in a slow mechanism: it lies on its bearing, and knocks when the load changes its side."//si//rig// &
     "&joint"//n// &
-    "  kind = 'clearance', clearance = 20.0e-6, bearing_radius = 0.010                   ! radial clearance [m]"//n// &
+    "  kind = 'clearance', clearance = 20 um, bearing_radius = 0.010                   ! radial clearance"//n// &
     "/"//n// &
     "&contact"//n// &
     "  law = 'lankarani_nikravesh', restitution = 0.8"//n// &
-    "  youngs_modulus = 2*207.0e9, poissons_ratio = 2*0.3                                ! of pin and bearing [Pa]"//n// &
+    "  youngs_modulus = 2*207 GPa, poissons_ratio = 2*0.3                                ! of pin and bearing"//n// &
     "/"//n// &
-    "&friction law = 'ambrosio', coefficient = 0.10, v0 = 0.001, v1 = 0.010 /   ! full friction from v1 [m/s] on"//n// &
+    "&friction law = 'ambrosio', coefficient = 0.10, v0 = 1 mm/s, v1 = 10 mm/s /   ! full friction from v1 on"//n// &
     "&integrator revolutions = 4.0 /"//n
 
   character(len=*), parameter :: film_case = &
@@ -55,22 +55,20 @@ module case_templates
     "  piston_mass = 0.91"//n// &
     "/"//n// &
     "&drive kind = 'constant_speed' /"//n// &
-    "&initial crank_speed = 209.4 /   ! rad/s: 2000 rpm"//n// &
+    "&initial crank_speed = 2000 rpm /"//n// &
     "&joint"//n// &
-    "  kind = 'clearance', clearance = 20.0e-6, bearing_radius = 0.010, bearing_length = 0.015   ! radial clearance [m]"//n// &
+    "  kind = 'clearance', clearance = 20 um, bearing_radius = 0.010, bearing_length = 0.015   ! radial clearance"//n// &
     "/"//n// &
-    "&lubrication law = 'pinkus_sternlicht', variant = 'half_film', viscosity = 0.0117 /   ! Pa s"//n// &
+    "&lubrication law = 'pinkus_sternlicht', variant = 'half_film', viscosity = 11.7 cP /"//n// &
     "&integrator revolutions = 4.0 /"//n
 
   character(len=*), parameter :: engine_case = &
     "! A four-stroke engine of 163 cm^3 at 3600 rpm, with an oil film at its piston pin."//si//engine// &
     "&joint"//n// &
-    "  kind = 'clearance', clearance = 8.0e-6, bearing_radius = 0.009, bearing_length = 0.020   ! radial clearance [m]"//n// &
+    "  kind = 'clearance', clearance = 8 um, bearing_radius = 0.009, bearing_length = 0.020   ! radial clearance"//n// &
     "/"//n// &
     "&lubrication"//n// &
-    "  law = 'pinkus_sternlicht', variant = 'half_film', viscosity_law = 'walther'       ! the oil's data sheet, SAE 30:"//n// &
-    "  known_temperatures = 313.15, 373.15, known_viscosities = 93.0e-6, 10.8e-6         ! K, m^2/s: 93 cSt, 10.8 cSt"//n// &
-    "  temperature = 393.15, density = 890.0                                             ! of the film: 120 degrees C"//n// &
+    "  law = 'pinkus_sternlicht', variant = 'half_film', oil = 'SAE 30', temperature = 120 degC   ! of the film"//n// &
     "/"//n// &
     "&integrator revolutions = 8.0 /"//n
 
@@ -82,13 +80,13 @@ module case_templates
     "  piston_mass = 0.13"//n// &
     "/"//n// &
     "&drive kind = 'constant_speed' /"//n// &
-    "&initial crank_speed = 298.5 /   ! rad/s: 2850 rpm"//n// &
+    "&initial crank_speed = 2850 rpm /"//n// &
     "&combustion"//n// &
     "  cycle = 'compressor', bore = 0.051, dead_space = 0.04, polytropic_exponent = 1.3"//n// &
-    "  suction_pressure = 1.0e5, discharge_pressure = 8.0e5                              ! absolute [Pa]"//n// &
+    "  suction_pressure = 1 bar, discharge_pressure = 8 bar                              ! absolute"//n// &
     "/"//n// &
     "&joint"//n// &
-    "  kind = 'clearance', clearance = 6.0e-6, bearing_radius = 0.006, bearing_length = 0.014   ! radial clearance [m]"//n// &
+    "  kind = 'clearance', clearance = 6 um, bearing_radius = 0.006, bearing_length = 0.014   ! radial clearance"//n// &
     "/"//n// &
     "&lubrication law = 'pinkus_sternlicht', variant = 'half_film', viscosity = 0.015 /   ! Pa s"//n// &
     "&integrator revolutions = 6.0 /"//n
@@ -107,14 +105,14 @@ module case_templates
   character(len=*), parameter :: elastic_case = &
     "! An elastic connecting rod in a four-stroke engine of 163 cm^3."//si//engine// &
     "&elastic_rod"//n// &
-    "  youngs_modulus = 70.0e9, section_area = 1.5e-4, section_inertia = 3.0e-9          ! aluminium [Pa], m^2, m^4"//n// &
+    "  youngs_modulus = 70 GPa, section_area = 150 mm2, section_inertia = 3000 mm4       ! aluminium"//n// &
     "/"//n// &
     "&integrator revolutions = 4.0 /"//n
 
   character(len=*), parameter :: wear_case = &
     "! Wear of a dry pin and its bush in a slow mechanism."//si//rig// &
     "&joint"//n// &
-    "  kind = 'clearance', clearance = 20.0e-6, bearing_radius = 0.010, bearing_length = 0.020   ! radial clearance [m]"//n// &
+    "  kind = 'clearance', clearance = 20 um, bearing_radius = 0.010, bearing_length = 0.020   ! radial clearance"//n// &
     "/"//n// &
     "&contact"//n// &
     "  law = 'exact', geometry = 'conformal', restitution = 0.8"//n// &

@@ -9,8 +9,9 @@ module case_values
   use namelist_reader, only: entry_t, token_t, read_values
   use unit_hints, only: likely_unit
   use problem_list, only: problem_list_t, behind_file
-  use value_reader, only: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals, is_within, &
-    read_bounds
+  use number_text, only: short_text
+  use value_reader, only: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, has_unit, most_reals, &
+    is_within, read_bounds
   implicit none
   private
   public :: case_values_t, value_t
@@ -272,6 +273,7 @@ contains
         ' where they are the same'
       if (index > 0 .and. key%count /= most_reals) wanted = 'takes no index'
       if (key%kind == real_kind) call find_decimal_comma(tokens, key%count, wanted)
+      if (key%kind == real_kind .and. .not. allocated(wanted)) call compare_units(tokens, name, wanted)
       if (allocated(wanted)) then
         call fail(error, name//': '//wanted, status_case_file)
         return
@@ -288,17 +290,35 @@ contains
           call convert(key, tokens(i), value, element, wanted)
           if (allocated(wanted)) then
             value%given = .true.   ! but unreadable: it is not demanded too
-            call fail(error, name//' = '//printable(tokens(i)%text, 48)//': '//wanted//unit_of(key), status_case_file)
+            call fail(error, name//' = '//printable(tokens(i)%text, 48)//': '//wanted, status_case_file)
             return
           end if
           value%given(min(element, most_reals)) = .true.
           value%written(min(element, most_reals)) = printable(tokens(i)%text, 45)
+          if (value%has_unit) value%written(element) = trim(value%written(element))//' ('//short_text(value%reals(element))//')'
           value%is_override = is_override
           element = element + 1
         end do
       end do
     end associate
   end subroutine assign
+
+  !> Demand a unit for each number of a list or for none.
+  subroutine compare_units(tokens, name, wanted)
+    type(token_t), intent(in) :: tokens(:)
+    character(len=:), allocatable, intent(inout) :: name     !! followed by the list, if that is wrong
+    character(len=:), allocatable, intent(inout) :: wanted
+    character(len=:), allocatable :: list
+    integer :: i
+    if (size(tokens) < 2) return
+    if (all([(has_unit(tokens(i)%text), i=1, size(tokens))] .eqv. has_unit(tokens(1)%text))) return
+    list = printable(tokens(1)%text, 20)
+    do i = 2, size(tokens)
+      list = list//', '//printable(tokens(i)%text, 20)
+    end do
+    name = name//' = '//list
+    wanted = 'a unit for both numbers or for neither'
+  end subroutine compare_units
 
   !> Give the key at `place` the values in a text, as an override. A key that is a text takes it unchanged; without `is_plain` it
   !> may also be in quotes.
@@ -427,7 +447,9 @@ contains
     if (present(unit)) then
       text = text//unit
     else
-      text = text//unit_of(self%keys(place))//meant(self%keys(place), self%values(place)%reals(min(shown, most_reals)))
+      text = text//unit_of(self%keys(place))
+      if (.not. self%values(place)%has_unit) &
+        text = text//meant(self%keys(place), self%values(place)%reals(min(shown, most_reals)))
     end if
     call self%problems%add(text, group, self%place_in_file(place))
   end subroutine refuse

@@ -19,7 +19,7 @@ module command_line
     character(len=:), allocatable :: accuracy     !! one of `accuracy_levels`, or empty: as in the case file
     integer :: jobs = 0                           !! number of processes; 0: number of processors
     logical :: certify = .false.                  !! make certificates of the runs
-    character(len=:), allocatable :: reference    !! page of the manual to print: case, bearing, study, results or a group
+    character(len=:), allocatable :: reference    !! page of the manual to print: case, bearing, study, oils, results or a group
                                                   !! of cases; empty: none
     character(len=:), allocatable :: kind         !! of a short template; empty: the complete one
     character(len=:), allocatable :: completion   !! shell whose completion script is printed; empty: none
@@ -220,8 +220,9 @@ contains
       case ('reference')
         line%reference = value
         call case_schema_of(table)
-        if (all(value /= ['case   ', 'bearing', 'study  ', 'results', 'schema ']) .and. find_group(table%groups, value) == 0) &
-          wanted = 'must be case, bearing, study, results, schema or a group of cases'
+        if (all(value /= ['case   ', 'bearing', 'study  ', 'oils   ', 'results', &
+          'schema ']) .and. find_group(table%groups, value) == 0) &
+          wanted = 'must be case, bearing, study, oils, results, schema or a group of cases'
       case ('completion')
         line%completion = value
         if (all(value /= ['bash', 'zsh ', 'fish'])) wanted = 'must be bash, zsh or fish'
@@ -328,7 +329,7 @@ contains
       '      --template            print a complete, commented case file (sweep: study file) with every key'//n// &
       '      --template=KIND       print a short case that runs; KIND is one of '//template_kinds//n// &
       '      --reference SUBJECT   print a reference page in Markdown; SUBJECT is case, bearing, study,'//n// &
-      '                            results, a group of cases, or schema: a JSON Schema of cases'//n// &
+      '                            oils, results, a group of cases, or schema: a JSON Schema of cases'//n// &
       '      --completion SHELL    print what completes this command line in bash, zsh or fish'//n// &
       '      --man                 print the manual page'//n// &
       '      --progress WHEN       show progress on standard error: auto (on a terminal), always or never'//n// &

@@ -2,8 +2,8 @@
 !> and a row of two numbers for each point. Empty lines and lines that begin with # are ignored.
 module curve_file
   use kinds, only: dp
-  use constants, only: pi
-  use text_tools, only: printable, integer_text, replaced, next_row, joined
+  use text_tools, only: printable, integer_text, replaced, next_row
+  use physical_units, only: find_head_unit, head_units
   use value_reader, only: read_real
   implicit none
   private
@@ -11,31 +11,20 @@ module curve_file
 
   integer, parameter :: most_rows = 1000000
 
-  !> A unit and its value in the first unit of the quantity.
-  type :: unit_t
-    character(len=8) :: name = ''
-    real(dp) :: factor = 1
-  end type unit_t
-
-  !> A quantity that a column may contain, with its allowed units.
+  !> A quantity that a column may contain.
   type :: quantity_t
     character(len=12) :: name = ''
-    type(unit_t) :: units(7)
+    character(len=8) :: unit = ''     !! of the values that are read
+    character(len=8) :: shown = ''    !! the same in the head of a table
   end type quantity_t
 
-  type(unit_t), parameter :: none = unit_t()
-  type(quantity_t), parameter :: crank_angle = quantity_t('crank angle', [unit_t('deg'), unit_t('degrees'), unit_t('degCA'), &
-    unit_t('rad', 180/pi), none, none, none])
-  type(quantity_t), parameter :: pressure = quantity_t('pressure', [unit_t('Pa'), unit_t('hPa', 1e2_dp), unit_t('kPa', 1e3_dp), &
-    unit_t('MPa', 1e6_dp), unit_t('mbar', 1e2_dp), unit_t('bar', 1e5_dp), unit_t('psi', 6894.757293168361_dp)])
-  type(quantity_t), parameter :: turning_speed = quantity_t('speed', [unit_t('rad/s'), unit_t('rpm', pi/30), &
-    unit_t('1/min', pi/30), unit_t('r/min', pi/30), unit_t('min^-1', pi/30), unit_t('1/s', 2*pi), none])
-  type(quantity_t), parameter :: torque = quantity_t('torque', [unit_t('N.m'), unit_t('mN.m', 1e-3_dp), unit_t('kN.m', 1e3_dp), &
-    none, none, none, none])
+  type(quantity_t), parameter :: crank_angle = quantity_t('crank angle', 'degrees', 'deg'), &
+    pressure = quantity_t('pressure', 'Pa', 'Pa'), turning_speed = quantity_t('speed', 'rad/s', 'rad/s'), &
+    torque = quantity_t('torque', 'N m', 'N.m')
 
 contains
 
-  !> Read the two columns of a text, converted to the first units of their quantities; x increases, and there are at least two rows.
+  !> Read the two columns of a text, converted to the units of their quantities; x increases, and there are at least two rows.
   !> If the text is not such a table, `message` says what is required and `line` where; otherwise the message is empty. `lines` are
   !> the line numbers of the rows.
   subroutine parse_curve(text, x_is, y_is, x, y, lines, message, line)
@@ -109,36 +98,22 @@ contains
     if (text(1:1) == '"' .and. text(len(text):) == '"') text = trim(text(2:len(text) - 1))
   end function bare
 
-  !> The value of a unit in the first unit of its quantity, from the name of a column.
+  !> The value of a unit in that of its quantity, from the name of a column.
   subroutine read_unit(name, quantity, factor, message)
     character(len=*), intent(in) :: name
     type(quantity_t), intent(in) :: quantity
     real(dp), intent(out) :: factor
     character(len=:), allocatable, intent(inout) :: message
-    integer :: i, first, last
+    integer :: first, last
     factor = 0
     first = scan(name, '[(')
     last = scan(name, '])', back=.true.)
-    if (first > 0 .and. last > first) then
-      do i = 1, size(quantity%units)
-        if (quantity%units(i)%name == '' .or. plain(quantity%units(i)%name) /= plain(name(first + 1:last - 1))) cycle
-        factor = quantity%units(i)%factor
-        return
-      end do
-    end if
+    if (first > 0 .and. last > first) factor = find_head_unit(name(first + 1:last - 1), trim(quantity%unit))
+    if (factor > 0) return
     message = printable(name, 40)//': the header must name this column with its unit, the '//trim(quantity%name)// &
-      ' in one of '//joined(quantity%units%name)//', as in '//replaced(trim(quantity%name), ' ', '_')//'['// &
-      trim(quantity%units(1)%name)//']'
+      ' in one of '//head_units(trim(quantity%unit))//', as in '//replaced(trim(quantity%name), ' ', '_')//'['// &
+      trim(quantity%shown)//']'
   end subroutine read_unit
-
-  !> A unit without blanks and signs of multiplication, so that N.m, N m, N*m and Nm are the same, and with deg for the degree sign.
-  pure function plain(unit)
-    character(len=*), intent(in) :: unit
-    character(len=:), allocatable :: plain
-    character(len=*), parameter :: degree_sign = char(194)//char(176), raised_dot = char(194)//char(183)
-    plain = replaced(replaced(unit, degree_sign, 'deg'), raised_dot, '')
-    plain = replaced(replaced(replaced(plain, ' ', ''), '.', ''), '*', '')
-  end function plain
 
   subroutine read_number(field, quantity, value, message)
     character(len=*), intent(in) :: field

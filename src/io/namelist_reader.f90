@@ -1,17 +1,19 @@
 !> Reads the syntax of Fortran namelists into groups, keys and values, without knowledge of their meaning. It is stricter than the
 !> reader of a compiler, which accepts some mistakes: only comments may stand outside a group, every group must be closed by / or
-!> &end, every key must have values, and no value may be missing between commas.
+!> &end, every key must have values, and no value may be missing between commas. A word behind a number is its unit.
 module namelist_reader
   use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text
-  use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, digits, shown
+  use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, word_is_next, &
+    slash_of_unit, digits, shown
+  use physical_units, only: split_number
   implicit none
   private
   public :: namelist_t, entry_t, token_t, read_namelist, read_values
 
   !> One value as written, `repeat` times.
   type :: token_t
-    character(len=:), allocatable :: text   !! without quotes; doubled quotes inside are single
+    character(len=:), allocatable :: text   !! without quotes; doubled quotes inside are single; with the unit of a number
     logical :: quoted = .false.
     integer :: repeat = 1
     logical :: follows_comma = .false.   !! follows a comma without a blank
@@ -121,8 +123,10 @@ contains
       end if
       select case (scan%text(scan%at:scan%at))
       case ('/')
-        scan%at = scan%at + 1
-        return
+        if (.not. slash_of_unit(scan, scan%at)) then
+          scan%at = scan%at + 1
+          return
+        end if
       case ('&')
         scan%at = scan%at + 1
         next = name_here(scan)
@@ -233,6 +237,7 @@ contains
       n = n + 1
       found(n)%follows_comma = scan%at == behind_comma
       call read_token(scan, found(n))
+      if (.not. (found(n)%quoted .or. allocated(scan%message))) call read_unit(scan, found(n)%text)
       if (allocated(scan%message)) return
       comma = .false.
     end do
@@ -271,6 +276,29 @@ contains
     end if
     call read_string(scan, token)
   end subroutine read_token
+
+  !> Read the unit of a number that is not glued to it, and put it behind a blank.
+  subroutine read_unit(scan, text)
+    type(scanner_t), intent(inout) :: scan
+    character(len=:), allocatable, intent(inout) :: text
+    character(len=:), allocatable :: number, unit
+    integer :: length
+    if (verify(text, '+-.0123456789') == 1 .or. verify(text, '+-.') == 0) return
+    call split_number(text, number, unit)
+    if (unit == '' .and. verify(text, '+-.0123456789eEdDqQ') > 0) return   ! not a number
+    if (.not. word_is_next(scan)) return
+    if (key_is_next(scan)) return
+    length = bare_length(scan)
+    if (unit /= '') then
+      scan%message = printable(text, shown)//': unexpected '//printable(scan%text(scan%at:scan%at + length - 1), shown)
+      return
+    end if
+    text = text//' '//scan%text(scan%at:scan%at + length - 1)
+    scan%at = scan%at + length
+    if (.not. word_is_next(scan)) return
+    if (.not. key_is_next(scan)) scan%message = printable(text, shown)//': unexpected '// &
+      printable(scan%text(scan%at:scan%at + bare_length(scan) - 1), shown)
+  end subroutine read_unit
 
   !> Read a string in single or double quotes; a doubled quote stands for one. It must end on the line on which it begins.
   subroutine read_string(scan, token)

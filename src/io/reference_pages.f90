@@ -1,6 +1,7 @@
 !> Reference pages of the manual in Markdown, generated from the declarations of the models: the keys of case and study files, the
 !> columns and quantities of results. `gudgeon --reference` prints them.
 module reference_pages
+  use kinds, only: dp
   use error_handling, only: error_t
   use model_parameters, only: key_t, logical_kind
   use case_schema, only: group_definition_t, key_table_t, find_key
@@ -10,9 +11,11 @@ module reference_pages
   use trace_row, only: column_list_t, name_length
   use text_tools, only: replaced
   use summary_quantities, only: quantity_t, quantities_of_runs, event_columns, wear_columns, study_columns
+  use named_oils, only: oils, sources
+  use number_text, only: short_text
   implicit none
   private
-  public :: keys_reference, results_reference
+  public :: keys_reference, results_reference, oils_reference
 
   character(len=*), parameter :: newline = achar(10)
 
@@ -123,6 +126,23 @@ contains
       '## Quantities of NAME.summary.csv'//newline//newline//quantity_table(quantities_of_runs)// &
       newline//'## Columns of NAME.runs.csv and NAME.cycles.csv of a study'//newline//newline//quantity_table(study_columns)
   end function results_reference
+
+  !> Page of the named oils.
+  function oils_reference() result(text)
+    character(len=:), allocatable :: text
+    integer :: i
+    text = '## Named oils'//newline//newline//'A grade is a window of viscosities and not an oil: each name stands for a '// &
+      'typical oil of its grade, and the window alone is worth 15 % of viscosity either way. Give the oil''s own data sheet '// &
+      'where there is one (`viscosity_law`).'//newline//newline//'| oil | at 40 degrees C [mm2/s] | at 100 degrees C [mm2/s] '// &
+      '| density at 15 degrees C [kg/m3] | viscosities |'//newline//'|---|---|---|---|---|'//newline
+    do i = 1, size(oils)
+      associate (oil => oils(i))
+        text = text//'| '//trim(oil%name)//' | '//short_text(1e6_dp*oil%viscosities(1))//' | '// &
+          short_text(1e6_dp*oil%viscosities(2))//' | '//short_text(oil%density)//' | '//trim(sources(oil%source))//' |'//newline
+      end associate
+    end do
+    text = text//newline//'Densities are typical of data sheets.'//newline
+  end function oils_reference
 
   !> The columns of a kind of scene.
   subroutine columns_of(kind, list, error)

@@ -153,6 +153,7 @@ contains
       type(joint_case_t), intent(in) :: joint
       type(pin_figures_t), intent(in) :: pin
       if (allocated(joint%film)) then
+        if (joint%oil%has_name()) call table%add('oil', joint%oil%name, prefix)
         if (joint%oil%is_known()) call table%add('viscosity', joint%oil%dynamic_viscosity(), prefix)
         if (joint%film%table_of /= '') then
           call table%add('film_table_error', joint%film%table_error, prefix)

@@ -60,6 +60,7 @@ module summary_quantities
     quantity_t('note_N', '', 'values of the case or results that are implausible or beyond a model')]
 
   type(quantity_t), parameter :: of_joints(*) = [ &
+    quantity_t('oil', '', 'named oil of the film'), &
     quantity_t('viscosity', 'Pa s', 'dynamic viscosity of the oil at the temperature of the film'), &
     quantity_t('film_table_error', '1', &
       'largest relative error of the force in the table of the film against its solver, at gaps from 1e-4 of the clearance on'), &

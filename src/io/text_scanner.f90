@@ -3,7 +3,7 @@ module text_scanner
   use text_tools, only: lowercase, printable
   implicit none
   private
-  public :: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line
+  public :: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, word_is_next, slash_of_unit
   public :: newline, return, digits, shown
 
   !> The position, and the error found there.
@@ -60,11 +60,39 @@ contains
     length = bytes_before(scan%text(scan%at:), newline//return)
   end function rest_of_line
 
-  !> Number of bytes to the next separator.
+  !> Number of bytes to the next separator. A slash directly before a letter is none.
   pure integer function bare_length(scan) result(length)
     type(scanner_t), intent(in) :: scan
-    length = bytes_before(scan%text(scan%at:), ' ,/!&=()''"'//tab//newline//return)
+    length = 0
+    do
+      length = length + bytes_before(scan%text(scan%at + length:), ' ,/!&=()''"'//tab//newline//return)
+      if (.not. slash_of_unit(scan, scan%at + length)) return
+      length = length + 1
+    end do
   end function bare_length
+
+  !> Whether there is a slash at `at` with a letter directly behind it, as in rad/s, which closes no group.
+  pure logical function slash_of_unit(self, at) result(found)
+    type(scanner_t), intent(in) :: self
+    integer, intent(in) :: at
+    found = .false.
+    if (at < len(self%text)) found = self%text(at:at) == '/' .and. scan(self%text(at + 1:at + 1), letters(:52)) == 1
+  end function slash_of_unit
+
+  !> Skip blanks on this line, and tell whether a word follows as a unit begins: with a letter, a degree or micro sign, or 1/ and a
+  !> letter.
+  logical function word_is_next(self) result(found)
+    type(scanner_t), intent(inout) :: self
+    integer :: at
+    do while (next_is(self, ' ') .or. next_is(self, tab))
+      self%at = self%at + 1
+    end do
+    at = self%at
+    found = .false.
+    if (at_end(self)) return
+    found = scan(self%text(at:at), letters(:52)//char(194)//char(206)) == 1
+    if (next_is(self, '1')) found = slash_of_unit(self, at + 1)
+  end function word_is_next
 
   !> Number of bytes before the first of some characters; the length of the text if it contains none of them.
   pure integer function bytes_before(text, ends) result(length)

@@ -6,9 +6,11 @@ module value_reader
   use text_tools, only: lowercase, printable, is_clean, whole_number, likely_word
   use case_schema, only: key_t, is_listed, real_kind, integer_kind, logical_kind, word_kind
   use namelist_reader, only: token_t
+  use number_text, only: exact_text
+  use physical_units, only: unit_t, split_number, find_unit, shifted
   implicit none
   private
-  public :: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, most_reals
+  public :: value_t, set_to_default, convert, convert_list, find_decimal_comma, is_default, unit_of, has_unit, most_reals
   public :: read_real, read_times, read_integer, is_within, read_bounds
 
   integer, parameter :: most_reals = 2   !! longest array of reals in the schema
@@ -27,7 +29,8 @@ module value_reader
     integer :: whole = 0
     logical :: switch = .false.
     character(len=:), allocatable :: text
-    character(len=48) :: written(most_reals) = ''   !! as the user wrote it, for messages
+    character(len=70) :: written(most_reals) = ''   !! as the user wrote it, for messages
+    logical :: has_unit = .false.            !! it was written with a unit
     integer :: line = 0                      !! line of the file on which it is given
   end type value_t
 
@@ -48,7 +51,7 @@ contains
     end do
   end subroutine set_to_default
 
-  !> Convert a text to a value of the key's kind; if that is not possible, `wanted` says what is allowed.
+  !> Convert a text to a value of the key's kind; if that is not possible, `wanted` says what is allowed, with the unit of the key.
   subroutine convert(key, token, value, element, wanted)
     type(key_t), intent(in) :: key
     type(token_t), intent(in) :: token
@@ -57,8 +60,15 @@ contains
     character(len=:), allocatable, intent(out) :: wanted
     select case (key%kind)
     case (real_kind)
-      call read_real(token%text, value%reals(element), wanted)
-      if (token%quoted) wanted = 'must be a number, without quotes'
+      value%has_unit = has_unit(token%text) .and. .not. token%quoted
+      if (token%quoted) then
+        wanted = 'must be a number, without quotes'
+      else if (value%has_unit) then
+        call read_with_unit(token%text, key, value%reals(element), wanted)
+        return
+      else
+        call read_real(token%text, value%reals(element), wanted)
+      end if
     case (integer_kind)
       call read_integer(token%text, value%whole, wanted)
       if (token%quoted) wanted = 'must be a whole number, without quotes'
@@ -78,7 +88,59 @@ contains
       end if
       if (len(value%text) > longest_text) wanted = 'must be at most 4000 bytes'
     end select
+    if (allocated(wanted)) wanted = wanted//unit_of(key)
   end subroutine convert
+
+  !> Whether a text is a number with a unit.
+  pure logical function has_unit(text)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: number, unit
+    call split_number(text, number, unit)
+    has_unit = unit /= ''
+  end function has_unit
+
+  !> Read a number with a unit that belongs to the key. If only the power of ten differs, the value has the bits of the number as it
+  !> would be written in the unit of the key.
+  pure subroutine read_with_unit(text, key, value, wanted)
+    character(len=*), intent(in) :: text
+    type(key_t), intent(in) :: key
+    real(dp), intent(out) :: value
+    character(len=:), allocatable, intent(out) :: wanted
+    character(len=:), allocatable :: number, unit
+    type(unit_t) :: found
+    value = 0
+    call split_number(text, number, unit)
+    call find_unit(unit, trim(key%unit), trim(key%name), found, wanted)
+    if (.not. allocated(wanted)) call read_real(shifted(number, found%power), value, wanted)
+    value = (value + found%offset)*found%factor
+    if (allocated(wanted) .or. .not. abs(value) > 0) return
+    if (.not. (abs(value) >= 10.0_dp**(-largest_exponent) .and. abs(value) < 10.0_dp**largest_exponent)) wanted = out_of_reach
+  end subroutine read_with_unit
+
+  !> Replace the numbers with units in a list, which commas separate, by numbers in the unit of the key; other parts stay.
+  pure subroutine convert_list(text, key, wanted)
+    character(len=:), allocatable, intent(inout) :: text
+    type(key_t), intent(in) :: key
+    character(len=:), allocatable, intent(out) :: wanted
+    character(len=:), allocatable :: list, part
+    real(dp) :: value
+    integer :: first, length
+    list = ''
+    first = 1
+    do while (first <= len(text) + 1)
+      length = index(text(first:)//',', ',') - 1
+      part = text(first:first + length - 1)
+      if (has_unit(trim(adjustl(part))) .and. key%kind == real_kind .and. key%count == 1) then
+        call read_with_unit(trim(adjustl(part)), key, value, wanted)
+        if (allocated(wanted)) wanted = printable(trim(adjustl(part)), 40)//': '//wanted
+        if (allocated(wanted)) return
+        part = exact_text(value)
+      end if
+      list = list//','//part
+      first = first + length + 1
+    end do
+    text = list(2:)
+  end subroutine convert_list
 
   !> Detect decimal commas: texts such as 0,05 are read as two values. `wanted` is set if a key that takes `count` values has twice
   !> as many that look like this.
@@ -86,15 +148,17 @@ contains
     type(token_t), intent(in) :: tokens(:)
     integer, intent(in) :: count
     character(len=:), allocatable, intent(inout) :: wanted
+    character(len=:), allocatable :: number, unit
     integer :: i
     if (size(tokens) /= 2*count .and. size(tokens) /= 2) return
     do i = 1, size(tokens), 2
       if (.not. tokens(i + 1)%follows_comma .or. tokens(i)%repeat > 1) return
-      if (verify(tokens(i)%text, '+-'//digits) > 0 .or. verify(tokens(i + 1)%text, digits//'edED+-') > 0) return
+      call split_number(tokens(i + 1)%text, number, unit)
+      if (verify(tokens(i)%text, '+-'//digits) > 0 .or. verify(number, digits//'edED+-') > 0) return
       if (scan(tokens(i + 1)%text, digits) /= 1) return
     end do
     if (size(tokens) == count) then
-      if (index(tokens(2)%text, '0') /= 1 .or. verify(tokens(2)%text//'.', digits) == 2) return
+      if (index(tokens(2)%text, '0') /= 1 .or. verify(number//'.', digits) == 2) return
     end if
     wanted = printable(tokens(1)%text//','//tokens(2)%text, 40)//' has a decimal comma: write '// &
       printable(tokens(1)%text//'.'//tokens(2)%text, 40)

@@ -11,7 +11,7 @@ module study_case
   use case_loader, only: load_case
   use case_rules, only: check_rules
   use case_notes, only: note_case
-  use value_reader, only: read_value => convert
+  use value_reader, only: read_value => convert, has_unit
   use namelist_reader, only: token_t
   implicit none
   private
@@ -128,6 +128,8 @@ contains
     associate (place => self%places(i))
       if (self%is_number(i)) then
         token%text = text
+        if (has_unit(text)) call fail(error, 'must be a number without unit', status_case_file)   ! in a table
+        if (allocated(error)) return
         call read_value(self%values%keys(place), token, self%values%values(place), 1, wanted)
         self%values%values(place)%written(1) = text
         if (allocated(wanted)) call fail(error, wanted, status_case_file)

@@ -2,11 +2,12 @@
 module study_file
   use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: printable, case_name, lowercase, path_beside
+  use value_reader, only: convert_list
   use text_file, only: read_text_file
   use posix_files, only: absolute_path
   use namelist_reader, only: namelist_t, read_namelist
   use case_values, only: case_values_t
-  use case_schema, only: key_table_t, is_group_of_cases
+  use case_schema, only: key_t, key_table_t, case_schema_of, find_group, find_key, is_group_of_cases, text_kind
   use case_loader, only: load_model
   use case_text, only: resolved_text
   use problem_list, only: problem_list_t, behind_file
@@ -57,6 +58,7 @@ contains
     type(key_table_t) :: table
     type(problem_list_t) :: problems
     character(len=:), allocatable :: at
+    type(error_t), allocatable :: unit_error
     integer :: place(size(list%groups)), i, n, key
 
     call study_schema_of(table)
@@ -96,6 +98,10 @@ contains
     do i = 1, size(list%entries)
       associate (entry => list%entries(i))
         if (place(entry%group_number) == 0) cycle
+        if (any(entry%key == [character(len=6) :: 'values', 'from', 'to'])) then
+          call take_units(list, i, unit_error)
+          call problems%add_error(unit_error, '', entry%line)
+        end if
         if (entry%key == 'values') entry%tokens%quoted = .true.   ! a list is kept as written, numbers and words alike
         call groups(place(entry%group_number))%give(entry%group, entry, list%at(entry%line))
       end associate
@@ -106,6 +112,43 @@ contains
     end do
     call problems%report(error)
   end subroutine read_groups
+
+  !> Replace the numbers with units in an entry of &parameter by numbers in the unit of the key that it varies.
+  subroutine take_units(list, number, error)
+    type(namelist_t), intent(inout) :: list
+    integer, intent(in) :: number   !! of the entry
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: wanted
+    type(key_t) :: key
+    integer :: i
+    do i = 1, size(list%entries)
+      if (list%entries(i)%group_number == list%entries(number)%group_number .and. list%entries(i)%key == 'key') &
+        key = key_of_case(lowercase(list%entries(i)%tokens(1)%text))
+    end do
+    associate (entry => list%entries(number))
+      do i = 1, size(entry%tokens)
+        if (entry%key /= 'values' .and. entry%tokens(i)%quoted) cycle   ! refused below
+        call convert_list(entry%tokens(i)%text, key, wanted)
+        if (.not. allocated(wanted)) cycle
+        call fail(error, list%at(entry%line)//'&parameter '//entry%key//' = '//wanted, status_case_file)
+        entry%tokens(i)%text = '0'   ! not refused again
+      end do
+    end associate
+  end subroutine take_units
+
+  !> A key of cases, given as GROUP.KEY; a key of texts if there is none.
+  type(key_t) function key_of_case(name) result(key)
+    character(len=*), intent(in) :: name
+    type(key_table_t) :: table
+    integer :: dot, group, place
+    key%kind = text_kind
+    call case_schema_of(table)
+    dot = index(name, '.', back=.true.)
+    group = find_group(table%groups, name(:max(0, dot - 1)))
+    if (group == 0) return
+    place = find_key(table%keys, table%groups(group), name(dot + 1:))
+    if (place > 0) key = table%keys(place)
+  end function key_of_case
 
   !> Set the values of &study.
   subroutine set_study(values, study)
