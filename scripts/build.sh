@@ -3,7 +3,7 @@
 # if it is missing.
 #
 #   scripts/build.sh                     builds gudgeon
-#   scripts/build.sh PROGRAM             builds one of the programs of scripts/fpm.toml: check_numbers, measure_costs, ...
+#   scripts/build.sh PROGRAM             builds one of the programs of scripts/bench/fpm.toml: check_numbers, measure_costs, ...
 #   scripts/build.sh --native [PROGRAM]  the same for this processor alone (`fpm @native`)
 #
 # Nothing else is printed on standard output. If the build fails, the exit status is 1 and the messages of fpm are on standard
@@ -13,18 +13,18 @@ cd "$(dirname "$0")/.." || exit 1
 profile=@release
 [ "$1" = --native ] && profile=@native && shift
 folder=
-[ $# -gt 0 ] && folder=scripts/
+[ $# -gt 0 ] && folder=scripts/bench/
 
 build() {
   # shellcheck disable=SC2086  # options or nothing
-  said=$(fpm $profile ${folder:+--directory scripts} --runner echo "$@" 2>&1) &&
+  said=$(fpm $profile ${folder:+--directory scripts/bench} --runner echo "$@" 2>&1) &&
     found=$folder$(printf '%s\n' "$said" | grep "^build/.*/${1:-gudgeon}\$" | tail -n 1) &&
     [ -f "$found" ] && [ -x "$found" ]
 }
 
 build "$@" && echo "$found" && exit 0
 if printf '%s\n' "$said" | grep -q -e 'multiple definition of' -e 'Mismatch in components of derived type'; then
-  rm -rf build/gfortran_* scripts/build/gfortran_*   # objects of earlier sources are in the way
+  rm -rf build/gfortran_* scripts/bench/build/gfortran_*   # objects of earlier sources are in the way
   build "$@" && echo "$found" && exit 0
 fi
 printf '%s\n' "$said" >&2

@@ -10,7 +10,7 @@ program=${1:-$(scripts/build.sh)} || exit 1
 rm -rf build/manual build/manual_pages
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-.venv/bin/python scripts/manual_pages.py collect "$program" || exit 1
+.venv/bin/python scripts/manual/pages.py collect "$program" || exit 1
 .venv/bin/ford README.md >"$log" 2>&1
 status=$?
 if [ "$status" != 0 ] || grep -qi -e warning -e error "$log"; then
@@ -18,5 +18,5 @@ if [ "$status" != 0 ] || grep -qi -e warning -e error "$log"; then
   echo "manual: FORD failed or warned" >&2
   exit 1
 fi
-.venv/bin/python scripts/manual_pages.py link || exit 1
+.venv/bin/python scripts/manual/pages.py link || exit 1
 echo build/manual/index.html

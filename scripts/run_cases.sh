@@ -2,7 +2,9 @@
 # Runs case files with the release build, in parallel on all processor cores. Prints one line for each case when it ends, then a
 # table.
 #
-#   scripts/run_cases.sh [-o DIR] [-j N] [-s GROUP.KEY=VALUE] CASE.nml...      (options are passed to gudgeon)
+#   scripts/run_cases.sh [-o DIR] [-j N] [-s GROUP.KEY=VALUE] CASE.nml|FOLDER...      (options are passed to gudgeon)
+#   scripts/run_cases.sh cases                     the simulations of chapter 6 of the dissertation, which are in cases/ itself
+#   scripts/run_cases.sh cases/flores              the cases of Flores's benchmark (appendix B)
 #
 # The exit status is that of gudgeon: not 0 if any case failed.
 cd "$(dirname "$0")/.." || exit 1
@@ -10,8 +12,11 @@ cd "$(dirname "$0")/.." || exit 1
 out=results
 previous=
 for argument in "$@"; do
-  case $previous in -o | --out) out=$argument ;; esac
+  shift
   case $argument in --out=*) out=${argument#--out=} ;; esac
+  case $previous in -o | --out) out=$argument; set -- "$@" "$argument" ;;
+    *) if [ -d "$argument" ]; then set -- "$@" "$argument"/*.nml; else set -- "$@" "$argument"; fi ;;
+  esac
   previous=$argument
 done
 

@@ -9,6 +9,7 @@
 # data/measured/sensitivity.md. If the script is interrupted, the same command continues it.
 cd "$(dirname "$0")/.." || exit 1
 scripts/setup.sh --studies || exit 1
+PATH="$PWD/.venv/bin:$PATH"
 
 out=results/studies
 options=
@@ -31,13 +32,13 @@ for study in map_I map_IV map_I_oscillating map_IV_oscillating bifurcation_clear
   # shellcheck disable=SC2086  # options are words
   "$program" sweep -o "$out" $options $more "cases/studies/$study.nml" || status=$?
 done
-scripts/plot_study.py --results "$out" --format png --format svg || status=1
+gudgeon-plot study --results "$out" --format png --format svg || status=1
 
 sensitivity() {   # sensitivity STUDY OUTPUT...
   study=$1
   shift
   # shellcheck disable=SC2086  # options are words
-  scripts/sensitivity.py --program "$program" --out "$out/sensitivity" $options --convergence \
+  gudgeon-plot sensitivity --program "$program" -o "$out/sensitivity" --format png --format svg $options --convergence \
     "cases/studies/$study.nml" --outputs "$@" || status=1
 }
 sensitivity sensitivity_I log:min_film_thickness contact_time_fraction
@@ -45,8 +46,8 @@ sensitivity sensitivity_IV log:min_film_thickness contact_time_fraction
 sensitivity sensitivity_I_oscillating min_film_thickness contact_time_fraction
 sensitivity sensitivity_IV_oscillating min_film_thickness contact_time_fraction
 if [ "$status" = 0 ]; then
-  scripts/record.py studies "Parameter studies" scripts/plot_study.py --results "$out" --numbers || status=1
-  scripts/record.py sensitivity "Sensitivity of films and contacts" scripts/sensitivity.py --table --out "$out/sensitivity" \
+  scripts/bench/record.py studies "Parameter studies" gudgeon-plot study --results "$out" --numbers || status=1
+  scripts/bench/record.py sensitivity "Sensitivity of films and contacts" gudgeon-plot sensitivity --table -o "$out/sensitivity" \
     cases/studies/sensitivity_I.nml cases/studies/sensitivity_IV.nml cases/studies/sensitivity_I_oscillating.nml \
     cases/studies/sensitivity_IV_oscillating.nml || status=1
 fi

@@ -3,14 +3,14 @@
 #
 #   . scripts/setup.sh          from the top of the checkout; also puts fpm on the PATH of the calling shell
 #   scripts/setup.sh            the same for scripts and for later shells
-#   scripts/setup.sh --python   also installs, in .venv, the Python packages of the scripts that draw (plot.py, report.py,
-#   plot_study.py, ...)
+#   scripts/setup.sh --python   also makes, in .venv, gudgeon-plot and the Python package gudgeon of scripts/python, with what they need
 #   scripts/setup.sh --browser  as --python, and Chromium (Debian packages), which tests/test_report.py needs
-#   scripts/setup.sh --studies  also the packages of scripts/sensitivity.py, scripts/run_studies.sh and scripts/cluster
+#   scripts/setup.sh --studies  also the packages of gudgeon-plot sensitivity, scripts/run_studies.sh and scripts/cluster
 #   scripts/setup.sh --manual   also FORD, which scripts/manual.sh needs
+#   scripts/setup.sh --lint     also the linters of Fortran and Python
 #
-# Root or sudo is needed only to install Debian packages. fpm is installed in .venv, with a link to it in /usr/local/bin or
-# ~/.local/bin. This file is POSIX sh; if it is sourced, it changes no option of the calling shell.
+# Root or sudo is needed only to install Debian packages. fpm and gudgeon-plot are installed in .venv, with links to them in
+# /usr/local/bin or ~/.local/bin. This file is POSIX sh; if it is sourced, it changes no option of the calling shell.
 
 gudgeon_apt() {   # install Debian packages, as root or by sudo
   if [ "$(id -u)" = 0 ]; then
@@ -25,13 +25,13 @@ gudgeon_apt() {   # install Debian packages, as root or by sudo
     $gudgeon_sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >&2
 }
 
-gudgeon_link() {   # link the fpm of .venv into a folder of the PATH, where later shells find it
+gudgeon_link() {   # gudgeon_link COMMAND: link a command of .venv into a folder of the PATH, where later shells find it
   for gudgeon_dir in /usr/local/bin "$HOME/.local/bin"; do
     case ":$PATH:" in *":$gudgeon_dir:"*) ;; *) continue ;; esac
     mkdir -p "$gudgeon_dir" 2>/dev/null
-    [ -w "$gudgeon_dir" ] && ln -sf "$PWD/.venv/bin/fpm" "$gudgeon_dir/fpm" && return 0
+    [ -w "$gudgeon_dir" ] && ln -sf "$PWD/.venv/bin/$1" "$gudgeon_dir/$1" && return 0
   done
-  echo "setup: fpm is $PWD/.venv/bin/fpm; add $PWD/.venv/bin to PATH for later shells" >&2
+  echo "setup: $1 is $PWD/.venv/bin/$1; add $PWD/.venv/bin to PATH for later shells" >&2
 }
 
 gudgeon_venv() {   # create .venv, a virtual environment of Python, if it is missing
@@ -44,8 +44,12 @@ gudgeon_venv() {   # create .venv, a virtual environment of Python, if it is mis
 
 gudgeon_pip() { .venv/bin/python -m pip install --quiet --disable-pip-version-check "$@" >&2; }
 
-gudgeon_python() {   # install the packages of these lists; pip skips those that are installed
-  gudgeon_venv && gudgeon_pip "$@"
+gudgeon_python() {   # install the packages of these lists, and gudgeon itself as it stands in scripts/python, without a build
+  gudgeon_venv && gudgeon_pip "$@" || return 1
+  .venv/bin/python -c 'import pathlib, sysconfig
+pathlib.Path(sysconfig.get_path("purelib"), "gudgeon.pth").write_text(str(pathlib.Path("scripts/python/src").resolve()) + "\n")' || return 1
+  printf '#!/bin/sh\nexec "%s" -m gudgeon "$@"\n' "$PWD/.venv/bin/python" >.venv/bin/gudgeon-plot && chmod +x .venv/bin/gudgeon-plot
+  command -v gudgeon-plot >/dev/null 2>&1 || gudgeon_link gudgeon-plot
 }
 
 # fpm 0.12 still links the objects of source files that have been moved or removed, without a message. Therefore all programs are
@@ -53,7 +57,7 @@ gudgeon_python() {   # install the packages of these lists; pip skips those that
 gudgeon_sources() {
   gudgeon_list=$(find src tests scripts -name '*.f90' | sort)
   [ "$gudgeon_list" = "$(cat build/sources 2>/dev/null)" ] && return 0
-  rm -rf build/gfortran_* scripts/build/gfortran_*
+  rm -rf build/gfortran_* scripts/bench/build/gfortran_*
   mkdir -p build && printf '%s\n' "$gudgeon_list" >build/sources
 }
 
@@ -76,7 +80,7 @@ gudgeon_setup() {
   PATH="$PWD/.venv/bin:$PATH"
   export PATH
   hash -r 2>/dev/null
-  gudgeon_link
+  gudgeon_link fpm
   return 0
 }
 
@@ -87,17 +91,17 @@ case "${0##*/} $#" in
   "setup.sh 0") ;;
   setup.sh*)
     case "$*" in
-      --python) gudgeon_packages="-r scripts/requirements.txt" ;;
+      --python) gudgeon_packages="-r scripts/python/requirements.txt" ;;
       --browser)
-        gudgeon_packages="-r scripts/requirements.txt"
+        gudgeon_packages="-r scripts/python/requirements.txt"
         if ! { command -v chromium && command -v chromedriver; } >/dev/null 2>&1; then
           gudgeon_apt chromium chromium-driver || gudgeon_status=1
         fi
         ;;
-      --studies) gudgeon_packages="-r scripts/requirements.txt -r scripts/requirements-studies.txt" ;;
-      --manual) gudgeon_packages="-r scripts/requirements-manual.txt" ;;
+      --studies) gudgeon_packages="-r scripts/python/requirements.txt -r scripts/python/requirements-studies.txt" ;;
+      --manual | --lint) gudgeon_packages="-r scripts/python/requirements-${1#--}.txt" ;;
       *)
-        echo "setup: usage: scripts/setup.sh [--python | --browser | --studies | --manual]" >&2
+        echo "setup: usage: scripts/setup.sh [--python | --browser | --studies | --manual | --lint]" >&2
         gudgeon_status=2
         ;;
     esac

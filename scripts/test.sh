@@ -36,16 +36,16 @@ count() {   # count NAME COMMAND...: run the command and add up its counts
   fi
 }
 
-count "all modules and programs compile" sh -c 'fpm build --no-prune && fpm build --directory scripts && echo "1 passed, 0 failed"'
+count "all modules and programs compile" sh -c 'fpm build --no-prune && fpm build --directory scripts/bench && echo "1 passed, 0 failed"'
 count "build scripts" tests/test_build.sh
-count "layers of the source" tests/test_layers.py
+count "layers, linters" sh -c 'scripts/setup.sh --lint && tests/test_layers.py'
 count "Fortran tests, all compiler checks" fpm @strict
 count "random changes of case files" tests/test_fuzz.py
 $all && count "Fortran tests, release build" fpm @release_tests
 count "command line" tests/test_program.sh
 count "parameter studies" tests/test_sweep.sh
 $all && count "independent judge of runs" tests/test_judge.py
-count "extreme scenes" scripts/extremes --scenes 120 --seed 5 --evaluations 100000 --judged 24 --limit 120 --known tests/known_findings.csv --quiet
+count "extreme scenes" tests/judge/extremes --scenes 120 --seed 5 --evaluations 100000 --judged 24 --limit 120 --known tests/judge/known_findings.csv --quiet
 count "states and runs that go on from them" tests/test_state_file.py
 count "summaries against traces" tests/test_summaries.py
 count "answers of cycles" tests/test_cycle_answers.py
@@ -58,7 +58,7 @@ count "bearing cases" python3 tests/test_bearing_cases.py
 count "effects of single models" sh -c 'scripts/setup.sh --python && .venv/bin/python tests/test_models.py'
 count "pages of runs in a browser" sh -c 'scripts/setup.sh --browser && tests/test_report.py'
 count "manual" sh -c 'scripts/setup.sh --manual && tests/test_manual.py'
-count "statements of the dissertation" sh -c 'scripts/setup.sh --python && .venv/bin/python scripts/check_findings.py --check'
+count "statements of the dissertation" sh -c 'scripts/setup.sh --python && .venv/bin/python scripts/bench/check_findings.py --check'
 count "sensitivity and cluster studies" sh -c 'scripts/setup.sh --studies && tests/test_studies.py'
 
 failed=$((failed + wrong))

@@ -1,6 +1,6 @@
 !> gudgeon: simulation of the slider-crank mechanism with clearance in its joints. Reads the command line and runs the cases.
 program gudgeon
-  use gudgeon_errors, only: error_t, fail, status_ok, status_integration
+  use error_handling, only: error_t, fail, status_ok, status_integration
   use command_line, only: command_line_t, parse_command_line, program_arguments, help_text
   use case_file, only: template
   use case_templates, only: short_template
@@ -11,11 +11,11 @@ program gudgeon
   use bearing_definition, only: bearing_schema_of
   use case_text, only: template_text
   use reference_pages, only: keys_reference, results_reference, oils_reference
-  use gudgeon_progress, only: progress_wanted, tell, say
+  use run_progress, only: progress_wanted, tell, say
   use text_tools, only: printable
-  use gudgeon_posix, only: fill_standard_descriptors, signal_set_t, hold_interrupts, interrupted, ignore_write_signals
+  use posix_files, only: fill_standard_descriptors, signal_set_t, hold_interrupts, interrupted, ignore_write_signals
   use posix_calls, only: c_exit
-  use gudgeon_version, only: program_version
+  use version_number, only: program_version
   implicit none
   type(command_line_t) :: options
   type(error_t), allocatable :: error

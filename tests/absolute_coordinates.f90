@@ -1,10 +1,10 @@
 !> A scene with clearance in the coordinates (q, A, x) of its bodies, in which the eccentricity is a difference of numbers that are
 !> ten thousand times larger. Tests compare the coordinates of scenes with these.
 module absolute_coordinates
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t
-  use gudgeon_scene, only: scene_t, evaluation_t
-  use state_making, only: put_crank, put_pin
+  use scene_problem, only: scene_t, evaluation_t
+  use state_making, only: set_crank, set_pin
   implicit none
   private
   public :: absolute_coordinates_t, in_absolute_coordinates
@@ -25,10 +25,10 @@ contains
     type(absolute_coordinates_t), intent(out) :: problem
     real(dp), intent(out) :: y(6)
     type(evaluation_t) :: now
-    logical :: inside
+    logical :: in_domain
     problem%scene = scene
     problem%n = 6
-    call scene%evaluate(0.0_dp, scene%initial_state(), now, inside)
+    call scene%evaluate(0.0_dp, scene%initial_state(), now, in_domain)
     associate (m => now%motion)
       y = [m%crank_angle, atan2(m%sin_rod, m%cos_rod), m%piston_position, m%crank_speed, m%rod_speed, m%piston_velocity]
     end associate
@@ -45,19 +45,19 @@ contains
     end associate
   end subroutine eccentricity
 
-  pure subroutine derivatives(self, t, y, dydt, inside)
+  pure subroutine derivatives(self, t, y, dydt, in_domain)
     class(absolute_coordinates_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     type(evaluation_t) :: now
     real(dp) :: e(2), rate(2), state(self%scene%n)
     call self%eccentricity(y, e, rate)
     state = 0
-    call put_crank(self%scene, state, y(1), y(4))
-    call put_pin(self%scene, state, e, rate)
-    call self%scene%evaluate(t, state, now, inside)
-    if (.not. inside) return
+    call set_crank(self%scene, state, y(1), y(4))
+    call set_pin(self%scene, state, e, rate)
+    call self%scene%evaluate(t, state, now, in_domain)
+    if (.not. in_domain) return
     dydt(:3) = y(4:6)
     dydt(4:6) = [now%accelerations%crank, now%accelerations%rod, now%accelerations%piston]
   end subroutine derivatives

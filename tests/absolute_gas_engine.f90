@@ -1,8 +1,8 @@
 !> A scene in the coordinates (q, A, x) of its bodies, with the parts of the gas cycle as events.
 module absolute_gas_engine
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: event_continue
-  use gudgeon_scene, only: scene_t
+  use scene_problem, only: scene_t
   use absolute_coordinates, only: absolute_coordinates_t, in_absolute_coordinates
   implicit none
   private

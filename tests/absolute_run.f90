@@ -8,14 +8,14 @@
 !> run ends with exit status 1.
 program absolute_run
   use, intrinsic :: iso_fortran_env, only: error_unit
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: two_pi
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use adams, only: adams_t
-  use gudgeon_solver, only: integrate, integration_done
-  use gudgeon_scene, only: scene_t
+  use ode_solver, only: integrate, integration_done
+  use scene_problem, only: scene_t
   use scene_builder, only: build_scene
   use absolute_gas_engine, only: absolute_gas_engine_t, new_absolute_gas_engine
   use sampler, only: sampler_t
@@ -74,13 +74,13 @@ contains
     type(absolute_gas_engine_t), intent(inout) :: engine
     real(dp), intent(in) :: clearance   !! [m]
     real(dp) :: e(2), rate(2), slope(6)
-    logical :: inside
+    logical :: in_domain
     integer :: i
     print '(a)', 'time[s],crank_acceleration[rad/s2],eccentricity_ratio[-]'
     do i = 1, sampler%taken
       if (allocated(engine%scene%gas)) call engine%scene%gas%start(sampler%y(1, i), sampler%y(4, i))
-      call engine%derivatives(i*sampler%interval, sampler%y(:, i), slope, inside)
-      if (.not. inside) exit
+      call engine%derivatives(i*sampler%interval, sampler%y(:, i), slope, in_domain)
+      if (.not. in_domain) exit
       call engine%eccentricity(sampler%y(:, i), e, rate)
       print '(es23.16,2(",",es23.16))', i*sampler%interval, slope(4), norm2(e)/clearance
     end do

@@ -1,7 +1,7 @@
 !> Stick-slip: a mass on a dry floor, pulled by a spring whose other end moves at constant speed. The friction law is one of the
 !> program; for set-valued laws, sticking and slipping are determined by the procedures of a joint.
 module belt_problem
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t, event_continue
   use friction_law, only: friction_law_t
   use dry_contact, only: dry_contact_t
@@ -42,13 +42,13 @@ contains
     belt%refuses_steps = .false.
   end subroutine new_belt
 
-  pure subroutine derivatives(self, t, y, dydt, inside)
+  pure subroutine derivatives(self, t, y, dydt, in_domain)
     class(belt_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     real(dp) :: friction, ratio
-    inside = .true.
+    in_domain = .true.
     friction = -pull(t, y)
     associate (law => self%contact%friction)
       if (law%n_states > 0) then
@@ -81,8 +81,8 @@ contains
     type(joint_evaluation_t), intent(out) :: now
     type(joint_rates_t), intent(out) :: rates
     real(dp) :: dydt(self%n)
-    logical :: inside
-    call self%derivatives(t, y, dydt, inside)
+    logical :: in_domain
+    call self%derivatives(t, y, dydt, in_domain)
     now%normal = [1.0_dp, 0.0_dp]
     now%distance = 1
     now%penetration_rate = 0

@@ -1,8 +1,8 @@
 !> Checks of cases used by several tests of joints: a short case with additional groups is accepted, or refused with the expected
 !> message; all methods give the same result for a case.
 module case_checks
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: parse_case

@@ -5,7 +5,7 @@
 module checks
   use, intrinsic :: iso_fortran_env, only: output_unit, int64
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: checks_t, without_figures
@@ -37,9 +37,9 @@ module checks
     procedure :: relative      !! |got - want| <= tolerance*|want|
     procedure :: equal_text    !! two texts are the same
     procedure :: begins_with
-    procedure, private :: take
+    procedure, private :: record
     procedure, private :: find
-    procedure, private :: make_room
+    procedure, private :: enlarge
   end type checks_t
 
 contains
@@ -76,7 +76,7 @@ contains
     class(checks_t), intent(inout) :: self
     logical, intent(in) :: condition
     character(len=*), intent(in) :: name
-    call self%take(condition, name, '')
+    call self%record(condition, name, '')
   end subroutine that
 
   !> A NaN never passes.
@@ -89,7 +89,7 @@ contains
     is_close = .false.   ! comparing a NaN would trap if floating-point traps are set
     if (.not. ieee_is_nan(got - want)) is_close = abs(got - want) <= tolerance
     write (figures, '(a,es23.16,a,es23.16,a,es8.1)') ': got ', got, ', want ', want, ' within ', tolerance
-    call self%take(is_close, name, trim(figures))
+    call self%record(is_close, name, trim(figures))
   end subroutine close_to
 
   subroutine relative(self, got, want, tolerance, name)
@@ -102,18 +102,18 @@ contains
   subroutine equal_text(self, got, want, name)
     class(checks_t), intent(inout) :: self
     character(len=*), intent(in) :: got, want, name
-    call self%take(got == want .and. len(got) == len(want), name, ': got "'//got//'", want "'//want//'"')
+    call self%record(got == want .and. len(got) == len(want), name, ': got "'//got//'", want "'//want//'"')
   end subroutine equal_text
 
   !> Text that begins with another, such as a list of names that may become longer.
   subroutine begins_with(self, got, want, name)
     class(checks_t), intent(inout) :: self
     character(len=*), intent(in) :: got, want, name
-    call self%take(index(got, want) == 1, name, ': got "'//got//'", want "'//want//'..."')
+    call self%record(index(got, want) == 1, name, ': got "'//got//'", want "'//want//'..."')
   end subroutine begins_with
 
   !> Count the assertion `name` once, with what was found.
-  subroutine take(self, condition, name, found)
+  subroutine record(self, condition, name, found)
     class(checks_t), intent(inout) :: self
     logical, intent(in) :: condition
     character(len=*), intent(in) :: name, found
@@ -126,7 +126,7 @@ contains
       if (one%failures <= most_printed .and. .not. self%is_silent) &
         write (output_unit, '(5a)') 'FAILED: ', self%suite, ': ', name, found
     end associate
-  end subroutine take
+  end subroutine record
 
   !> The index of an assertion of the present suite; a new index if it has not been made before.
   integer function find(self, name)
@@ -135,7 +135,7 @@ contains
     character(len=:), allocatable :: full
     integer :: slot
     if (.not. allocated(self%suite)) self%suite = 'tests'
-    call self%make_room()
+    call self%enlarge()
     full = self%suite//': '//without_figures(trim(name))
     slot = 1 + int(modulo(hash(full), int(size(self%place), int64)))
     do
@@ -151,7 +151,7 @@ contains
   end function find
 
   !> Make room for one more assertion.
-  subroutine make_room(self)
+  subroutine enlarge(self)
     class(checks_t), intent(inout) :: self
     type(assertion_t), allocatable :: larger(:)
     integer :: i, slot
@@ -171,7 +171,7 @@ contains
       end do
       self%place(slot) = i
     end do
-  end subroutine make_room
+  end subroutine enlarge
 
   !> A hash of a text.
   pure integer(int64) function hash(text)

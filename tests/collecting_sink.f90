@@ -1,11 +1,11 @@
 !> A sink that stores rows and events in memory, and a procedure that runs a case file with it.
 module collecting_sink
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use gudgeon_columns, only: column_list_t, choose_columns, column_name
-  use gudgeon_simulation, only: simulate, run_report_t
+  use trace_columns, only: column_list_t, choose_columns, column_name
+  use simulation, only: simulate, run_report_t
   use row_store, only: row_store_t
   use trace_sink, only: trace_event_t
   use chain_motion, only: crank_pin, piston_pin

@@ -1,8 +1,8 @@
 !> The growth of a change of the state in a problem of the standard battery; it limits the accuracy of any integrator.
 module conditioning
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use adams, only: adams_t
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
+  use ode_solver, only: integrate, silent_observer_t, integration_done
   use standard_problems, only: standard_problem_t, new_standard_problem, standard_settings
   use sampler, only: sampler_t
   implicit none

@@ -1,13 +1,13 @@
 !> The accuracy of the eccentricity in several coordinates and at several tolerances.
 module coordinate_errors
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use ode_problem, only: ode_problem_t
   use adams, only: adams_t
-  use gudgeon_solver, only: integrate, integration_done
-  use gudgeon_scene, only: scene_t
+  use ode_solver, only: integrate, integration_done
+  use scene_problem, only: scene_t
   use scene_builder, only: build_scene
   use state_making, only: pin_of
   use absolute_coordinates, only: absolute_coordinates_t, in_absolute_coordinates

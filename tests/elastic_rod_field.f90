@@ -2,7 +2,7 @@
 !> these points (Gauss's quadrature with 40 nodes, in quadruple precision), reduced to second order in the shapes by differences at
 !> five amplitudes only; Lagrange's equations are differences of the energies.
 module elastic_rod_field
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_bodies, only: bodies_t
   use elastic_rod, only: elastic_rod_t
   implicit none

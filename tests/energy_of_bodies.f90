@@ -1,7 +1,7 @@
 !> The change of the energy of crank, rod and piston along a motion, computed only from the positions of their centres of mass:
 !> velocities are complex-step derivatives of the positions in quadruple precision, which are exact in double precision.
 module energy_of_bodies
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_bodies, only: bodies_t
   implicit none
   private

@@ -1,7 +1,7 @@
 !> The bearings of data/film/engine: cases in the syntax of the program, what they are given, and tables of results.
 module engine_bearings
-  use gudgeon_kinds, only: dp
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use bearing_size, only: bearing_t
   use film_cells, only: supply_none, supply_grooves, supply_circumferential
   use film_history, only: film_history_t, film_duty_t
   use film_results, only: film_row_t

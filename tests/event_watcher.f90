@@ -1,9 +1,9 @@
 !> An observer that stores the times of contact events.
 module event_watcher
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t
-  use gudgeon_solver, only: silent_observer_t
-  use gudgeon_scene, only: scene_t, event_none
+  use ode_solver, only: silent_observer_t
+  use scene_problem, only: scene_t, event_none
   implicit none
   private
   public :: event_watcher_t, most_instants
@@ -14,12 +14,12 @@ module event_watcher
     real(dp) :: instant(most_instants) = 0   !! [s]
     integer :: n = 0
   contains
-    procedure :: event_taken
+    procedure :: event_accepted
   end type event_watcher_t
 
 contains
 
-  subroutine event_taken(self, problem, index, t, y)
+  subroutine event_accepted(self, problem, index, t, y)
     class(event_watcher_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: index
@@ -32,5 +32,5 @@ contains
       self%n = self%n + 1
       self%instant(self%n) = t
     end select
-  end subroutine event_taken
+  end subroutine event_accepted
 end module event_watcher

@@ -1,6 +1,6 @@
 !> The impact of a free mass under a contact law, integrated and in closed form.
 module free_impact
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use contact_law, only: contact_law_t
   implicit none
   private

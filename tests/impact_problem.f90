@@ -1,12 +1,12 @@
 !> The impact of a free mass under a contact law as a problem for the program's integrators, from the beginning to the end of the
 !> contact.
 module impact_problem
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use ode_problem, only: ode_problem_t, event_continue, event_stop
   use ode_method, only: ode_method_t
-  use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_stopped
+  use ode_methods, only: new_method
+  use ode_solver, only: integrate, silent_observer_t, integration_stopped
   use contact_law, only: contact_law_t
   implicit none
   private
@@ -27,7 +27,7 @@ module impact_problem
     procedure :: derivatives
     procedure :: events
     procedure :: handle_event
-    procedure :: rough_time
+    procedure :: next_kink_time
   end type impact_problem_t
 
 contains
@@ -65,14 +65,14 @@ contains
     impact = impact_t(-y(2)/speed, problem%depth, t)
   end function run_impact
 
-  pure subroutine derivatives(self, t, y, dydt, inside)
+  pure subroutine derivatives(self, t, y, dydt, in_domain)
     class(impact_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     associate (unused => t)
     end associate
-    inside = .true.
+    in_domain = .true.
     dydt(1) = y(2)
     dydt(2) = -self%law%normal_force(y(1), y(2), self%speed)/self%mass
   end subroutine derivatives
@@ -102,12 +102,12 @@ contains
   end subroutine handle_event
 
   !> The end of the contact, where the force varies like a power of the penetration.
-  pure real(dp) function rough_time(self, t, y)
+  pure real(dp) function next_kink_time(self, t, y)
     class(impact_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
     associate (unused => self)
     end associate
-    rough_time = huge(rough_time)
-    if (y(2) < 0) rough_time = t - y(1)/y(2)
-  end function rough_time
+    next_kink_time = huge(next_kink_time)
+    if (y(2) < 0) next_kink_time = t - y(1)/y(2)
+  end function next_kink_time
 end module impact_problem

@@ -1,19 +1,19 @@
 !> Measures the integrator: evaluations, steps and error over tolerance on four scenes and on the standard battery of non-stiff
-!> problems. Run by scripts/compare_adams.sh.
+!> problems. Run by scripts/bench/compare_adams.sh.
 !>
 !>     integrator_battery reference       prints a reference for every scene; intended for a build in extended precision
 !>     integrator_battery scenes FILE     prints the table, with errors against the references in FILE
 !>     integrator_battery coordinates     prints the accuracy of the eccentricity in (q, e) and in (q, A, x)
 !>     integrator_battery standard_reference, integrator_battery standard FILE: the same for the standard battery
 program integrator_battery
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_method, only: step_statistics_t, limit_stability
   use adams, only: adams_t
-  use gudgeon_solver, only: integrate, integration_done, observer_t
+  use ode_solver, only: integrate, integration_done, observer_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use gudgeon_errors, only: error_t
-  use gudgeon_scene, only: scene_t
+  use error_handling, only: error_t
+  use scene_problem, only: scene_t
   use scene_builder, only: build_scene, settings_for
   use standard_problems, only: standard_problem_t, new_standard_problem, standard_settings, n_standard_problems, names
   use conditioning, only: condition_of

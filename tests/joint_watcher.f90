@@ -1,10 +1,10 @@
 !> An observer that counts the contacts of each joint.
 module joint_watcher
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t
-  use gudgeon_solver, only: silent_observer_t
+  use ode_solver, only: silent_observer_t
   use clearance_joint, only: most_joints
-  use gudgeon_scene, only: scene_t, event_none, event_contact_begins
+  use scene_problem, only: scene_t, event_none, event_contact_begins
   implicit none
   private
   public :: joint_watcher_t
@@ -13,12 +13,12 @@ module joint_watcher
     integer :: begun(most_joints) = 0, ended(most_joints) = 0
     real(dp) :: first_begin(most_joints) = huge(1.0_dp)   !! [s]
   contains
-    procedure :: event_taken
+    procedure :: event_accepted
   end type joint_watcher_t
 
 contains
 
-  subroutine event_taken(self, problem, index, t, y)
+  subroutine event_accepted(self, problem, index, t, y)
     class(joint_watcher_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: index
@@ -37,5 +37,5 @@ contains
         self%ended(joint) = self%ended(joint) + 1
       end if
     end select
-  end subroutine event_taken
+  end subroutine event_accepted
 end module joint_watcher

@@ -1,15 +1,15 @@
 !> Laws for tests, built in the same way as from a case file: read, checked and prepared for a bearing.
 module laws
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use error_handling, only: error_t
+  use bearing_size, only: bearing_t
   use case_definition, only: case_t
   use case_file, only: parse_case
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
   use film_law, only: film_law_t
   use case_checks, only: bodies
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t, key_t
+  use model_parameters, only: has_parameters_t, parameter_list_t, key_t
   use joint_places, only: piston_pin
   implicit none
   private

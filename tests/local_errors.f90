@@ -1,10 +1,10 @@
 !> An observer that measures the local error of each accepted step, as in DETEST (Enright & Pryce 1987): the difference from the
 !> local solution, which starts at the beginning of the step and is integrated by an independent method.
 module local_errors
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
-  use gudgeon_solver, only: silent_observer_t
+  use ode_solver, only: silent_observer_t
   implicit none
   private
   public :: local_error_watcher_t, local_solution
@@ -17,12 +17,12 @@ module local_errors
     real(dp) :: largest = 0        !! largest error of a step
     real(dp) :: largest_per_unit = 0   !! largest error minus the rounding of y, divided by the length of the step
   contains
-    procedure :: step_taken
+    procedure :: step_accepted
   end type local_error_watcher_t
 
 contains
 
-  subroutine step_taken(self, method, problem, t_to)
+  subroutine step_accepted(self, method, problem, t_to)
     class(local_error_watcher_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
@@ -41,7 +41,7 @@ contains
     self%largest = max(self%largest, error)
     error = error - 8*epsilon(1.0_dp)*norm2(y/weight)
     self%largest_per_unit = max(self%largest_per_unit, error/(t_to - method%t_old))
-  end subroutine step_taken
+  end subroutine step_accepted
 
   !> The solution through (t, y) at t_to by Gragg's extrapolated midpoint rule in several pieces. The independent variable is one
   !> whose rate vanishes at both ends, so that square roots of the time in f at the ends do not reduce the accuracy. `doubt` is the
@@ -104,8 +104,8 @@ contains
     subroutine slope(s, y, dyds)
       real(dp), intent(in) :: s, y(:)
       real(dp), intent(out) :: dyds(:)
-      logical :: inside
-      call problem%derivatives(t_from + (t_to - t_from)*s**3*(10 - 15*s + 6*s**2), y, dyds, inside)
+      logical :: in_domain
+      call problem%derivatives(t_from + (t_to - t_from)*s**3*(10 - 15*s + 6*s**2), y, dyds, in_domain)
       dyds = dyds*((t_to - t_from)*30*s**2*(1 - s)**2)
     end subroutine slope
   end subroutine extrapolated_midpoint

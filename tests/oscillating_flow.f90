@@ -1,7 +1,7 @@
 !> Pressure gradient and velocities inside an oscillating film, from which tests compute its force and its moment anew.
 module oscillating_flow
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   use film_law, only: film_motion_t
   use oscillating_response, only: oscillating_response_t, film_phasors_t, inertia_function, max_eccentricity_ratio
   use oscillating_film, only: oscillating_film_t

@@ -2,7 +2,7 @@
 !> (Operations Research 47, 1999, 159-164), in 64-bit integers without overflow. Period 2^191.
 module random_numbers
   use, intrinsic :: iso_fortran_env, only: int64
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: random_numbers_t

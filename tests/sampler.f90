@@ -1,9 +1,9 @@
 !> An observer that samples the solution at equal intervals by the interpolant of the method.
 module sampler
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
-  use gudgeon_solver, only: silent_observer_t
+  use ode_solver, only: silent_observer_t
   implicit none
   private
   public :: sampler_t
@@ -13,12 +13,12 @@ module sampler
     integer :: taken = 0
     real(dp), allocatable :: y(:, :)   !! (n, samples): y at interval, 2*interval, ...
   contains
-    procedure :: step_taken
+    procedure :: step_accepted
   end type sampler_t
 
 contains
 
-  subroutine step_taken(self, method, problem, t_to)
+  subroutine step_accepted(self, method, problem, t_to)
     class(sampler_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
@@ -32,5 +32,5 @@ contains
       self%taken = self%taken + 1
       call method%interpolate(min(t, t_to), self%y(:, self%taken))
     end do
-  end subroutine step_taken
+  end subroutine step_accepted
 end module sampler

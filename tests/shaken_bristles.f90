@@ -1,6 +1,6 @@
 !> Bristles between surfaces that oscillate, as a system of equations: y = (deflection, work of friction), F_N = 1 N.
 module shaken_bristles
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t
   use friction_law, only: friction_law_t
   implicit none
@@ -38,13 +38,13 @@ contains
     if (self%frequency > 0) speed = self%reach*self%frequency*cos(self%frequency*t)
   end function speed
 
-  pure subroutine derivatives(self, t, y, dydt, inside)
+  pure subroutine derivatives(self, t, y, dydt, in_domain)
     class(shaken_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     real(dp) :: ratio
-    inside = .true.
+    in_domain = .true.
     call self%law%state_friction(self%speed(t), y(1:1), ratio, dydt(1:1))
     dydt(2) = ratio*self%speed(t)
   end subroutine derivatives

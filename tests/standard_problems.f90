@@ -4,8 +4,8 @@
 !>
 !> The discontinuities of class F are events; f changes its branch only at events.
 module standard_problems
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use ode_problem, only: ode_problem_t, event_continue
   use ode_method, only: ode_settings_t
   implicit none
@@ -28,7 +28,7 @@ module standard_problems
     procedure :: derivatives
     procedure :: events => discontinuities
     procedure :: handle_event => pass_discontinuity
-    procedure :: rough_time => at_infinite_slope
+    procedure :: next_kink_time => at_infinite_slope
   end type standard_problem_t
 
   !> Mass of the sun and the inner planets together, masses of the outer planets, gravitational constant (C5).
@@ -139,12 +139,12 @@ contains
     end if
   end function large_start
 
-  pure subroutine derivatives(self, t, y, dydt, inside)
+  pure subroutine derivatives(self, t, y, dydt, in_domain)
     class(standard_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
-    inside = .true.
+    logical, intent(out) :: in_domain
+    in_domain = .true.
     select case (self%name(1:1))
     case ('A')
       if (self%name == 'Arenstorf') then

@@ -1,10 +1,10 @@
 !> An observer that stores the states q, A, x, their rates and the eccentricity, and their largest magnitudes.
 module state_watcher
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
-  use gudgeon_solver, only: observer_t
-  use gudgeon_scene, only: scene_t, evaluation_t
+  use ode_solver, only: observer_t
+  use scene_problem, only: scene_t, evaluation_t
   implicit none
   private
   public :: state_watcher_t, watched
@@ -17,21 +17,21 @@ module state_watcher
     real(dp) :: rebuilt = 0   !! largest |e - e rebuilt from q, A and x| [m]
     integer :: events = 0
   contains
-    procedure :: step_taken
-    procedure :: event_taken
+    procedure :: step_accepted
+    procedure :: event_accepted
     procedure :: look
   end type state_watcher_t
 
 contains
 
-  subroutine step_taken(self, method, problem, t_to)
+  subroutine step_accepted(self, method, problem, t_to)
     class(state_watcher_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t_to
     if (t_to < method%t) return
     call self%look(problem, method%t, method%y)
-  end subroutine step_taken
+  end subroutine step_accepted
 
   !> Take the values at (t, y).
   subroutine look(self, problem, t, y)
@@ -39,10 +39,10 @@ contains
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
-    logical :: inside
+    logical :: in_domain
     select type (problem)
     class is (scene_t)
-      call problem%evaluate(t, y, now, inside)
+      call problem%evaluate(t, y, now, in_domain)
       associate (m => now%motion)
         self%values = [m%crank_angle, atan2(m%sin_rod, m%cos_rod), m%piston_position, m%crank_speed, m%rod_speed, &
           m%piston_velocity, m%offset]
@@ -54,7 +54,7 @@ contains
     end select
   end subroutine look
 
-  subroutine event_taken(self, problem, index, t, y)
+  subroutine event_accepted(self, problem, index, t, y)
     class(state_watcher_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: index
@@ -62,5 +62,5 @@ contains
     associate (unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
     end associate
     self%events = self%events + 1
-  end subroutine event_taken
+  end subroutine event_accepted
 end module state_watcher

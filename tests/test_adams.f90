@@ -1,12 +1,12 @@
 !> The Adams method: coefficients, accuracy, order, interpolant, events, restarts.
 module test_adams
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use checks, only: checks_t
   use ode_method, only: ode_settings_t, step_done
   use adams_coefficients, only: moulton_constants
   use adams, only: adams_t
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
+  use ode_solver, only: integrate, silent_observer_t, integration_done
   use standard_problems, only: number_of
   use conditioning, only: condition_of
   use test_problems, only: oscillator_t, two_body_t, bouncing_ball_t, hopper_t, root_t

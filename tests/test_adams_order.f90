@@ -1,6 +1,6 @@
 !> Coefficients against exact values, the order of the formulas, their stability limits.
 module test_adams_order
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use adams_coefficients, only: adams_coefficients_t, stability_limit
   use adams_differences, only: lanes, extrapolate, restore_differences
@@ -99,7 +99,7 @@ contains
         call plain%update(h(i), merge(h(max(1, i - 1)), 0.0_dp, i > 1), min(i, k), min(i - 1, k))
         do tries = 1, merge(2, 0, i > k)   ! when the history is complete
           call rejected%update(tries*2*h(i), h(max(1, i - 1)), k, k)
-          call rejected%take_back(tries*2*h(i), k)
+          call rejected%undo_update(tries*2*h(i), k)
         end do
         call rejected%update(h(i), merge(h(max(1, i - 1)), 0.0_dp, i > 1), min(i, k), min(i - 1, k))
         if (i <= k) cycle

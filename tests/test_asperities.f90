@@ -1,10 +1,10 @@
 !> Rough surfaces: the integral of Greenwood and Tripp and the mean gap against tables, the force on the pin against another
 !> quadrature; mixed lubrication against its limits, in runs by all methods, and errors in cases.
 module test_asperities
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_errors, only: error_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: pi
+  use error_handling, only: error_t
+  use bearing_size, only: bearing_t
   use checks, only: checks_t
   use asperities, only: asperities_t, pressure_integral
   use mixed_film, only: mixed_forces, mixed_derivatives

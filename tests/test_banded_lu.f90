@@ -1,6 +1,6 @@
 !> Band matrices with diagonally dominant columns: solutions, growth of the elements, singular matrices.
 module test_banded_lu
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use banded_lu, only: decompose_band, solve_band
   implicit none

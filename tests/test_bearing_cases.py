@@ -19,7 +19,7 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TOP / "tests"))
 
-from assertions import Assertions  # noqa: E402
+from assertions import Assertions
 
 assertions = Assertions()
 check = assertions.check

@@ -1,13 +1,13 @@
 !> Friction laws with bristles, without a mechanism, by the program's integrators.
 module test_bristles
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
-  use gudgeon_errors, only: error_t, status_case_file
+  use kinds, only: dp
+  use constants, only: two_pi
+  use error_handling, only: error_t, status_case_file
   use checks, only: checks_t
   use friction_law, only: friction_law_t
   use ode_method, only: ode_method_t
-  use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
+  use ode_methods, only: new_method
+  use ode_solver, only: integrate, silent_observer_t, integration_done
   use collecting_sink, only: load_table
   use laws, only: friction_law_of
   use shaken_bristles, only: shaken_t, new_shaken

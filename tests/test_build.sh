@@ -21,7 +21,7 @@ source_with() {   # source_with FOLDER NUMBER: put the module's file, with this 
 
 mkdir -p "$work/src" "$work/tests"
 cp -r scripts "$work/scripts"
-rm -rf "$work/scripts/build"
+rm -rf "$work/scripts/bench/build"
 cp fpm.toml fpm.rsp "$work"
 sed -i '/^\[\[test\]\]/,$d' "$work/fpm.toml"
 printf 'program main\n  use shown, only: number\n  implicit none\n  print "(i0)", number\nend program main\n' >"$work/src/main.f90"

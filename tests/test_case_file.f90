@@ -1,13 +1,14 @@
 !> Case files: which are accepted, which are refused and with which message, and that a resolved case gives the same case.
 module test_case_file
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, status_case_file
+  use, intrinsic :: iso_fortran_env, only: int64
+  use kinds, only: dp
+  use error_handling, only: error_t, status_case_file
   use case_definition, only: case_t
   use case_file, only: read_case, parse_case, template
   use text_tools, only: path_beside, replaced, next_line
   use case_schema, only: key_table_t, case_schema_of
   use text_file, only: read_text_file
-  use gudgeon_posix, only: make_directory, remove_file
+  use posix_files, only: make_directory, remove_file
   use result_file, only: result_file_t
   use checks, only: checks_t
   use laws, only: parameter_of
@@ -164,9 +165,10 @@ contains
     call parse_case(text, 'x', none, back, error, again)
     call check%that(.not. allocated(error), 'a resolved case is read')
     call check%equal_text(again, text, 'resolved again')
-    call check%that(transfer(back%mechanism%crank_length, 1_8) == transfer(c%mechanism%crank_length, 1_8), 'bits of a length')
-    call check%that(transfer(back%joints(piston_pin)%clearance, 1_8) == transfer(c%joints(piston_pin)%clearance, 1_8), &
-      'bits of the clearance')
+    call check%that(transfer(back%mechanism%crank_length, 1_int64) == transfer(c%mechanism%crank_length, 1_int64), &
+      'bits of a length')
+    call check%that(transfer(back%joints(piston_pin)%clearance, 1_int64) == &
+      transfer(c%joints(piston_pin)%clearance, 1_int64), 'bits of the clearance')
     call check%that(index(text, '&lubrication') == 0 .and. index(text, '&contact') > 0, &
       'absent groups are not in the resolved case')
     call check%that(index(text, 'max_order = 12') > 0, 'defaults are in the resolved case')
@@ -792,13 +794,13 @@ contains
     call read_case('/dev/zero', none, c, error)
     call expect(check, error, '/dev/zero: not a regular file')
     call file%open(folder//'/large.nml', error)
-    call file%put(repeat('!'//repeat(' ', 98)//achar(10), 10001))
+    call file%append(repeat('!'//repeat(' ', 98)//achar(10), 10001))
     call file%close(error)
     call read_case(folder//'/large.nml', none, c, error)
     call expect(check, error, folder//'/large.nml: larger than 1 MB: not a case file')
     call remove_file(folder//'/large.nml', status)
     call file%open(folder//'/y.nml', error)
-    call file%put(whole)
+    call file%append(whole)
     call file%close(error)
     call read_case(folder//'/y.nml', none, c, error)
     call check%that(.not. allocated(error), 'a case file is read')

@@ -1,14 +1,14 @@
 !> Certificates against runs at 1e-13: they must not claim more accuracy than there is, nor far less.
 module test_certificate
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use certificate, only: certificate_t, make_certificate, certificate_table, certificate_summary, certificate_clause, is_state
-  use gudgeon_columns, only: column_name
+  use trace_columns, only: column_name
   use chain_motion, only: piston_pin
-  use gudgeon_summary, only: summary_value
+  use run_summary, only: summary_value
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private

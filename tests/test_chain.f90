@@ -1,14 +1,14 @@
 !> The chain: closed forms against the general assembly, and both against the energy of bodies whose velocities are computed from
 !> their positions.
 module test_chain
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, degree
+  use kinds, only: dp
+  use constants, only: pi, degree
   use checks, only: checks_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
   use chain_bodies, only: bodies_t, crank_t, rod_t, piston_t, drive_t, new_bodies
   use chain_loads, only: loads_t, bearing_moment
   use chain_reactions, only: reactions_t
-  use gudgeon_chain, only: chain_t
+  use mechanism_chain, only: chain_t
   use ideal_chain, only: ideal_motion
   use assembled_chain, only: accelerate_assembled
   use small_cholesky, only: factorise_cholesky, solve_cholesky
@@ -359,7 +359,7 @@ contains
     call check%that(.not. reachable, 'a pin farther away than the rod is long is refused')
   end subroutine coordinates_agree
 
-  !> If journal and bearing rotate as one body, the force and moments of a joint do no work.
+  !> If pin and bearing rotate as one body, the force and moments of a joint do no work.
   subroutine joints_leave_angular_momentum(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: e(2) = [3e-5_dp, -4e-5_dp], force(2) = [700.0_dp, 300.0_dp], moment = 0.4_dp, spin = 90

@@ -2,7 +2,7 @@
 module test_checks
   use, intrinsic :: iso_fortran_env, only: int64
   use checks, only: checks_t, without_figures
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: run_test_checks

@@ -1,8 +1,8 @@
 !> The gas cycle against published and independently computed values.
 module test_combustion
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, degree
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: pi, degree
+  use error_handling, only: error_t
   use checks, only: checks_t
   use cylinder, only: cylinder_t, new_cylinder
   use hermite_table, only: hermite_table_t, new_hermite_table

@@ -1,6 +1,6 @@
 !> The command line: every option in every form, and what is refused.
 module test_command_line
-  use gudgeon_errors, only: error_t, status_command_line
+  use error_handling, only: error_t, status_command_line
   use command_line, only: command_line_t, parse_command_line, help_text
   use accuracy_presets, only: with_preset
   use case_definition, only: case_t

@@ -1,13 +1,13 @@
 !> The contact laws: stiffness, restitution, loss, limits, factory.
 module test_contact
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, status_case_file
+  use kinds, only: dp
+  use error_handling, only: error_t, status_case_file
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: parse_case
   use contact_law, only: contact_law_t, ratio_limit
   use laws, only: contact_law_of
-  use gudgeon_bearing, only: bearing_t
+  use bearing_size, only: bearing_t
   use hertz_sphere, only: hertz_sphere_t
   use free_impact, only: speed_given_back, exact_restitution
   implicit none

@@ -1,10 +1,10 @@
 !> Contact geometries: forces against tables of an independent implementation (data/contact), derivatives against finite
 !> differences, energies against closed forms and quadrature, continuity, extreme values, requirements on the bearing.
 module test_contact_geometries
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_errors, only: error_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: pi
+  use error_handling, only: error_t
+  use bearing_size, only: bearing_t
   use checks, only: checks_t
   use contact_law, only: contact_law_t
   use laws, only: contact_law_of
@@ -128,15 +128,15 @@ contains
       call check%relative(force, pi*e_star*length*c*x, 6e-5_dp, 'conformal force against the collocation')
       row%n = 0
       row%wanted = .true.
-      call law%geometry%put_columns(depth, force, row)
+      call law%geometry%add_columns(depth, force, row)
       call check%relative(row%values(1), angle*pi/180, 4e-5_dp, 'contact half-angle against the collocation')
       call check%relative(row%values(2), pressure*e_star*c/radius, 6e-5_dp, 'pressure against the collocation')
-      call law%geometry%put_columns(depth, 2*force, row)
+      call law%geometry%add_columns(depth, 2*force, row)
       call check%relative(row%values(4), 2*row%values(2), 1e-14_dp, 'the pressure belongs to the whole normal force')
     end do
     close (unit)
     call check%that(rows == 21, 'the table of conformal contact has 21 rows')
-    call law%geometry%put_columns(0.0_dp, 0.0_dp, row)
+    call law%geometry%add_columns(0.0_dp, 0.0_dp, row)
     call check%that(abs(row%values(5)) + abs(row%values(6)) <= 0, 'without contact there is neither arc nor pressure')
     call check%that(law%geometry%deepest > 15*c .and. law%geometry%deepest < 50*c, 'the fit ends beyond 83 degrees')
   end subroutine conformal_arc_and_pressure

@@ -1,6 +1,6 @@
 !> The eccentricity of the pin: the scenes' coordinates (q, e) against (q, A, x), with the pin in films of 20 and 40 um.
 module test_coordinates
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use coordinate_errors, only: eccentricity_error, own_coordinates, absolute_by_size, absolute_by_clearance
   implicit none

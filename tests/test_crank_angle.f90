@@ -1,8 +1,8 @@
 !> Rows at equal crank angles: they are exactly at these angles, none is missing even if the crank turns back, and their values are
 !> those of the integrator's steps.
 module test_crank_angle
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi, degree
+  use kinds, only: dp
+  use constants, only: two_pi, degree
   use checks, only: checks_t
   use collecting_sink, only: trace_t, run_case, column
   implicit none

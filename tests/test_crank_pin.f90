@@ -1,13 +1,13 @@
 !> Cases with clearance at the crank pin: results of each joint, end of a run, methods, limits; and gravity perpendicular to the
 !> cylinder.
 module test_crank_pin
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: degree
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: degree
+  use error_handling, only: error_t
   use chain_motion, only: crank_pin, piston_pin
   use case_definition, only: case_t
   use case_file, only: read_case
-  use gudgeon_summary, only: summary_table, summary_value
+  use run_summary, only: summary_table, summary_value
   use run_line, only: lines_for_user
   use checks, only: checks_t
   use collecting_sink, only: trace_t, run_case, column

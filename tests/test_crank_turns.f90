@@ -1,15 +1,15 @@
 !> Runs that end after a number of revolutions of the crank: closed forms, all kinds of scenes, cranks that do not reach that
 !> number.
 module test_crank_turns
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use gudgeon_columns, only: column_list_t
+  use trace_columns, only: column_list_t
   use cycle_watch, only: cycle_watch_t
-  use gudgeon_errors, only: error_t, status_integration
-  use gudgeon_simulation, only: simulate, run_t, run_report_t
+  use error_handling, only: error_t, status_integration
+  use simulation, only: simulate, run_t, run_report_t
   use collecting_sink, only: collecting_sink_t, trace_t, run_case, column
   implicit none
   private

@@ -1,15 +1,15 @@
 !> Statistics of revolutions: they do not change a run, and they agree with fine quadratures of its trace.
 module test_cycle_watch
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   use chain_motion, only: piston_pin
   use checks, only: checks_t
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use gudgeon_columns, only: column_list_t, choose_columns
+  use trace_columns, only: column_list_t, choose_columns
   use cycle_watch, only: cycle_watch_t
-  use gudgeon_simulation, only: simulate, run_report_t
+  use simulation, only: simulate, run_report_t
   use collecting_sink, only: collecting_sink_t, trace_t, run_case
   implicit none
   private

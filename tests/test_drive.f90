@@ -1,12 +1,12 @@
 !> Drives that vary: a prescribed speed with a ramp, a torque that depends on the speed, a flywheel.
 module test_drive
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: difference_jacobian
   use varying_drive, only: varying_drive_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use gudgeon_errors, only: error_t
-  use gudgeon_scene, only: scene_t
+  use error_handling, only: error_t
+  use scene_problem, only: scene_t
   use scene_builder, only: build_scene
   use checks, only: checks_t
   use collecting_sink, only: trace_t, run_case, column

@@ -1,8 +1,8 @@
 !> A film between elastic walls: the inverse of a film's force, derivatives, energy, the limit of stiff walls, all methods, the
 !> initial state, the viscosity under pressure, and errors in cases.
 module test_elastic_film
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use checks, only: checks_t
   use film_law, only: film_law_t, film_motion_t
   use film_mobility, only: driven_velocity
@@ -10,11 +10,11 @@ module test_elastic_film
   use case_definition, only: case_t
   use case_file, only: read_case
   use chain_motion, only: piston_pin
-  use gudgeon_scene, only: scene_t, evaluation_t
+  use scene_problem, only: scene_t, evaluation_t
   use elastic_film, only: elastic_film_t
   use scene_builder, only: build_scene
   use ode_problem, only: difference_jacobian
-  use state_making, only: put_crank, put_pin
+  use state_making, only: set_crank, set_pin
   use case_checks, only: expect, methods_agree
   use collecting_sink, only: trace_t, run_case, column
   implicit none
@@ -125,8 +125,8 @@ contains
       allocate (a_p(k, m), a_v(k, k), d_p(k, m), d_v(k, k))
       do i = 1, 4
         y = scene%initial_state()
-        call put_crank(scene, y, 0.3_dp*i, 250.0_dp)
-        call put_pin(scene, y, 0.99_dp*c*[cos(1.3_dp*i), sin(1.3_dp*i)], [0.01_dp, 0.007_dp])
+        call set_crank(scene, y, 0.3_dp*i, 250.0_dp)
+        call set_pin(scene, y, 0.99_dp*c*[cos(1.3_dp*i), sin(1.3_dp*i)], [0.01_dp, 0.007_dp])
         associate (states => scene%joints(1)%slots(1)%element%states)
           y(states%first:states%last) = 0.9_dp*c*[cos(1.3_dp*i + 0.1_dp), sin(1.3_dp*i + 0.1_dp)]
         end associate
@@ -220,12 +220,12 @@ contains
     type(error_t), allocatable :: error
     type(scene_t), allocatable :: scene, ideal
     type(evaluation_t) :: now, then
-    logical :: inside
+    logical :: in_domain
     call read_case(file, plain, case, error)
     call build_scene(case, .false., scene, error)
     call build_scene(case, .true., ideal, error)
-    call scene%evaluate(0.0_dp, scene%initial_state(), now, inside)
-    call ideal%evaluate(0.0_dp, ideal%initial_state(), then, inside)
+    call scene%evaluate(0.0_dp, scene%initial_state(), now, in_domain)
+    call ideal%evaluate(0.0_dp, ideal%initial_state(), then, in_domain)
     call check%that(norm2(then%loads%force(:, piston_pin)) > 100, 'an ideal joint has a load')
     call check%close_to(norm2(now%loads%force(:, piston_pin) - then%loads%force(:, piston_pin)), 0.0_dp, &
       1e-6_dp*norm2(then%loads%force(:, piston_pin)), 'walls carry the load of an ideal joint')

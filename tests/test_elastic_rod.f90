@@ -1,18 +1,18 @@
 !> The elastic rod alone and in the chain: its equations against sums over its points, closed forms against the general assembly,
 !> reactions, natural frequencies and buckling.
 module test_elastic_rod
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use checks, only: checks_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
   use chain_loads, only: loads_t, bearing_moment
   use chain_reactions, only: reactions_t
-  use gudgeon_chain, only: chain_t
-  use gudgeon_assembly, only: body_t
+  use mechanism_chain, only: chain_t
+  use body_assembly, only: body_t
   use assembled_chain, only: accelerate_assembled
   use elastic_rod, only: elastic_rod_t, largest_shank
-  use elastic_rod_body, only: put_own_equations, elastic_rod_energy
+  use elastic_rod_body, only: set_own_equations, elastic_rod_energy
   use elastic_rod_field, only: field_t, new_field, lagrange_residual, energy_slope_of_field
   use random_numbers, only: random_numbers_t
   implicit none
@@ -145,7 +145,7 @@ contains
           a(k) = between(random, -1e4_dp, 1e4_dp)
         end do
         call body%begin(3 + n + na, 1)
-        call put_own_equations(rod, chain%bodies, nothing, motion, body)
+        call set_own_equations(rod, chain%bodies, nothing, motion, body)
         want = lagrange_residual(field, chain%bodies%gravity, x, v, a)
         terms = matmul(abs(body%mass(:3 + n + na, :3 + n + na)), abs(a)) + abs(body%load(:3 + n + na))
         worst = max(worst, maxval(abs(matmul(body%mass(:3 + n + na, :3 + n + na), a) - body%load(:3 + n + na) - want)/terms))
@@ -412,7 +412,7 @@ contains
         loads%moment = 0
         loads%force(:, piston_pin) = -merge(euler, 0.0_dp, i == 2)*[motion%cos_rod, -motion%sin_rod]
         call body%begin(6, 1)
-        call put_own_equations(rod, chain%bodies, loads, motion, body)
+        call set_own_equations(rod, chain%bodies, loads, motion, body)
         load(i) = body%load(4)
       end do
     end associate

@@ -1,11 +1,11 @@
 !> Whole runs with elastic members: impacts against finite elements, the limit of the rigid rod, energy, methods, the crankshaft.
 module test_elastic_runs
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use gudgeon_summary, only: summary_table, summary_value
+  use run_summary, only: summary_table, summary_value
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private

@@ -1,11 +1,11 @@
 !> The energy in long runs, in runs with large tolerance and in unusual runs: errors that accumulate in the crank or in the work of
 !> the forces.
 module test_energy_kept
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use ode_problem, only: ode_problem_t
   use radau, only: radau_t
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
+  use ode_solver, only: integrate, silent_observer_t, integration_done
   use case_definition, only: case_t
   use result_notes, only: energy_warning
   use collecting_sink, only: trace_t, run_case, column
@@ -90,13 +90,13 @@ contains
     call check%that(abs(y(3) + y(2) - 1) < 20*tolerance, 'a quadrature uses the final stages')
   end subroutine quadratures_belong_to_their_stages
 
-  pure subroutine derivatives(self, t, y, dydt, inside)
+  pure subroutine derivatives(self, t, y, dydt, in_domain)
     class(stiff_follower_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     real(dp) :: behind
-    inside = .true.
+    in_domain = .true.
     behind = y(2) - cos(t)
     dydt(1) = y(2)
     dydt(2) = -1e4_dp*(behind + 1e3_dp*behind**3)

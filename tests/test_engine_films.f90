@@ -1,9 +1,9 @@
 !> Films with memory and supply against an independent program (data/film/engine) and published bearings.
 module test_engine_films
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, degree
-  use gudgeon_errors, only: error_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: pi, degree
+  use error_handling, only: error_t
+  use bearing_size, only: bearing_t
   use checks, only: checks_t
   use film_cells, only: supply_t, supply_grooves
   use film_history, only: film_history_t, film_duty_t
@@ -211,7 +211,7 @@ contains
     type(film_row_t) :: row
     integer :: i
     do i = 1, size(printed, 2)
-      call solve_journal(merge(0.5_dp, 1.0_dp, i <= 5), printed(1, i), row)
+      call solve_pin(merge(0.5_dp, 1.0_dp, i <= 5), printed(1, i), row)
       call check%close_to(norm2(row%eccentricity)/100e-6_dp, printed(2, i), 3e-3_dp, 'eccentricity of Lund and Thomsen')
       call check%close_to(atan2(row%eccentricity(2), row%eccentricity(1))/degree, printed(3, i), 0.4_dp, &
         'attitude of Lund and Thomsen')
@@ -220,7 +220,7 @@ contains
 
   !> A journal of 100 mm on 72 by 8 cells, loaded along x, for a Sommerfeld number S = mu N L D (R/c)^2/W. With an eccentricity [m]
   !> the load is what the film carries there.
-  subroutine solve_journal(length_ratio, sommerfeld, row, eccentricity)
+  subroutine solve_pin(length_ratio, sommerfeld, row, eccentricity)
     real(dp), intent(in) :: length_ratio, sommerfeld
     type(film_row_t), intent(out) :: row
     real(dp), intent(in), optional :: eccentricity(2)
@@ -241,7 +241,7 @@ contains
     end if
     call history%march(duty, error)
     if (.not. allocated(error)) row = history%rows(1)
-  end subroutine solve_journal
+  end subroutine solve_pin
 
   !> Load of that journal [N].
   pure real(dp) function load_of(length_ratio, sommerfeld)
@@ -257,12 +257,12 @@ contains
     real(dp) :: step(2), stiffness(2, 2)
     type(film_row_t) :: middle, above, below
     integer :: i
-    call solve_journal(1.0_dp, 0.235_dp, middle)
+    call solve_pin(1.0_dp, 0.235_dp, middle)
     do i = 1, 2
       step = 0
       step(i) = 1e-6_dp
-      call solve_journal(1.0_dp, 0.235_dp, above, middle%eccentricity + step)
-      call solve_journal(1.0_dp, 0.235_dp, below, middle%eccentricity - step)
+      call solve_pin(1.0_dp, 0.235_dp, above, middle%eccentricity + step)
+      call solve_pin(1.0_dp, 0.235_dp, below, middle%eccentricity - step)
       stiffness(:, i) = -(above%force - below%force)/2e-6_dp*100e-6_dp/load_of(1.0_dp, 0.235_dp)
     end do
     call check%close_to(maxval(abs(stiffness - printed)), 0.0_dp, 0.06_dp, 'stiffness of Lund and Thomsen')

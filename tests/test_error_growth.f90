@@ -1,10 +1,10 @@
 !> Error over tolerance on the standard battery: the local error of each step is within the tolerance, and the global error is as
 !> large as the condition of the problem allows.
 module test_error_growth
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use adams, only: adams_t
-  use gudgeon_solver, only: integrate, integration_done, observer_t
+  use ode_solver, only: integrate, integration_done, observer_t
   use standard_problems, only: standard_problem_t, new_standard_problem, standard_settings, number_of, names, n_standard_problems
   use conditioning, only: condition_of
   use local_errors, only: local_error_watcher_t

@@ -1,15 +1,15 @@
 !> Events: several functions and directions, roots to the last bits, double passages, grazing contacts, chatter, rejected steps.
 module test_events
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use checks, only: checks_t
   use test_problems, only: oscillator_t
   use ode_problem, only: ode_problem_t, event_continue, step_admitted, step_too_deep
   use ode_method, only: ode_method_t
   use adams, only: adams_t
-  use gudgeon_solver, only: integrate, observer_t, silent_observer_t, integration_done, chattering
-  use gudgeon_events, only: event_watch_t
-  use gudgeon_roots, only: abscissa_by_rates
+  use ode_solver, only: integrate, observer_t, silent_observer_t, integration_done, chattering
+  use event_search, only: event_watch_t
+  use root_search, only: abscissa_by_rates
   use test_problems, only: hopper_t
   implicit none
   private
@@ -79,8 +79,8 @@ module test_events
     integer :: loose = 0
     integer :: events = 0
   contains
-    procedure :: step_taken => look_at_root
-    procedure :: event_taken => ignore_event
+    procedure :: step_accepted => look_at_root
+    procedure :: event_accepted => ignore_event
   end type root_checker_t
 
 contains
@@ -246,15 +246,15 @@ contains
     call check%close_to(problem%first, 1.0_dp, 1e-14_dp, 'the first of three passages in one step')
   end subroutine first_of_three
 
-  pure subroutine stays(self, t, y, dydt, inside)
+  pure subroutine stays(self, t, y, dydt, in_domain)
     class(triple_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     associate (unused_t => t, unused_y => y)
     end associate
     dydt = 0
-    inside = .true.
+    in_domain = .true.
   end subroutine stays
 
   pure subroutine passes_thrice(self, t, y, g, g_rate)
@@ -415,15 +415,15 @@ contains
     if (self%refuses .and. t - t_old > 0.01_dp .and. mod(int(t*1e3_dp), 3) > 0) verdict = step_too_deep
   end subroutine refuse_long_steps
 
-  pure subroutine towards_zero(self, t, y, dydt, inside)
+  pure subroutine towards_zero(self, t, y, dydt, in_domain)
     class(chatterer_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     associate (unused_t => t, unused_y => y)
     end associate
     dydt = -self%side
-    inside = .true.
+    in_domain = .true.
   end subroutine towards_zero
 
   pure subroutine passes_zero(self, t, y, g, g_rate)
@@ -439,15 +439,15 @@ contains
   end subroutine passes_zero
 
   !> y'' = -1.
-  pure subroutine falls(self, t, y, dydt, inside)
+  pure subroutine falls(self, t, y, dydt, in_domain)
     class(ball_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     associate (unused_t => t)
     end associate
     dydt = [y(2), -1.0_dp]
-    inside = .true.
+    in_domain = .true.
   end subroutine falls
 
   pure subroutine leaves_or_comes(self, t, y, g, g_rate)

@@ -1,9 +1,9 @@
 !> The cells of a film with memory: where the supply is, their balance and its derivatives, and films with exact solutions.
 module test_film_cells
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_errors, only: error_t, status_case_file
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: pi
+  use error_handling, only: error_t, status_case_file
+  use bearing_size, only: bearing_t
   use checks, only: checks_t
   use film_oil, only: film_oil_t
   use film_cells, only: film_cells_t, supply_t, new_film_cells, supply_none, supply_grooves, supply_holes, supply_circumferential, &

@@ -1,8 +1,8 @@
 !> The derivatives of films for implicit integration: those of the table of a film of finite length against central differences of
 !> its force.
 module test_film_derivatives
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use checks, only: checks_t
   use film_law, only: film_law_t, film_motion_t, difference_derivatives
   use laws, only: film_law_of

@@ -1,8 +1,8 @@
 !> The equations of a film on parts of its nodes, and the film with free edges, against their balances of flow: what flows out of a
 !> cell through its four faces is its source.
 module test_film_equations
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use checks, only: checks_t
   use film_equations, only: film_equations_t
   use finite_film, only: film_solver_t, film_answer_t, cavitation_reynolds

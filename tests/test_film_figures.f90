@@ -1,9 +1,9 @@
 !> Results of films besides their force: side flow, largest pressure, power, moment. They are compared with tables of an independent
 !> solver (data/film) and of Raimondi and Boyd, with scans and quadrature, and in whole runs with the energy that the bodies lose.
 module test_film_figures
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, degree
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: pi, degree
+  use error_handling, only: error_t
   use checks, only: checks_t
   use film_law, only: film_law_t, film_motion_t
   use finite_film, only: film_answer_t, cavitation_gumbel, cavitation_reynolds

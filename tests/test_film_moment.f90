@@ -1,9 +1,9 @@
 !> The moment of a long film on its pin: against the shear stress integrated over the pin, its derivatives, its power, and the key
 !> that requests it.
 module test_film_moment
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: pi
+  use error_handling, only: error_t
   use checks, only: checks_t
   use film_law, only: film_law_t, film_motion_t, difference_derivatives
   use pinkus_sternlicht, only: pinkus_sternlicht_t

@@ -1,9 +1,9 @@
 !> Transition from film to contact over a range of penetrations: weights, kinks, derivatives, a whole mechanism against an
 !> independent program, all methods, and errors in cases.
 module test_film_transition
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use error_handling, only: error_t
+  use bearing_size, only: bearing_t
   use checks, only: checks_t
   use film_transition, only: film_transition_t
   use film_law, only: film_law_t, film_motion_t
@@ -11,10 +11,10 @@ module test_film_transition
   use case_definition, only: case_t
   use case_file, only: read_case
   use chain_motion, only: piston_pin
-  use gudgeon_scene, only: scene_t, evaluation_t
+  use scene_problem, only: scene_t, evaluation_t
   use scene_builder, only: build_scene
   use ode_problem, only: difference_jacobian
-  use state_making, only: put_crank, put_pin, put_contact
+  use state_making, only: set_crank, set_pin, set_contact
   use case_checks, only: expect, methods_agree
   use collecting_sink, only: trace_t, run_case, column, values_of
   implicit none
@@ -149,8 +149,8 @@ contains
     logical :: inside
     call make_scene(overrides, distance, scene)
     y = scene%initial_state()
-    call put_crank(scene, y, 0.3_dp, 520.0_dp)
-    call put_pin(scene, y, distance*[0.6_dp, 0.8_dp], rate)
+    call set_crank(scene, y, 0.3_dp, 520.0_dp)
+    call set_pin(scene, y, distance*[0.6_dp, 0.8_dp], rate)
     call scene%evaluate(0.0_dp, y, now, inside)
   end subroutine evaluate_at
 
@@ -164,7 +164,7 @@ contains
     call read_case(file, overrides, case, error)
     if (.not. allocated(error)) call build_scene(case, .false., scene, error)
     if (allocated(error)) error stop 'test_film_transition: the case cannot be built'
-    call put_contact(scene%joints(1), 0.4_dp, 1)
+    call set_contact(scene%joints(1), 0.4_dp, 1)
     if (distance <= c) call scene%joints(1)%end_contact()
     call scene%joints(1)%begin_at(distance, 0.0_dp)
   end subroutine make_scene
@@ -195,8 +195,8 @@ contains
         k = m + scene%n_states()
         if (allocated(a_p)) deallocate (a_p, a_v, d_p, d_v)
         allocate (a_p(k, m), a_v(k, k), d_p(k, m), d_v(k, k))
-        call put_crank(scene, y, 0.3_dp, 520.0_dp)
-        call put_pin(scene, y, distances(j)*[cos(1.3_dp*j), sin(1.3_dp*j)], [0.11_dp, 0.07_dp])
+        call set_crank(scene, y, 0.3_dp, 520.0_dp)
+        call set_pin(scene, y, distances(j)*[cos(1.3_dp*j), sin(1.3_dp*j)], [0.11_dp, 0.07_dp])
         call scene%jacobian(0.0_dp, y, a_p, a_v)
         call difference_jacobian(scene, 0.0_dp, y, d_p, d_v)
         call check%close_to(maxval(abs(a_p - d_p)), 0.0_dp, 2e-4_dp*maxval(abs(d_p)), &

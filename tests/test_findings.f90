@@ -1,6 +1,6 @@
 !> Statements of chapter 6 of the dissertation (Reis 2013), checked with the shipped cases.
 module test_findings
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: piston_pin
   use checks, only: checks_t
   use collecting_sink, only: trace_t, run_case, column

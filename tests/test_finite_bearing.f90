@@ -1,9 +1,9 @@
 !> The film of a bearing of finite length: against an independent solver's tables (data/film), a printed table, closed forms and
 !> identities; its table against its solver; the short bearing against quadrature; energy.
 module test_finite_bearing
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, degree
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: pi, degree
+  use error_handling, only: error_t
   use checks, only: checks_t
   use film_law, only: film_law_t, film_motion_t
   use finite_film, only: film_answer_t, cavitation_none, cavitation_gumbel, cavitation_reynolds
@@ -11,7 +11,7 @@ module test_finite_bearing
   use film_solution, only: solved_film
   use finite_bearing, only: finite_bearing_t
   use short_bearing, only: short_bearing_t
-  use gudgeon_bearing, only: bearing_t
+  use bearing_size, only: bearing_t
   use laws, only: film_law_of
   implicit none
   private
@@ -70,7 +70,7 @@ contains
 
   !> Films from which the pin withdraws, the most difficult ones. With Reynolds's condition the mean of four grids shifted by a
   !> quarter of a node's distance is within 3e-4, a single grid within 8e-4; with Gumbel's condition within 2e-5.
-  !> (scripts/check_films.sh has all rows.)
+  !> (scripts/bench/check_films.sh has all rows.)
   subroutine forces_of_the_reference_level(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: rows(3, 5) = reshape([0.25_dp, 0.9_dp, 150.0_dp, 0.25_dp, 0.95_dp, 120.0_dp, &

@@ -1,7 +1,7 @@
 !> The friction laws without memory: values, derivatives, continuity, signs, selection by name.
 module test_friction
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, status_case_file
+  use kinds, only: dp
+  use error_handling, only: error_t, status_case_file
   use checks, only: checks_t
   use friction_law, only: friction_law_t
   use collecting_sink, only: load_table

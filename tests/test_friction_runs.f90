@@ -1,16 +1,16 @@
 !> Friction laws in the whole mechanism.
 module test_friction_runs
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use ode_problem, only: difference_jacobian
-  use gudgeon_scene, only: scene_t, phase_contact
+  use scene_problem, only: scene_t, phase_contact
   use chain_motion, only: piston_pin, crank_pin
   use scene_builder, only: build_scene
   use collecting_sink, only: trace_t, run_case, column
-  use state_making, only: put_crank, put_pin, put_contact
+  use state_making, only: set_crank, set_pin, set_contact
   implicit none
   private
   public :: run_test_friction_runs
@@ -150,10 +150,10 @@ contains
     allocate (a_p(k, m), a_v(k, k), d_p(k, m), d_v(k, k))
     do i = 1, 4
       y = scene%initial_state()
-      call put_crank(scene, y, 0.3_dp*i, 520.0_dp)
-      call put_pin(scene, y, 1.03_dp*case%joints(piston_pin)%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)], &
+      call set_crank(scene, y, 0.3_dp*i, 520.0_dp)
+      call set_pin(scene, y, 1.03_dp*case%joints(piston_pin)%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)], &
         [0.4_dp*cos(2.1_dp*i), 2*sin(1.7_dp*i)])
-      call put_contact(scene%joints(1), 1.0_dp, 1)
+      call set_contact(scene%joints(1), 1.0_dp, 1)
       if (scene%n_states() > 0) y(scene%joints(1)%slots(1)%element%states%first) = 1.4e-6_dp*(2*i - 5)
       call scene%jacobian(1e-3_dp*i, y, a_p, a_v)
       call difference_jacobian(scene, 1e-3_dp*i, y, d_p, d_v)

@@ -17,21 +17,20 @@ from dataclasses import dataclass
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(TOP / "scripts"))
+sys.path.insert(0, str(TOP / "scripts" / "bench"))
 sys.path.insert(0, str(TOP / "tests"))
 
-from gudgeon_plots.environment import use_virtual_environment  # noqa: E402
+from measured import use_virtual_environment
 
-use_virtual_environment(more=("scipy",))
+use_virtual_environment()
 
-import f90nml  # noqa: E402
-import numpy as np  # noqa: E402
-import pandas as pd  # noqa: E402
-from assertions import Assertions  # noqa: E402
-from scipy.integrate import cumulative_simpson, quad  # noqa: E402
-from scipy.optimize import brentq  # noqa: E402
-
-from gudgeon_plots.program import release_program  # noqa: E402
+import f90nml
+import numpy as np
+import pandas as pd
+from assertions import Assertions
+from gudgeon.program import release_program
+from scipy.integrate import cumulative_simpson, quad
+from scipy.optimize import brentq
 
 assertions = Assertions()
 check = assertions.check

@@ -1,8 +1,8 @@
 !> Two-stroke engines and compressors: the work of a cycle against closed forms, and the valves for both senses of rotation.
 module test_gas_machines
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi, degree
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: pi, two_pi, degree
+  use error_handling, only: error_t
   use two_stroke, only: two_stroke_t
   use compressor, only: compressor_t
   use working_gas, only: working_gas_t

@@ -1,10 +1,10 @@
 !> Runs with a piston guide with friction, or with clearance of the piston in its bore.
 module test_guide
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi, degree
+  use kinds, only: dp
+  use constants, only: two_pi, degree
   use text_tools, only: replaced
   use checks, only: checks_t
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use collecting_sink, only: trace_t, run_case, load_table, column, values_of

@@ -2,7 +2,7 @@
 !> increase of Sommerfeld's angle between them.
 module test_half_film_parts
   use, intrinsic :: iso_fortran_env, only: qp => real128
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use half_film, only: cubic_scale, cubic_share, turn_between
   implicit none

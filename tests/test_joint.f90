@@ -1,6 +1,6 @@
 !> Motion in a joint with clearance, and scenes whose joints are ideal.
 module test_joint
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, body_crank, body_big_end, body_small_end
   use clearance_joint, only: clearance_joint_t
@@ -24,7 +24,7 @@ contains
     type(joint_evaluation_t) :: joint
     joint%eccentricity = [3e-5_dp, -4e-5_dp]
     joint%eccentricity_rate = [0.2_dp, 0.1_dp]
-    joint%journal_speed = 10
+    joint%pin_angular_speed = 10
     joint%bearing_speed = 0
     call find_polar(1e-4_dp, joint)
     call find_sliding(0.0099_dp, joint)
@@ -54,7 +54,7 @@ contains
     a%tilt = 0
     a%pin = reshape([4.0_dp, -7.0_dp, 9.0_dp, 3.0_dp], [2, 2])
     do place = crank_pin, piston_pin
-      call joint%put_at(place)
+      call joint%set_place(place)
       joint%bearing_turns = place == crank_pin
       before = joint_after(-dt)
       now = joint_after(0.0_dp)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests that the independent judge of runs (scripts/scene_judge) detects faults.
+"""Tests that the independent judge of runs (tests/judge/scene_judge) detects faults.
 
     tests/test_judge.py [--program FILE] [--jobs N] [--mutants [FOLDER]]
 
@@ -22,18 +22,18 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
-from typing import Callable
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "scripts"))
-from assertions import Assertions  # noqa: E402
-from scene_judge.elastic import requested_columns  # noqa: E402
-from scene_judge.energy import SAFETY  # noqa: E402
-from scene_judge.quadrature import integral, stencils  # noqa: E402
-from scene_judge.trace import Run, merged, run_case  # noqa: E402
-from scene_judge.verdict import judge_files, judge_scene, summary_of  # noqa: E402
+sys.path.insert(0, str(ROOT / "tests" / "judge"))
+from assertions import Assertions
+from scene_judge.elastic import requested_columns
+from scene_judge.energy import SAFETY
+from scene_judge.quadrature import integral, stencils
+from scene_judge.trace import Run, merged, run_case
+from scene_judge.verdict import judge_files, judge_scene, summary_of
 
 assertions = Assertions()
 check = assertions.check
@@ -601,8 +601,8 @@ def test_quadrature() -> None:
 
 
 def test_draw() -> None:
-    """The scenes of scripts/extremes wear at the pin, at the bore or at both."""
-    loader = importlib.machinery.SourceFileLoader("extremes", str(ROOT / "scripts" / "extremes"))
+    """The scenes of tests/judge/extremes wear at the pin, at the bore or at both."""
+    loader = importlib.machinery.SourceFileLoader("extremes", str(ROOT / "tests" / "judge" / "extremes"))
     spec = importlib.util.spec_from_loader("extremes", loader)
     assert spec
     extremes = sys.modules["extremes"] = importlib.util.module_from_spec(spec)
@@ -618,7 +618,7 @@ def test_options(program: Path) -> None:
     for words, said in ((("judge", case, "--set", "bad"), "--set bad: must have the form GROUP.KEY=VALUE"),
                         (("extremes", "--scenes", "0"), "--scenes 0: must be >= 1"),
                         (("extremes", "--scenes", "3", "--again", "99"), "--again 99: the scenes are 0 to 2")):
-        outcome = subprocess.run([ROOT / "scripts" / words[0], *words[1:], "--program", program], capture_output=True, text=True, check=False)
+        outcome = subprocess.run([ROOT / "tests" / "judge" / words[0], *words[1:], "--program", program], capture_output=True, text=True, check=False)
         check(outcome.returncode == 2 and said in outcome.stderr and "passed" not in outcome.stdout,
               f"{words[0]} {words[-2]} {words[-1]} is refused", f"{outcome.returncode} {outcome.stdout}{outcome.stderr}")
 

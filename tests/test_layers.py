@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
 """The folders of src are layers: a module uses only modules of its own folder and of lower layers, never of a folder beside or
-above it. Above its registry no module names a law. Lines of Fortran, comments included, have at most 132 characters.
+above it. Above its registry no module names a law. Lines of Fortran, comments included, have at most 132 characters. Also: the page on
+the architecture names procedures that exist, the version is the same everywhere, and the linters of Fortran and Python are content.
 
-    tests/test_layers.py
+    tests/test_layers.py        (after scripts/setup.sh --lint)
 
 The test reads the `use` statements. Ends with `N passed, N failed`; the exit status is 0 if nothing failed.
 """
 
 import re
+import subprocess
 import sys
 from pathlib import Path
 
-SRC = Path(__file__).resolve().parent.parent / "src"
+TOP = Path(__file__).resolve().parent.parent
+SRC = TOP / "src"
 
 #: The layers from the lowest to the highest; folders in one row must not use each other.
 LAYERS = [
@@ -83,6 +86,37 @@ def named_laws(files: list[Path]) -> list[str]:
     return wrong
 
 
+def missing_procedures(page: Path) -> list[str]:
+    """Procedures in the tables of a page, `file.f90` and `name` in neighbouring cells, that the file does not have."""
+    wrong = []
+    rows = re.findall(r"\| `(src/[\w/]+\.f90)` \| `(\w+)` \|", page.read_text(encoding="utf-8"))
+    for file, name in rows:
+        path = TOP / file
+        if not path.is_file() or not re.search(rf"^[^!'\n]*\b(subroutine|function|procedure) +{name}\b", path.read_text(), re.M):
+            wrong.append(f"{file} {name}")
+    return wrong if rows else ["no procedure at all"]
+
+
+def versions() -> dict[str, str]:
+    """The version in each file that has it."""
+    places = {"fpm.toml": r'^version = "([^"]+)"', "src/base/version_number.f90": r"program_version = '([^']+)'", "CITATION.cff": r"^version: (\S+)",
+              "scripts/python/pyproject.toml": r'^version = "([^"]+)"', "CHANGELOG.md": r"^## (\S+)"}
+    found = {}
+    for file, pattern in places.items():
+        if match := re.search(pattern, (TOP / file).read_text(encoding="utf-8"), re.M):
+            found[file] = match[1]
+    return found
+
+
+def complaints(*command: str) -> str:
+    """What a linter in .venv complains of; empty if it is content."""
+    program = TOP / ".venv" / "bin" / command[0]
+    if not program.exists():
+        return f"{command[0]} is missing: scripts/setup.sh --lint"
+    done = subprocess.run([program, *command[1:]], cwd=TOP, capture_output=True, text=True)
+    return "" if done.returncode == 0 else done.stdout + done.stderr
+
+
 def main() -> int:
     files = sorted(SRC.rglob("*.f90"))
     passed = failed = 0
@@ -103,13 +137,20 @@ def main() -> int:
     for path in files:
         name = path.stem
         check(
-            f"{path.relative_to(SRC.parent)} contains the module of its name, or of its name with the prefix gudgeon_",
-            name == "main" or re.search(rf"^\s*(module|submodule\s*\(\w+\))\s+(gudgeon_)?{name}\s*$", path.read_text(), re.M | re.I) is not None,
+            f"{path.relative_to(SRC.parent)} contains the module of its name",
+            name == "main" or re.search(rf"^\s*(module|submodule\s*\(\w+\))\s+{name}\s*$", path.read_text(), re.M | re.I) is not None,
         )
     top = SRC.parent
     for path in sorted(file for folder in ("src", "tests", "scripts") for file in (top / folder).rglob("*.f90") if "build" not in file.parts):
         long = [number for number, line in enumerate(path.read_text().splitlines(), 1) if len(line) > MOST]
         check(f"{path.relative_to(top)}: lines {long} have more than {MOST} characters", not long)
+    wrong = missing_procedures(TOP / "data/manual/architecture.md")
+    check("data/manual/architecture.md names procedures that are not there:\n  " + "\n  ".join(wrong), not wrong)
+    found = versions()
+    check(f"the version is the same everywhere: {found}", len(found) >= 4 and len(set(found.values())) == 1)
+    for command in (("fortitude", "check", "src", "tests", "scripts/bench", "--output-format", "concise"), ("ruff", "check", "--output-format", "concise")):
+        said = complaints(*command)
+        check(f"{command[0]}:\n{said}", not said)
     print(f"{passed} passed, {failed} failed")
     return failed > 0
 

@@ -1,8 +1,8 @@
 !> The load elements of a joint: their slopes against differences, with a bearing that turns, the powers of the kinds of load, and a
-!> joint whose journal belongs to the body farther from the crank.
+!> joint whose pin belongs to the body farther from the crank.
 module test_load_elements
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: read_case
@@ -10,9 +10,9 @@ module test_load_elements
   use joint_evaluation, only: joint_evaluation_t, most_element_states, find_polar, find_sliding, clear_loads
   use load_element, only: load_element_t, power_of, n_motions, n_slopes, n_kinds, of_contact, of_friction, of_film, of_asperities
   use clearance_joint, only: clearance_joint_t, phase_contact
-  use gudgeon_scene, only: scene_t, evaluation_t
+  use scene_problem, only: scene_t, evaluation_t
   use scene_builder, only: build_scene
-  use state_making, only: put_pin, put_crank, put_contact
+  use state_making, only: set_pin, set_crank, set_contact
   implicit none
   private
   public :: run_test_load_elements
@@ -28,7 +28,7 @@ module test_load_elements
 
   logical, parameter :: yes = .true., no = .false.
   character(len=*), parameter :: sheared = 'lubrication.film_moment=T'
-  type(kind_t), parameter :: kinds(9) = [ &
+  type(kind_t), parameter :: element_kinds(9) = [ &
     kind_t('friction/lugre', '', yes, 1.02_dp, [yes, yes, no, no]), &
     kind_t('flores/friction_050', 'friction.v1=2', yes, 1.01_dp, [yes, yes, no, no]), &
     kind_t('flores/dry_0500um', '', yes, 1.01_dp, [yes, no, no, no]), &
@@ -45,13 +45,13 @@ contains
     class(checks_t), intent(inout) :: check
     type(scene_t), allocatable :: scene
     integer :: i
-    do i = 1, size(kinds)
-      call make_scene(check, kinds(i), scene)
+    do i = 1, size(element_kinds)
+      call make_scene(check, element_kinds(i), scene)
       if (.not. allocated(scene)) cycle
-      call slopes_are_those_of_the_loads(check, kinds(i), scene%joints(1))
-      call powers_add_up(check, kinds(i), scene%joints(1))
+      call slopes_are_those_of_the_loads(check, element_kinds(i), scene%joints(1))
+      call powers_add_up(check, element_kinds(i), scene%joints(1))
     end do
-    call journal_on_the_other_body(check)
+    call pin_on_the_other_body(check)
   end subroutine run_test_load_elements
 
   subroutine make_scene(check, kind, scene)
@@ -74,7 +74,7 @@ contains
     if (.not. allocated(error)) call build_scene(case, .false., scene, error)
     call check%that(.not. allocated(error), 'the scene of '//kind%file)
     if (allocated(error)) return
-    if (kind%touches) call put_contact(scene%joints(1), 0.6_dp, 1)
+    if (kind%touches) call set_contact(scene%joints(1), 0.6_dp, 1)
     call scene%joints(1)%begin_at(kind%ratio*scene%joints(1)%bearing%clearance, 0.0_dp)
   end subroutine make_scene
 
@@ -91,7 +91,7 @@ contains
       y(element%states%first:element%states%last) = values(n_motions + 1:n_motions + element%n_states)
       call clear_loads(now)
       call joint%read_state(y, now)
-      now%journal_speed = values(5)
+      now%pin_angular_speed = values(5)
       now%bearing_speed = values(6)
       call find_polar(joint%bearing%clearance, now)
       call find_sliding(joint%pin_radius, now)
@@ -169,36 +169,36 @@ contains
   end subroutine powers_add_up
 
   !> With a film and its shear, which see only the relative motion, nothing tells whether the pin is held by the rod or by the
-  !> piston: a journal on the piston at the opposite eccentricity gives the bodies the same accelerations.
-  subroutine journal_on_the_other_body(check)
+  !> piston: a pin on the piston at the opposite eccentricity gives the bodies the same accelerations.
+  subroutine pin_on_the_other_body(check)
     class(checks_t), intent(inout) :: check
     type(scene_t), allocatable :: scene
     type(evaluation_t) :: now(2)
     real(dp), allocatable :: y(:), f(:, :)
     real(dp) :: e(2), rate(2)
-    logical :: inside
+    logical :: in_domain
     integer :: i
-    call make_scene(check, kinds(5), scene)
+    call make_scene(check, element_kinds(5), scene)
     if (.not. allocated(scene)) return
     allocate (f(scene%n, 2))
     do i = 1, 2
       y = scene%initial_state()
-      call put_crank(scene, y, 0.8_dp, 250.0_dp)
+      call set_crank(scene, y, 0.8_dp, 250.0_dp)
       e = 0.8_dp*scene%joints(1)%bearing%clearance*[0.6_dp, -0.8_dp]
       rate = [2e-3_dp, 1e-3_dp]
       if (i == 2) then
         associate (site => scene%joints(1)%site)
           site%sense = -1
-          site%journal = body_piston
+          site%pin_body = body_piston
           site%bearing = body_small_end
         end associate
         scene%joints(1)%bearing_turns = .true.
         e = -e
         rate = -rate
       end if
-      call put_pin(scene, y, e, rate)
-      call scene%derivatives(0.0_dp, y, f(:, i), inside)
-      call scene%evaluate(0.0_dp, y, now(i), inside)
+      call set_pin(scene, y, e, rate)
+      call scene%derivatives(0.0_dp, y, f(:, i), in_domain)
+      call scene%evaluate(0.0_dp, y, now(i), in_domain)
     end do
     associate (a => now(1)%accelerations, b => now(2)%accelerations, at => scene%joints(1)%at)
       call check%relative(b%crank, a%crank, 1e-12_dp, 'acceleration of the crank with the pin in the piston')
@@ -208,5 +208,5 @@ contains
         1e-12_dp*norm2(f(at%rate:at%rate + 1, 1)), 'the eccentricity accelerates the other way')
       call check%relative(f(scene%work_at, 2), f(scene%work_at, 1), 1e-12_dp, 'power with the pin in the piston')
     end associate
-  end subroutine journal_on_the_other_body
+  end subroutine pin_on_the_other_body
 end module test_load_elements

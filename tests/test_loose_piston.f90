@@ -1,14 +1,14 @@
 !> A piston with clearance in its bore: Newton's and Euler's laws for every body, the energy of bodies whose velocities are computed
 !> from their positions, and agreement of the two ways to compute accelerations.
 module test_loose_piston
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use checks, only: checks_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
   use chain_loads, only: loads_t, bearing_moment
   use chain_reactions, only: reactions_t
-  use gudgeon_chain, only: chain_t
+  use mechanism_chain, only: chain_t
   use assembled_chain, only: accelerate_assembled
   use loose_piston, only: place_piston, move_centre, centre_acceleration
   use energy_of_bodies, only: energy_slope

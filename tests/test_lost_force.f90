@@ -1,13 +1,13 @@
 !> A contact law whose damper may cancel the elastic force: inside one contact the force may be lost and act again, and both are
 !> events.
 module test_lost_force
-  use gudgeon_kinds, only: dp
-  use gudgeon_bearing, only: bearing_t
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use bearing_size, only: bearing_t
+  use error_handling, only: error_t
   use checks, only: checks_t
   use winkler, only: winkler_t
   use adams_impact, only: adams_impact_t
-  use gudgeon_scene, only: scene_t
+  use scene_problem, only: scene_t
   use scene_builder, only: build_scene
   use case_definition, only: case_t
   use case_file, only: read_case

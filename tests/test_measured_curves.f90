@@ -1,8 +1,8 @@
 !> Measured curves: the cubic polynomials through their points, valid and invalid files, and a run with a measured pressure.
 module test_measured_curves
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi, degree
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: pi, two_pi, degree
+  use error_handling, only: error_t
   use monotone_cubic, only: monotone_cubic_t, new_monotone_cubic, new_periodic_cubic
   use curve_file, only: parse_curve, crank_angle, pressure, turning_speed, torque
   use case_curves, only: period_fault

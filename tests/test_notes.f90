@@ -1,19 +1,19 @@
 !> Notes on implausible values and results: the mistakes of people who build engines and compressors, each with the note that tells
 !> it.
 module test_notes
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
-  use gudgeon_parameters, only: real_kind
+  use kinds, only: dp
+  use error_handling, only: error_t
+  use model_parameters, only: real_kind
   use chain_motion, only: piston_pin
   use case_definition, only: case_t
   use case_file, only: read_case
   use case_schema, only: key_table_t, case_schema_of
-  use gudgeon_simulation, only: run_report_t
+  use simulation, only: run_report_t
   use result_notes, only: notes_on_results
   use run_line, only: lines_for_user
   use value_reader, only: read_bounds, read_real
   use unit_hints, only: likely_unit
-  use settling, only: settling_t
+  use cycle_watch, only: cycle_watch_t
   use checks, only: checks_t
   implicit none
   private
@@ -281,24 +281,20 @@ contains
   !> The change of a film from cycle to cycle, of thicknesses that are known, and the text about it on the line of a driven crank.
   subroutine films_that_have_not_settled(check)
     class(checks_t), intent(inout) :: check
-    real(dp), parameter :: turn = 6.283185307179586_dp
-    type(settling_t) :: film
+    type(cycle_watch_t) :: watch
     type(case_t) :: case
     type(run_report_t) :: report
     type(error_t), allocatable :: error
-    integer :: i
-    film%revolutions = 2
-    call film%take(0.0_dp, 9.0_dp)
-    do i = 0, 79   ! ten points in each revolution, backwards; the first cycle has the smallest thickness
-      call film%take(-(i + 0.5_dp)*turn/10, merge(1.0_dp, 8*0.5_dp**(i/20), i < 20) + abs(mod(i, 20) - 10))
-      if (i < 60) call check%that(abs(film%change()) <= 0, 'no change before the end of the third cycle')
+    integer :: k
+    do k = 1, 6   ! three cycles of two revolutions, with 8, 4 and 2 in the second revolution of each
+      watch%ended = k
+      watch%followed = k
+      watch%recent(k)%pin(piston_pin)%min_film_thickness = merge(9.0_dp, 0.5_dp**(k/2 - 4), mod(k, 2) == 1)
+      if (k < 6) call check%that(abs(watch%film_change(piston_pin, 2)) <= 0, 'no change before the end of the third cycle')
     end do
-    call check%relative(film%change(), -0.5_dp, 1e-12_dp, 'change of the smallest film thickness')   ! 4, 2; the present cycle: 1
-    call film%take(-8.01_dp*turn, 7.0_dp)
-    call check%relative(film%change(), -0.5_dp, 1e-12_dp, 'a cycle counts when it has ended')
-    call film%take(-8.02_dp*turn, -1.0_dp)
-    call film%take(-10.02_dp*turn, 1.0_dp)
-    call check%that(abs(film%change()) <= 0, 'no change where surfaces touch')
+    call check%relative(watch%film_change(piston_pin, 2), -0.5_dp, 1e-12_dp, 'change of the smallest film thickness')
+    watch%recent(4)%pin(piston_pin)%min_film_thickness = -1
+    call check%that(abs(watch%film_change(piston_pin, 2)) <= 0, 'no change where surfaces touch')
 
     call read_changed('gas/compressor', '', case, error)
     report%status = 'done'

@@ -1,6 +1,6 @@
 !> Single numbers as text and back, compared with formatted writes and reads of the compiler; long texts of many pieces.
 module test_number_text
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use number_text, only: real_text, short_text, exact_text
   use value_reader, only: read_real, read_integer, is_within
   use growing_text, only: growing_text_t

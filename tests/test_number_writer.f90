@@ -2,7 +2,7 @@
 module test_number_writer
   use, intrinsic :: iso_fortran_env, only: int64
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan, ieee_positive_inf, ieee_negative_inf
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use number_text, only: number_writer_t, append_formatted, longest_number, fewest_digits, most_digits
   use checks, only: checks_t
   implicit none

@@ -1,15 +1,15 @@
 !> Viscosity of an oil at a temperature: against values computed with 30 digits from the published equations, and a published
 !> example; in runs; and errors in cases.
 module test_oil_viscosity
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use checks, only: checks_t
   use oil_viscosity, only: oil_t
   use case_definition, only: case_t
   use case_file, only: read_case, parse_case
   use chain_motion, only: piston_pin
   use test_units, only: field_of
-  use gudgeon_summary, only: summary_table, summary_value
+  use run_summary, only: summary_table, summary_value
   use number_text, only: real_text
   use case_checks, only: expect, bodies
   use collecting_sink, only: trace_t, run_case

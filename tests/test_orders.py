@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of scripts/orders.py: orders of known sums of sines, work of known cycles, losses against the energy balance of a run; and of
+"""Tests of gudgeon-plot orders: orders of known sums of sines, work of known cycles, losses against the energy balance of a run; and of
 what it and other scripts that analyse runs refuse.
 
     .venv/bin/python tests/test_orders.py        (after scripts/setup.sh --python; runs three cases)
@@ -14,26 +14,26 @@ from dataclasses import replace
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(TOP / "scripts"))
+sys.path.insert(0, str(TOP / "scripts" / "bench"))
 sys.path.insert(0, str(TOP / "tests"))
 
-from gudgeon_plots.environment import use_virtual_environment  # noqa: E402
+from measured import use_virtual_environment
 
-use_virtual_environment(more=("scipy",))
+use_virtual_environment()
 
-import numpy as np  # noqa: E402
-import pandas as pd  # noqa: E402
-from assertions import Assertions  # noqa: E402
-
-from gudgeon_plots.cycles import bearing_loads, orders, spectrum, whole_cycles, work  # noqa: E402
-from gudgeon_plots.language import Language  # noqa: E402
-from gudgeon_plots.program import release_program  # noqa: E402
-from gudgeon_plots.report_cycles import section  # noqa: E402
-from gudgeon_plots.report_page import page  # noqa: E402
-from gudgeon_plots.results import MissingResult, Run, load_run  # noqa: E402
+import numpy as np
+import pandas as pd
+from assertions import Assertions
+from gudgeon.cycles import bearing_loads, orders, spectrum, whole_cycles, work
+from gudgeon.language import Language
+from gudgeon.program import release_program
+from gudgeon.report.cycles import section
+from gudgeon.report.page import page
+from gudgeon.results import MissingResult, Run, load_run
 
 check = Assertions().check
 TURN = 2 * np.pi
+PLOT = (sys.executable, "-m", "gudgeon")
 
 
 def made(columns: dict, case: dict | None = None) -> Run:
@@ -111,13 +111,13 @@ def runs(folder: Path) -> None:
     check(gas > 0 and abs(gas + damping) < 0.05 * gas, "a settled engine: the work of the gas is nearly that of the damping",
           f"{gas}, {damping}")
     told = subprocess.run(
-        [TOP / "scripts" / "orders.py", folder / "sim_IV.csv", "--settle", "0"], capture_output=True, text=True, check=False
+        [*PLOT, "orders", folder / "sim_IV.csv", "--settle", "0"], capture_output=True, text=True, check=False
     )
     check(told.returncode == 0, "the script runs", told.stderr)
     for kind in ("orders.csv", "work.csv", "cycles.png", "orders.png", "bearings.png", "indicator.png"):
         check((folder / f"sim_IV.{kind}").stat().st_size > 100, f"it writes {kind}")
     told = subprocess.run(
-        [TOP / "scripts" / "orders.py", folder / "sim_IV.csv", "--columns", "nonsense"], capture_output=True, text=True, check=False
+        [*PLOT, "orders", folder / "sim_IV.csv", "--columns", "nonsense"], capture_output=True, text=True, check=False
     )
     check(told.returncode == 1 and "no column nonsense" in told.stderr and told.stderr.count("\n") == 1,
           "an unknown column is refused", told.stderr)
@@ -171,16 +171,23 @@ def refusals() -> None:
     few = section(made({"time": np.arange(200.0), "crank_angle": np.linspace(0, 200 * TURN / 30, 200)}), None, portuguese)
     check("são necessárias" in few and portuguese.unknown <= {"made"}, "a run with few rows, in Portuguese", few)
     trace = TOP / "data" / "sim_I.csv"
-    for status, words, said in ((2, ("orders.py", trace, "--settle", "nan"), "nan: must be a number >= 0"),
-                                (2, ("orders.py", trace, "--cycles", "0"), "0: must be a whole number >= 1"),
-                                (2, ("orders.py", trace, "--highest", "0"), "0: must be a number > 0"),
-                                (2, ("plot.py", "--compare", trace, trace, "--agreement", "-1"), "-1: must be a number > 0"),
-                                (2, ("plot.py", "--figure", "6.7", "--columns", "crank_speed"), "are for --compare"),
+    for status, words, said in ((2, ("orders", trace, "--settle", "nan"), "nan: must be a number >= 0"),
+                                (2, ("orders", trace, "--cycles", "0"), "0: must be a whole number >= 1"),
+                                (2, ("orders", trace, "--highest", "0"), "0: must be a number > 0"),
+                                (2, ("compare", trace, trace, "--agreement", "-1"), "-1: must be a number > 0"),
+                                (2, ("figure", "6.7", "--all"), "give the numbers of figures, --all or --list"),
+                                (2, ("figure", "7.6"), "no such figure: 7.6"),
+                                (2, ("nonsense", trace), "nonsense: must be one of columns, compare, "),
+                                (2, ("orders", trace, "-o", "x.png"), "x.png: give a folder"),
+                                (2, ("film", trace, "--at", "0.01"), "--at and --set are for a case file"),
+                                (1, ("columns", trace, "--columns", "nonsense"), "no column nonsense"),
+                                (1, ("laws", TOP / "data" / "sim_I.events.csv", "--no-run"), "gudgeon-plot laws: "),
                                 (2, ("check_certificates.py", TOP / "cases" / "studies" / "map_I.nml"), "map_I.nml: not a case file"),
                                 (2, ("check_certificates.py", TOP / "cases" / "sim_I.nml", "--rows", "0"), "0: must be a whole number >= 20"),
-                                (1, ("plot.py", "--compare", trace, trace, "--out", trace / "x"), "plot.py: "),
-                                (1, ("orders.py", trace, "--out", trace / "x"), "orders.py: ")):
-        outcome = subprocess.run([sys.executable, TOP / "scripts" / words[0], *words[1:]], capture_output=True, text=True, check=False)
+                                (1, ("compare", trace, trace, "--out", trace / "x"), "gudgeon-plot compare: "),
+                                (1, ("orders", trace, "--out", trace / "x"), "gudgeon-plot orders: ")):
+        command = [sys.executable, TOP / "scripts" / "bench" / words[0]] if words[0].endswith(".py") else [*PLOT, words[0]]
+        outcome = subprocess.run([*command, *words[1:]], capture_output=True, text=True, check=False)
         check(outcome.returncode == status and said in outcome.stderr and "Traceback" not in outcome.stderr,
               f"{' '.join(str(word) for word in words[:1] + words[-2:])} is refused", outcome.stderr)
 

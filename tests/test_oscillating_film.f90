@@ -1,11 +1,11 @@
 !> The oscillating film: published values, limits, flow field, quadrature, variants, direction, factory.
 module test_oscillating_film
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi
-  use gudgeon_errors, only: error_t, status_case_file, status_internal
+  use kinds, only: dp
+  use constants, only: pi, two_pi
+  use error_handling, only: error_t, status_case_file, status_internal
   use checks, only: checks_t
   use film_law, only: film_law_t, film_motion_t
-  use gudgeon_bearing, only: bearing_t
+  use bearing_size, only: bearing_t
   use laws, only: film_law_of
   use oscillating_response, only: oscillating_response_t, film_phasors_t, new_oscillating_response, inertia_function, &
     max_eccentricity_ratio

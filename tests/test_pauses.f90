@@ -2,16 +2,16 @@
 !> those of a row; a run that is copied goes on in the same way; and a step can be ended at a pause.
 module test_pauses
   use, intrinsic :: iso_fortran_env, only: int64
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
-  use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integration_t, silent_observer_t
+  use ode_methods, only: new_method
+  use ode_solver, only: integration_t, silent_observer_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use gudgeon_columns, only: column_list_t, choose_columns
-  use gudgeon_simulation, only: simulate, run_t, run_report_t
+  use trace_columns, only: column_list_t, choose_columns
+  use simulation, only: simulate, run_t, run_report_t
   use row_store, only: row_store_t
   use trace_sink, only: trace_event_t
   use checks, only: checks_t
@@ -190,15 +190,15 @@ contains
     type(run_t) :: run
     type(error_t), allocatable :: error
     real(dp) :: values(size(rows, 1))
-    logical :: inside
+    logical :: in_domain
     integer :: i
     call run%begin(case, .false., list, sink, error)
     rows_seen = .not. allocated(error)
     do i = 1, size(rows, 2) - 1
       call run%advance(rows(1, i), 0)
-      call run%look(values, inside)
-      rows_seen = rows_seen .and. inside
-      if (inside) rows_seen = rows_seen .and. all(transfer(values, [0_int64]) == transfer(rows(:, i), [0_int64]))
+      call run%evaluate_row(values, in_domain)
+      rows_seen = rows_seen .and. in_domain
+      if (in_domain) rows_seen = rows_seen .and. all(transfer(values, [0_int64]) == transfer(rows(:, i), [0_int64]))
     end do
   end function rows_seen
 
@@ -234,14 +234,14 @@ contains
     end do
   end subroutine cuts
 
-  pure subroutine derivatives(self, t, y, dydt, inside)
+  pure subroutine derivatives(self, t, y, dydt, in_domain)
     class(spring_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     associate (unused => t)
     end associate
-    inside = .true.
+    in_domain = .true.
     dydt = [y(2), -self%stiffness*y(1)]
   end subroutine derivatives
 end module test_pauses

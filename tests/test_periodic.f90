@@ -1,8 +1,8 @@
 !> Runs until the motion is periodic, and Lyapunov exponents of periodic and chaotic motions: compared with the traces of other
 !> runs.
 module test_periodic
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   use checks, only: checks_t
   use collecting_sink, only: trace_t, run_case, column, last_row_time
   implicit none
@@ -244,16 +244,16 @@ contains
     subroutine settles(file, column_is, end_is, rows_are, period, what)
       character(len=*), intent(in) :: file, column_is, end_is, rows_are, what
       integer, intent(in) :: period
-      character(len=long) :: common(3)
+      character(len=long) :: settings(3)
       type(trace_t) :: run
       real(dp) :: first, last, rate
       integer :: c, n
-      common = [character(len=long) :: end_is, rows_are, 'output.samples_per_revolution=1']
-      if (index(rows_are, 'interval') > 0) common(3) = ''
-      run = run_case(file, [character(len=long) :: short_one, common(:count(common /= ''))])
+      settings = [character(len=long) :: end_is, rows_are, 'output.samples_per_revolution=1']
+      if (index(rows_are, 'interval') > 0) settings(3) = ''
+      run = run_case(file, [character(len=long) :: short_one, settings(:count(settings /= ''))])
       rate = run%report%exponent%mean
       call check%that(run%report%exponent%is_known, what//': an exponent')
-      run = run_case(file, [character(len=long) :: auto, 'integrator.relative_tolerance=1e-11', common(:count(common /= ''))])
+      run = run_case(file, [character(len=long) :: auto, 'integrator.relative_tolerance=1e-11', settings(:count(settings /= ''))])
       c = column(run, column_is)
       n = size(run%values, 2)
       if (c == 0 .or. n < 5) return

@@ -1,12 +1,12 @@
 !> The Pinkus-Sternlicht film: table, limits, continuity, invariance, dissipation, factory.
 module test_pinkus_sternlicht
   use, intrinsic :: iso_fortran_env, only: qp => real128
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_errors, only: error_t, status_case_file
+  use kinds, only: dp
+  use constants, only: pi
+  use error_handling, only: error_t, status_case_file
   use checks, only: checks_t
   use film_law, only: film_law_t, film_motion_t
-  use gudgeon_bearing, only: bearing_t
+  use bearing_size, only: bearing_t
   use laws, only: film_law_of
   use half_film, only: half_film_t
   implicit none

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tests of scripts/gudgeon_plots: table of figures, comparisons, film pressures, trade-off, pages.
+"""Tests of the pictures of the Python package: table of figures, comparisons, film pressures, trade-off, pages.
 
     .venv/bin/python tests/test_plots.py        (after scripts/setup.sh --python; runs the contact and Flores cases)
 
@@ -18,21 +18,25 @@ from dataclasses import replace
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(TOP / "scripts"))
+sys.path.insert(0, str(TOP / "scripts" / "bench"))
 
-from gudgeon_plots.environment import use_virtual_environment  # noqa: E402
+from measured import use_virtual_environment
 
 use_virtual_environment()
 
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-import pandas as pd  # noqa: E402
-
-import show_noise  # noqa: E402
-from gudgeon_plots import compare, elastic_pictures, figures, film_pictures, film_pressure, language, names, report_page, ringing, study, tradeoff  # noqa: E402
-from gudgeon_plots.figure_map import read_figures  # noqa: E402
-from gudgeon_plots.quantities import QUANTITIES, once_a_cycle  # noqa: E402
-from gudgeon_plots.results import (  # noqa: E402
+import elastic_pictures
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import show_noise
+import tradeoff
+from gudgeon import language, names, study
+from gudgeon.plots import compare, figures, film_pressure, ringing, style
+from gudgeon.plots import film as film_pictures
+from gudgeon.plots.figure_map import read_figures
+from gudgeon.plots.quantities import QUANTITIES, once_a_cycle
+from gudgeon.report import page as report_page
+from gudgeon.results import (
     FineResults,
     MissingResult,
     Results,
@@ -573,7 +577,7 @@ class Drawing(unittest.TestCase):
         drawing = figures.draw(read_figures()["B.10"], MadeResults())
         drawing._suptitle.set_text(2 * drawing._suptitle.get_text())
         self.assertTrue(any("the margin" in pair for pair in overlaps(drawing)))
-        figures.fit_title(drawing)
+        style.fit_title(drawing)
         self.assertFalse(any("the margin" in pair for pair in overlaps(drawing)), overlaps(drawing))
         plt.close(drawing)
 
@@ -663,13 +667,13 @@ class Drawing(unittest.TestCase):
             plt.close(drawing)
 
     def test_orbits_name_only_curves_that_show(self) -> None:
-        for thickness, names in ((1e-6, {"with clearance", "beginning"}), (-1e-6, {"in contact", "beginning"})):
+        for thickness, shown in ((1e-6, {"with clearance", "beginning"}), (-1e-6, {"in contact", "beginning"})):
             turn = np.linspace(0, 2 * np.pi, 50)
             made = run({"eccentricity_x": np.cos(turn) * 1e-4, "eccentricity_y": np.sin(turn) * 1e-4, "film_thickness": np.full(50, thickness)},
                        {"joint": {"clearance": 1e-4}})
             drawing, axis = plt.subplots()
             QUANTITIES["pin_orbit"].draw(axis, made, None, "blue")
-            self.assertEqual(set(axis.get_legend_handles_labels()[1]), names)
+            self.assertEqual(set(axis.get_legend_handles_labels()[1]), shown)
             plt.close(drawing)
 
     def test_last_tick_is_numbered(self) -> None:
@@ -811,13 +815,13 @@ class FromRuns(unittest.TestCase):
         return float(np.sqrt(np.mean((velocity[:half] - velocity[half : 2 * half]) ** 2)))
 
     def test_settled_friction_calms_and_less_clearance_too(self) -> None:
-        for names in (("friction_010", "friction_050", "friction_100"), ("dry_0500um", "dry_0100um", "dry_0010um")):
-            rough = [self.roughness(self.long, name) for name in names]
+        for three in (("friction_010", "friction_050", "friction_100"), ("dry_0500um", "dry_0100um", "dry_0010um")):
+            rough = [self.roughness(self.long, name) for name in three]
             self.assertGreater(rough[0], 1.1 * rough[1])
             self.assertGreater(rough[1], 1.1 * rough[2])
-            open_share = [float((self.settled[name]["film_thickness"] > 0).mean()) for name in names]
+            open_share = [float((self.settled[name]["film_thickness"] > 0).mean()) for name in three]
             self.assertEqual(sorted(open_share, reverse=True), open_share)
-            unrest = [self.unrest(name) for name in names]
+            unrest = [self.unrest(name) for name in three]
             self.assertGreater(unrest[0], 2 * unrest[1])
             self.assertGreater(unrest[1], 100 * unrest[2])
         for name in ("dry_0010um", "friction_100", "lubricated_400cP"):  # settled: these runs become periodic
@@ -908,7 +912,7 @@ class Portuguese(unittest.TestCase):
 
 
 class PrintsNoise(unittest.TestCase):
-    """The figures of scripts/show_noise.py."""
+    """The figures of scripts/bench/show_noise.py."""
 
     def made(self) -> show_noise.Noise:
         """Noise of 10 % where the eccentricity is larger than 0.95 c; the start, in which the pin falls, is not counted."""
@@ -1019,7 +1023,7 @@ class Reading(unittest.TestCase):
                     load_run(path)
             with self.assertRaisesRegex(MissingResult, "x and x share no column that varies"):
                 path.write_text("time[s],a\n0,1\n1,2\n")
-                compare.compare_files(path, path, None, 0.01, Path(work), ["png"])
+                compare.shared_columns(load_run(path), load_run(path))
             path.write_text("time[s],a\n0,1\n")
             with self.assertRaisesRegex(MissingResult, "x: the trace has no column pin_force_x"):
                 few["pin_force_x"]
@@ -1036,18 +1040,18 @@ class Reading(unittest.TestCase):
             (there / "x.wear.csv").write_text("joint,angle[deg],pin_depth[m],bore_depth[m]\npiston_pin,0,x,1\n")
             (there / "x.film.csv").write_text("time[s],joint,place,angle[deg],pressure[Pa],film_thickness[m]\n0,piston_pin,0,0,,1\n")
             for status, words, said in (
-                (1, ("plot_study.py", there / "x.runs.csv", "--columns", "status"), "status: contains words, no numbers"),
-                (1, ("plot_study.py", there / "failed.runs.csv", "--columns", "impacts"),
+                (1, ("study", there / "x.runs.csv", "--columns", "status"), "status: contains words, no numbers"),
+                (1, ("study", there / "failed.runs.csv", "--columns", "impacts"),
                  "failed.runs.csv: no results, all 3 runs failed (2: too deep; 1: too long)\n"),
-                (2, ("plot_study.py", there / "x.runs.csv", "--numbers"), "--numbers is for the shipped studies alone"),
-                (2, ("plot_study.py", "--columns", "impacts"), "--columns is for studies"),
-                (1, ("plot_wear.py", there / "x.wear.csv"), "column pin_depth: not a number in each row"),
-                (1, ("plot_film.py", there / "x.film.csv"), "column pressure: not a number in each row"),
-                (2, ("plot_film.py", there / "x.film.csv", "--at", "0.01"), "--at and --set are for a case"),
-                (1, ("plot_members.py", "--out", there / "x.runs.csv", "--program", "/bin/true"), "plot_members.py: "),
-                (1, ("plot_elastic.py", "--out", there / "x.runs.csv", "--program", "/bin/true"), "plot_elastic.py: "),
+                (2, ("study", there / "x.runs.csv", "--numbers"), "--numbers is for the shipped studies alone"),
+                (2, ("study", "--columns", "impacts"), "--columns is for studies"),
+                (1, ("wear", there / "x.wear.csv"), "column pin_depth: not a number in each row"),
+                (1, ("film", there / "x.film.csv"), "column pressure: not a number in each row"),
+                (2, ("film", there / "x.film.csv", "--at", "0.01"), "--at and --set are for a case"),
+                (1, ("measure_elastic.py", "members", "--program", there / "nothing"), "measure_elastic.py: "),
             ):
-                outcome = subprocess.run([sys.executable, TOP / "scripts" / words[0], *words[1:]], capture_output=True, text=True, check=False)
+                command = [TOP / "scripts" / "bench" / words[0]] if str(words[0]).endswith(".py") else ["-m", "gudgeon", words[0]]
+                outcome = subprocess.run([sys.executable, *command, *words[1:]], capture_output=True, text=True, check=False)
                 self.assertEqual(outcome.returncode, status, f"{words}: {outcome.stderr}")
                 self.assertIn(said, outcome.stderr)
                 self.assertNotIn("Traceback", outcome.stderr)
@@ -1070,7 +1074,7 @@ class Reading(unittest.TestCase):
 
     def test_missing_results_say_what_to_run(self) -> None:
         with tempfile.TemporaryDirectory() as work:
-            with self.assertRaisesRegex(MissingResult, "run: scripts/run_cases.sh .*cases/sim_I.nml"):
+            with self.assertRaisesRegex(MissingResult, "run: gudgeon -o .*cases/sim_I.nml"):
                 Results(Path(work), run_missing=False).make(["sim_I", "sim_I.ideal"])
             with self.assertRaisesRegex(MissingResult, "nor a shipped case: nonsense"):
                 Results(Path(work)).make(["nonsense"])

@@ -1,6 +1,6 @@
 !> Small problems with known solutions for the tests of the integrator.
 module test_problems
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t, event_continue
   implicit none
   private
@@ -54,64 +54,64 @@ module test_problems
 
 contains
 
-  pure subroutine root_derivatives(self, t, y, dydt, inside)
+  pure subroutine root_derivatives(self, t, y, dydt, in_domain)
     class(root_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     associate (unused_self => self)
     end associate
-    inside = t >= 1
+    in_domain = t >= 1
     dydt = 0
-    if (inside) dydt = 1.5_dp*sqrt(t - 1)*y
+    if (in_domain) dydt = 1.5_dp*sqrt(t - 1)*y
   end subroutine root_derivatives
 
-  pure subroutine modulated_derivatives(self, t, y, dydt, inside)
+  pure subroutine modulated_derivatives(self, t, y, dydt, in_domain)
     class(modulated_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     dydt = y*cos(t)
     if (self%decay > 0) dydt = -self%decay*y
-    inside = .true.
+    in_domain = .true.
   end subroutine modulated_derivatives
 
-  pure subroutine oscillator_derivatives(self, t, y, dydt, inside)
+  pure subroutine oscillator_derivatives(self, t, y, dydt, in_domain)
     class(oscillator_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     associate (unused_self => self, unused_t => t)
     end associate
     dydt(1) = y(2)
     dydt(2) = -y(1)
-    inside = .true.
+    in_domain = .true.
   end subroutine oscillator_derivatives
 
-  pure subroutine two_body_derivatives(self, t, y, dydt, inside)
+  pure subroutine two_body_derivatives(self, t, y, dydt, in_domain)
     class(two_body_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     real(dp) :: r3
     associate (unused_self => self, unused_t => t)
     end associate
     r3 = norm2(y(1:2))**3
     dydt(1:2) = y(3:4)
     dydt(3:4) = -y(1:2)/r3
-    inside = .true.
+    in_domain = .true.
   end subroutine two_body_derivatives
 
-  pure subroutine ball_derivatives(self, t, y, dydt, inside)
+  pure subroutine ball_derivatives(self, t, y, dydt, in_domain)
     class(bouncing_ball_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     associate (unused_self => self, unused_t => t)
     end associate
     dydt(1) = y(2)
     dydt(2) = -1
-    inside = .true.
+    in_domain = .true.
   end subroutine ball_derivatives
 
   pure subroutine ball_events(self, t, y, g, g_rate)

@@ -1,8 +1,8 @@
 !> The film of a journal that rotates under a steady load, against published tables: the Sommerfeld number S = mu N L D (R/c)^2/W
 !> and the attitude angle. The published films begin at a groove; the solver therefore sets the pressure there to 0.
 module test_published_films
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, degree
+  use kinds, only: dp
+  use constants, only: pi, degree
   use checks, only: checks_t
   use finite_film, only: film_solver_t, film_answer_t, cavitation_reynolds
   implicit none
@@ -45,7 +45,7 @@ contains
     call compare(check, printed, [-0.5_dp*pi, 0.5_dp*pi], 10*degree, .true., 'Someya')
   end subroutine someya
 
-  !> Sommerfeld numbers within 1.2 % and attitude angles within 0.6 degrees of a table; for the grooves see `find_journal`.
+  !> Sommerfeld numbers within 1.2 % and attitude angles within 0.6 degrees of a table; for the grooves see `find_pin`.
   subroutine compare(check, printed, grooves, width, from_load, source)
     class(checks_t), intent(inout) :: check
     real(dp), intent(in) :: printed(:, :)   !! columns of L/D, eps, S, attitude [deg]
@@ -55,7 +55,7 @@ contains
     real(dp) :: found(2)
     integer :: i
     do i = 1, size(printed, 2)
-      call find_journal(printed(1, i), printed(2, i), grooves, width, from_load, found)
+      call find_pin(printed(1, i), printed(2, i), grooves, width, from_load, found)
       call check%relative(found(1), printed(3, i), 1.2e-2_dp, 'Sommerfeld number of '//source)
       call check%close_to(found(2), printed(4, i), 0.6_dp, 'attitude angle of '//source)
     end do
@@ -63,7 +63,7 @@ contains
 
   !> S and the attitude angle [deg] of a journal whose bearing has grooves of a `width` [rad] at given angles [rad]. These are
   !> measured from the smallest film thickness or, with `from_load`, from the direction of the load, which is found by iteration.
-  subroutine find_journal(half_length, eps, grooves, width, from_load, found)
+  subroutine find_pin(half_length, eps, grooves, width, from_load, found)
     real(dp), intent(in) :: half_length, eps, grooves(:), width
     logical, intent(in) :: from_load
     real(dp), intent(out) :: found(2)
@@ -83,5 +83,5 @@ contains
       load = atan2(-film%force(2), -film%force(1))
     end do
     found = [2/(pi*eps*norm2(film%force)), abs(load)/degree]
-  end subroutine find_journal
+  end subroutine find_pin
 end module test_published_films

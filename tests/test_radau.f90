@@ -1,10 +1,10 @@
 !> The Radau method, its Jacobians and the automatic choice.
 module test_radau
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use chain_motion, only: piston_pin
   use checks, only: checks_t
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use ode_problem, only: ode_problem_t, difference_jacobian, event_continue
@@ -13,13 +13,13 @@ module test_radau
   use radau, only: radau_t
   use film_law, only: film_law_t, film_motion_t, difference_derivatives
   use pinkus_sternlicht, only: pinkus_sternlicht_t
-  use gudgeon_bearing, only: bearing_t
+  use bearing_size, only: bearing_t
   use contact_law, only: contact_law_t
   use laws, only: contact_law_of
-  use gudgeon_scene, only: scene_t, phase_contact, phase_film
-  use state_making, only: put_crank, put_pin
+  use scene_problem, only: scene_t, phase_contact, phase_film
+  use state_making, only: set_crank, set_pin
   use scene_builder, only: build_scene
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_done, step_limit_reached
+  use ode_solver, only: integrate, silent_observer_t, integration_done, step_limit_reached
   use test_problems, only: oscillator_t, bouncing_ball_t
   use collecting_sink, only: trace_t, run_case, column, values_of
   implicit none
@@ -94,16 +94,16 @@ contains
     end do
   end subroutine damped_contacts_last
 
-  pure subroutine falls_on_wall(self, t, y, dydt, inside)
+  pure subroutine falls_on_wall(self, t, y, dydt, in_domain)
     class(landing_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     associate (unused => t)
     end associate
     dydt = [y(2), 1.0_dp]
     if (self%touches) dydt(2) = 1 - 1e10_dp*max(y(1), 0.0_dp)*max(1 + 19*y(2)/self%impact_speed, 0.0_dp)
-    inside = .true.
+    in_domain = .true.
   end subroutine falls_on_wall
 
   pure subroutine reaches_wall(self, t, y, g, g_rate)
@@ -129,26 +129,26 @@ contains
     action = event_continue
   end subroutine touch
 
-  pure subroutine derivatives(self, t, y, dydt, inside)
+  pure subroutine derivatives(self, t, y, dydt, in_domain)
     class(van_der_pol_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     associate (unused => t)
     end associate
     dydt(1) = y(2)
     dydt(2) = ((1 - y(1)**2)*y(2) - y(1))/self%mu
-    inside = .true.
+    in_domain = .true.
   end subroutine derivatives
 
-  pure subroutine relaxation(self, t, y, dydt, inside)
+  pure subroutine relaxation(self, t, y, dydt, in_domain)
     class(relaxing_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     dydt(1) = y(2)
     dydt(2) = -self%rate*(y(2) - cos(t)) - sin(t)
-    inside = .true.
+    in_domain = .true.
   end subroutine relaxation
 
   !> Collocation conditions, decoupling of the stages, stiff accuracy.
@@ -356,9 +356,9 @@ contains
       if (touches(i)) scene%joints(1)%phase = phase_contact
       scene%joints(1)%impact_speed = 0.8_dp
       do trial = 1, 6
-        call put_pin(scene, y, merge(1.1_dp, 0.55_dp, touches(i))*c*[cos(1.0_dp*trial), sin(1.0_dp*trial)], &
+        call set_pin(scene, y, merge(1.1_dp, 0.55_dp, touches(i))*c*[cos(1.0_dp*trial), sin(1.0_dp*trial)], &
           [0.03_dp*cos(2.3_dp*trial), 0.02_dp*sin(3.1_dp*trial)])
-        call put_crank(scene, y, 6.4_dp + 0.02_dp*trial, case%initial%crank_speed)
+        call set_crank(scene, y, 6.4_dp + 0.02_dp*trial, case%initial%crank_speed)
         call scene%jacobian(1e-3_dp*trial, y, a_p, a_v)
         call difference_jacobian(scene, 1e-3_dp*trial, y, b_p, b_v)
         scale = maxval(abs(b_p))*1e-4_dp + abs(b_p)
@@ -384,9 +384,9 @@ contains
     call read_case('cases/sim_I.nml', none, case, error)
     call build_scene(case, .false., scene, error)
     allocate (y(scene%n), source=0.0_dp)
-    call put_crank(scene, y, 0.4_dp, 250.0_dp)
+    call set_crank(scene, y, 0.4_dp, 250.0_dp)
     do i = 0, 1
-      call put_pin(scene, y, [2e-5_dp + i*1e-7_dp, 0.0_dp], [0.0_dp, 0.0_dp])
+      call set_pin(scene, y, [2e-5_dp + i*1e-7_dp, 0.0_dp], [0.0_dp, 0.0_dp])
       call scene%jacobian(0.0_dp, y, a_p, a_v)
       call check%that(.not. any(abs(a_p) > 0) .and. .not. any(abs(a_v) > 0), 'no derivatives outside the film')
     end do
@@ -530,7 +530,7 @@ contains
     type(relaxing_t) :: problem
     type(radau_t) :: method
     real(dp) :: y(2), f(2), t
-    logical :: inside
+    logical :: in_domain
     real(dp) :: change
     integer :: status, i
     problem%n = 2
@@ -551,7 +551,7 @@ contains
         t = method%t_old + i*(method%t - method%t_old)/20
         call method%interpolate(t, y)
         largest = max(largest, abs(y - [sin(t), cos(t)]))
-        call problem%derivatives(t, y, f, inside)
+        call problem%derivatives(t, y, f, in_domain)
         call method%improve(t, f, y, change)
         improved = max(improved, abs(y - [sin(t), cos(t)]))
       end do

@@ -1,16 +1,16 @@
 !> The recorder of a run: what happens where the interpolant of a step leaves the model.
 module test_recorder
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use checks, only: checks_t
   use adams, only: adams_t
-  use gudgeon_solver, only: integrate, integration_done, integration_interrupted
-  use gudgeon_scene, only: scene_t
+  use ode_solver, only: integrate, integration_done, integration_interrupted
+  use scene_problem, only: scene_t
   use scene_builder, only: build_scene, settings_for
   use case_definition, only: case_t
   use case_file, only: read_case
-  use gudgeon_columns, only: choose_columns
-  use gudgeon_recorder, only: recorder_t
+  use trace_columns, only: choose_columns
+  use run_recorder, only: recorder_t
   use collecting_sink, only: collecting_sink_t
   use trace_sink, only: trace_event_t
   implicit none
@@ -78,8 +78,8 @@ contains
     if (.not. allocated(error)) call build_scene(case, .false., scene, error)
     if (.not. allocated(error)) call choose_columns(case, .false., recorder%list, error)
     if (allocated(error)) error stop 'test_recorder: no such scene'
-    recorder%interval = interval
-    recorder%end_time = t_end
+    recorder%rows%interval = interval
+    recorder%rows%end_time = t_end
     recorder%sink => sink
     method%settings = settings_for(case, scene)
     method%strays_from = strays_from

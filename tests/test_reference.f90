@@ -1,6 +1,6 @@
 !> Whole runs against the reference curves in data/ (an independent implementation, see data/README.md).
 module test_reference
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use ode_method, only: limit_stability
   use collecting_sink, only: trace_t, run_case, load_trace, column

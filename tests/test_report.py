@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Opens pages of scripts/report.py in headless Chromium: they are drawn, play, move with the time slider, zoom, and the console has
+"""Opens pages of gudgeon-plot report in headless Chromium: they are drawn, play, move with the time slider, zoom, and the console has
 no messages.
 
     tests/test_report.py [PAGE.html...]     default: pages of one run of each kind, made for the test
@@ -236,7 +236,7 @@ def main() -> int:
         for case in CASES if not pages else ():
             page = Path(work) / f"{case}.html"
             made = subprocess.run(
-                [sys.executable, str(TOP / "scripts" / "report.py"), case, "--results", work, "-o", str(page)],
+                [TOP / ".venv" / "bin" / "gudgeon-plot", "report", case, "--results", work, "-o", str(page)],
                 check=False,
             )
             checks.check(made.returncode == 0, f"{case}: the page is made")

@@ -1,9 +1,9 @@
 !> The restitution of contact laws: free impacts, integrated by the program, under every law in every geometry, against tables of
 !> an independent implementation (data/contact) and closed forms.
 module test_restitution
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use error_handling, only: error_t
+  use bearing_size, only: bearing_t
   use checks, only: checks_t
   use contact_law, only: contact_law_t
   use laws, only: contact_law_of

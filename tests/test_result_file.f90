@@ -1,9 +1,9 @@
 !> Result files, and the system calls that they use.
 module test_result_file
   use, intrinsic :: iso_c_binding, only: c_int, c_long
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, status_output
-  use gudgeon_posix, only: make_directory, remove_file, open_file, to_read, to_append, read_bytes, close_file, error_text, &
+  use kinds, only: dp
+  use error_handling, only: error_t, status_output
+  use posix_files, only: make_directory, remove_file, open_file, to_read, to_append, read_bytes, close_file, error_text, &
     ignore_write_signals, synchronise_folder, file_length, error_no_entry, error_no_space, &
     error_is_directory, error_is_link, error_not_regular
   use result_file, only: result_file_t, remove_result
@@ -56,14 +56,14 @@ contains
     call file%open(folder//'/a.csv', error)
     call check%that(.not. allocated(error), 'a result is opened')
     do i = 1, 40000
-      call file%put('0123456789'//n)
+      call file%append('0123456789'//n)
     end do
     call read_back(folder//'/a.csv', text, status)
     call check%that(status == error_no_entry, 'no file under the final name before it is closed')
     call read_back(folder//'/a.csv.part', text, status)
     call check%that(status == 0 .and. len(text) > 0, 'rows are written when the buffer is full')
     call check%that(mod(len(text), 11) == 0, 'only complete rows are written')
-    call file%put(repeat('x', 300000)//n)
+    call file%append(repeat('x', 300000)//n)
     call file%close(error)
     call check%that(.not. allocated(error), 'a result is closed')
     call read_back(folder//'/a.csv', text, status)
@@ -72,12 +72,12 @@ contains
     call read_back(folder//'/a.csv.part', text, status)
     call check%that(status == error_no_entry, 'the temporary name is removed')
     call file%open(folder//'/a.csv', error)
-    call file%put('new'//n)
+    call file%append('new'//n)
     call file%close(error)
     call read_back(folder//'/a.csv', text, status)
     call check%equal_text(text, 'new'//n, 'a file is replaced')
     call file%open(folder//'/a.csv', error)
-    call file%put('newer'//n)
+    call file%append('newer'//n)
     call file%abandon()
     call read_back(folder//'/a.csv', text, status)
     call check%equal_text(text, 'new'//n, 'an abandoned file does not replace the old one')
@@ -94,17 +94,17 @@ contains
     call execute_command_line('echo old > '//folder//'/a.csv.part')
     call one%open(folder//'/a.csv', error)
     call check%that(.not. allocated(error), 'a file left by a killed program is replaced')
-    call one%put('one'//n)
+    call one%append('one'//n)
     call one%flush()
     call other%open(folder//'/a.csv', error)
     call expect(check, error, folder//'/a.csv: another run is writing it; wait for it or choose another folder with --out')
-    call other%put('other'//n)
+    call other%append('other'//n)
     call other%close(error)
     call one%close(error)
     call read_back(folder//'/a.csv', text, status)
     call check%equal_text(text, 'one'//n, 'the rows of the first one')
     call left%reopen(folder//'/a.csv', folder//'/a.csv', 2_c_long, error)
-    call left%put('more'//n)
+    call left%append('more'//n)
     call left%close(error)
     call read_back(folder//'/a.csv', text, status)
     call check%equal_text(text, 'onmore'//n, 'a file is continued after its first bytes')
@@ -119,13 +119,13 @@ contains
     integer :: status
     call file%open(folder//'/none/a.csv', error)
     call expect(check, error, folder//'/none/a.csv: No such file or directory')
-    call file%put('x'//n)
+    call file%append('x'//n)
     call file%close(error)
     call check%that(.not. allocated(error), 'a file never opened is closed without an error')
     call limit_files(20, status)
     call file%open(folder//'/full.csv', error)
     call check%that(status == 0 .and. .not. allocated(error), 'a full disk opens')
-    call file%put('whole row'//n//'row that does not fit'//n)
+    call file%append('whole row'//n//'row that does not fit'//n)
     call check%that(.not. file%has_failed(), 'a full disk is not detected while rows are in the buffer')
     call file%flush()
     call check%that(file%has_failed(), 'a full disk is detected')
@@ -153,12 +153,12 @@ contains
     integer :: descriptor, status
     logical :: was_there
     call file%open(victim, error)
-    call file%put('kept'//n)
+    call file%append('kept'//n)
     call file%close(error)
     call execute_command_line('ln -s victim '//link//' && ln -s victim '//folder//'/a.csv.part && mkfifo '//pipe, exitstat=status)
     call check%that(status == 0, 'links and a pipe are made')
     call file%open(folder//'/a.csv', error)
-    call file%put('mine'//n)
+    call file%append('mine'//n)
     call file%close(error)
     call read_back(folder//'/a.csv', text, status)
     call check%equal_text(text, 'mine'//n, 'a link under the temporary name is replaced')

@@ -1,9 +1,9 @@
 !> The compliance of a bearing's bore: a ring against collocation of the equations of elasticity (data/film/engine) and its limits;
 !> tables of compliances.
 module test_ring
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_errors, only: error_t, status_case_file
+  use kinds, only: dp
+  use constants, only: pi
+  use error_handling, only: error_t, status_case_file
   use checks, only: checks_t
   use ring_compliance, only: elastic_bore_t, new_ring, new_compliance, ring_compliance_of, shape_value, shape_slope
   implicit none

@@ -1,16 +1,16 @@
 !> Results of a run: the time spent with each method, and peaks between steps.
 module test_run_figures
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use joint_places, only: crank_pin, piston_pin, n_places, name_prefix
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use gudgeon_columns, only: column_list_t
-  use gudgeon_constants, only: two_pi
+  use trace_columns, only: column_list_t
+  use constants, only: two_pi
   use cycle_watch, only: cycle_watch_t
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use peak_search, only: peak_search_t, sample_t
-  use gudgeon_simulation, only: simulate, run_report_t
+  use simulation, only: simulate, run_report_t
   use collecting_sink, only: collecting_sink_t, trace_t, run_case, column, values_of
   implicit none
   private
@@ -71,7 +71,7 @@ contains
         if (is_done) exit
         values = values + 1
         call check%that(t > 0 .and. t < 1, trim(names(i))//': inside')
-        call search%take(t, curve(t))
+        call search%add_value(t, curve(t))
       end do
       call check%close_to(search%value(1), 2.0_dp, within(i), trim(names(i))//': largest value')
       call check%that(values <= most(i), trim(names(i))//': number of evaluations')

@@ -1,13 +1,13 @@
 !> Contact and friction in whole scenes: contact entry by step rejection, sticking, energy, columns and components as needed.
 module test_scenes
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: piston_pin
   use checks, only: checks_t
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins, event_contact_ends
-  use state_making, only: put_crank, put_pin, put_contact
+  use scene_problem, only: scene_t, evaluation_t, phase_contact, event_contact_begins, event_contact_ends
+  use state_making, only: set_crank, set_pin, set_contact
   use ode_method, only: ode_settings_t, step_too_small
   use scene_builder, only: build_scene, settings_for
   use stop_reason, only: reason
@@ -39,14 +39,14 @@ contains
   subroutine step_rejection_limits_entry(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: root, coarse, fine
-    character(len=long) :: common(2)
+    character(len=long) :: settings(2)
     real(dp) :: error(2)
 
-    common = [character(len=long) :: 'integrator.relative_tolerance=1e-9', 'integrator.revolutions=0.4']
-    root = run_case('cases/flores/dry_0100um.nml', common)
-    coarse = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: common, &
+    settings = [character(len=long) :: 'integrator.relative_tolerance=1e-9', 'integrator.revolutions=0.4']
+    root = run_case('cases/flores/dry_0100um.nml', settings)
+    coarse = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: settings, &
       'integrator.contact_entry=step_rejection', 'integrator.max_penetration=1e-8'])
-    fine = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: common, &
+    fine = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: settings, &
       'integrator.contact_entry=step_rejection', 'integrator.max_penetration=1e-10'])
     call check%that(size(root%event) >= 20, 'number of contacts')
     call check%that(root%report%figures%pin(piston_pin)%max_entry_penetration < 1e-14_dp, 'a root enters without penetration')
@@ -67,13 +67,13 @@ contains
   subroutine rejected_steps_are_not_counted(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: trace, fine
-    character(len=long) :: common(5)
+    character(len=long) :: settings(5)
     integer :: i, begun, wrong
 
-    common = [character(len=long) :: 'integrator.relative_tolerance=1e-7', 'integrator.revolutions=0.4', &
+    settings = [character(len=long) :: 'integrator.relative_tolerance=1e-7', 'integrator.revolutions=0.4', &
       'integrator.contact_entry=step_rejection', 'integrator.max_penetration=1e-9', 'output.samples_per_revolution=500000']
-    fine = run_case('cases/flores/dry_0100um.nml', common)
-    trace = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: common, 'output.every_step=T'])
+    fine = run_case('cases/flores/dry_0100um.nml', settings)
+    trace = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: settings, 'output.every_step=T'])
     associate (s => trace%report%statistics, figures => trace%report%figures, e => trace%event)
       call check%that(s%rejected_error > 50 .and. s%rejected_penetration > 10, 'enough steps are rejected')
       begun = 0
@@ -101,18 +101,18 @@ contains
   subroutine sticking_is_the_limit_of_ramps(check)
     class(checks_t), intent(inout) :: check
     type(trace_t) :: coulomb, ramp
-    character(len=long) :: common(2)
+    character(len=long) :: settings(2)
     real(dp) :: error(3)
     integer :: i, n
     character(len=long), parameter :: speeds(3) = [character(len=long) :: 'friction.v1=1e-2', 'friction.v1=1e-3', &
       'friction.v1=1e-4']
 
-    common = [character(len=long) :: 'integrator.relative_tolerance=1e-9', 'integrator.revolutions=0.5']
-    coulomb = run_case('cases/flores/friction_100.nml', [character(len=long) :: common, 'friction.law=coulomb', &
+    settings = [character(len=long) :: 'integrator.relative_tolerance=1e-9', 'integrator.revolutions=0.5']
+    coulomb = run_case('cases/flores/friction_100.nml', [character(len=long) :: settings, 'friction.law=coulomb', &
       'friction.v0=0', 'friction.v1=0'])
     call check%that(.not. allocated(coulomb%error), 'a run with Coulomb friction')
     do i = 1, 3
-      ramp = run_case('cases/flores/friction_100.nml', [character(len=long) :: common, 'friction.v0=0', speeds(i)])
+      ramp = run_case('cases/flores/friction_100.nml', [character(len=long) :: settings, 'friction.v0=0', speeds(i)])
       n = min(size(ramp%event), size(coulomb%event), 10)
       call check%that(n == 10, 'number of contacts with Coulomb friction')
       error(i) = maxval(abs(ramp%event(:n)%time - coulomb%event(:n)%time))
@@ -132,7 +132,7 @@ contains
     type(evaluation_t) :: now, ahead, behind
     real(dp), allocatable :: y(:), f(:)
     real(dp) :: t, dt
-    logical :: inside
+    logical :: in_domain
     integer :: i
     character(len=long) :: overrides(4)
 
@@ -145,14 +145,14 @@ contains
       call build_scene(case, .false., scene, error)
       allocate (y(scene%n), f(scene%n))
       y = scene%initial_state()
-      call put_pin(scene, y, 1.02_dp*case%joints(piston_pin)%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)], &
+      call set_pin(scene, y, 1.02_dp*case%joints(piston_pin)%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)], &
         [0.4_dp*cos(2.1_dp*i), 0.3_dp*sin(1.7_dp*i)])
-      call put_contact(scene%joints(1), 1.0_dp, 0)
+      call set_contact(scene%joints(1), 1.0_dp, 0)
       t = 1e-3_dp*i
-      call scene%derivatives(t, y, f, inside)
-      call scene%evaluate(t, y, now, inside)
-      call scene%evaluate(t + dt, y + dt*f(:scene%n), ahead, inside)
-      call scene%evaluate(t - dt, y - dt*f(:scene%n), behind, inside)
+      call scene%derivatives(t, y, f, in_domain)
+      call scene%evaluate(t, y, now, in_domain)
+      call scene%evaluate(t + dt, y + dt*f(:scene%n), ahead, in_domain)
+      call scene%evaluate(t - dt, y - dt*f(:scene%n), behind, in_domain)
       call check%that(abs(now%joint(1)%friction_force) > 1, 'a sticking pin has a friction force')
       call check%close_to((ahead%joint(1)%sliding_speed - behind%joint(1)%sliding_speed)/(2*dt), 0.0_dp, 1e-2_dp, &
         'rate of the sliding speed of a sticking pin [m/s2]')
@@ -169,22 +169,22 @@ contains
     type(scene_t), allocatable :: scene
     type(evaluation_t) :: now
     real(dp), allocatable :: y(:)
-    logical :: inside
+    logical :: in_domain
     character(len=1) :: none(0)
     call read_case('cases/sim_I.nml', none, case, error)
     call build_scene(case, .false., scene, error)
     allocate (y(scene%n), source=0.0_dp)
-    call put_crank(scene, y, 0.4_dp, 250.0_dp)
-    call put_pin(scene, y, [3e-5_dp, 4e-5_dp], [0.3_dp, 0.4_dp])
-    call scene%evaluate(0.0_dp, y, now, inside)
-    call check%that(.not. inside, 'the film is not defined beyond the wall')
+    call set_crank(scene, y, 0.4_dp, 250.0_dp)
+    call set_pin(scene, y, [3e-5_dp, 4e-5_dp], [0.3_dp, 0.4_dp])
+    call scene%evaluate(0.0_dp, y, now, in_domain)
+    call check%that(.not. in_domain, 'the film is not defined beyond the wall')
     call check%relative(now%motion%crank_angle, 0.4_dp, 1e-15_dp, 'the crank angle is known beyond the wall')
     call check%relative(now%joint(1)%penetration, 5e-5_dp - case%joints(piston_pin)%clearance, 1e-12_dp, &
       'the penetration is known beyond the wall')
     call check%relative(now%joint(1)%penetration_rate, 0.5_dp, 1e-12_dp, 'the penetration rate is known beyond the wall')
-    call put_pin(scene, y, [0.0_dp, -1.0_dp], [0.0_dp, 0.0_dp])
-    call scene%evaluate(0.0_dp, y, now, inside)
-    call check%that(.not. inside, 'the state is not defined if the rod is too short')
+    call set_pin(scene, y, [0.0_dp, -1.0_dp], [0.0_dp, 0.0_dp])
+    call scene%evaluate(0.0_dp, y, now, in_domain)
+    call check%that(.not. in_domain, 'the state is not defined if the rod is too short')
     call check%relative(now%motion%crank_angle, 0.4_dp, 1e-15_dp, 'the crank angle is known if the rod is too short')
   end subroutine outside_the_pin_is_known
 

@@ -1,15 +1,15 @@
 !> Contacts that begin slowly or exist at the start: the restitution of very slow impacts, a pin at rest in its bearing, the start
 !> in contact and exactly at the wall.
 module test_slow_contact
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: piston_pin
   use checks, only: checks_t
-  use gudgeon_bearing, only: bearing_t
+  use bearing_size, only: bearing_t
   use hertz_sphere, only: hertz_sphere_t
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use contact_law, only: contact_law_t
   use laws, only: contact_law_of
-  use gudgeon_scene, only: event_contact_begins
+  use scene_problem, only: event_contact_begins
   use free_impact, only: speed_given_back, exact_restitution
   use collecting_sink, only: trace_t, run_case, column
   implicit none

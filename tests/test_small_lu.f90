@@ -1,6 +1,6 @@
 !> Small dense systems that need row exchanges, real and complex.
 module test_small_lu
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use small_lu, only: decompose, solve
   implicit none

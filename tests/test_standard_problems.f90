@@ -1,13 +1,13 @@
 !> Some problems of the standard battery: the error at the end is proportional to the tolerance; runs in threads give identical
 !> results; rejected steps change nothing; the interpolant is as accurate as the steps. (The whole battery:
-!> scripts/compare_adams.sh.)
+!> scripts/bench/compare_adams.sh.)
 module test_standard_problems
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use ode_method, only: step_done, limit_stability
   use ode_problem, only: ode_problem_t, step_admitted, step_too_deep
   use adams, only: adams_t
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
+  use ode_solver, only: integrate, silent_observer_t, integration_done
   use standard_problems, only: standard_problem_t, new_standard_problem, standard_settings, number_of
   implicit none
   private
@@ -29,7 +29,7 @@ contains
     call interpolants(check)
   end subroutine run_test_standard_problems
 
-  !> The solution at the end of a problem, integrated in 80 bits (scripts/compare_adams.sh); B5, E2, E3, F1 and F2 agree with
+  !> The solution at the end of a problem, integrated in 80 bits (scripts/bench/compare_adams.sh); B5, E2, E3, F1 and F2 agree with
   !> DETEST.
   pure function end_of(name) result(y)
     character(len=*), intent(in) :: name

@@ -1,6 +1,6 @@
 !> The indices of the owners' components in the state vector.
 module test_state_layout
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
   use state_layout, only: layout_t, coordinates_t, slice_t
   implicit none

@@ -1,13 +1,13 @@
 !> First-order states in addition to positions, with all integrators.
 module test_states
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use adams, only: adams_t
-  use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
+  use ode_methods, only: new_method
+  use ode_solver, only: integrate, silent_observer_t, integration_done
   implicit none
   private
   public :: run_test_states
@@ -33,14 +33,14 @@ contains
     call order_of_radau(check)
   end subroutine run_test_states
 
-  pure subroutine derivatives(self, t, y, dydt, inside)
+  pure subroutine derivatives(self, t, y, dydt, in_domain)
     class(maxwell_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     associate (unused => t)
     end associate
-    inside = .true.
+    in_domain = .true.
     dydt(1) = y(2)
     dydt(2) = y(3) - y(1)
     dydt(3) = (y(1) - y(3))/self%tau

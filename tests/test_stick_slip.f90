@@ -1,13 +1,13 @@
 !> A mass pulled over a dry floor by a spring: stick-slip under every friction law, by the program's integrators.
 module test_stick_slip
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use friction_law, only: friction_law_t
   use bristle_law, only: bristle_law_t
   use ode_method, only: ode_method_t
-  use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
+  use ode_methods, only: new_method
+  use ode_solver, only: integrate, silent_observer_t, integration_done
   use collecting_sink, only: load_table
   use laws, only: friction_law_of
   use belt_problem, only: belt_t, new_belt, mass, spring, draw_speed, load

@@ -16,25 +16,30 @@ from contextlib import redirect_stderr
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(TOP / "scripts"))
+sys.path.insert(0, str(TOP / "scripts" / "bench"))
 
-from gudgeon_plots.environment import use_virtual_environment  # noqa: E402
+from measured import use_virtual_environment
 
-use_virtual_environment(studies=True)
+use_virtual_environment()
 
-import matplotlib.colors  # noqa: E402
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-import pandas as pd  # noqa: E402
-from scipy.integrate import solve_ivp  # noqa: E402
+import matplotlib.colors
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from gudgeon import (
+    names,
+    sensitivity,
+    study,
+)
+from gudgeon.plots import contact_laws as contact_study
+from gudgeon.plots import studies as study_pictures
+from gudgeon.program import release_program
+from gudgeon.results import MissingResult
+from gudgeon.sensitivity import Output
+from gudgeon.study import Parameter, Runs
+from scipy.integrate import solve_ivp
 
-from gudgeon_plots import contact_study, names, sensitivity, study, study_pictures  # noqa: E402
-from gudgeon_plots.program import release_program  # noqa: E402
-from gudgeon_plots.results import MissingResult  # noqa: E402
-from gudgeon_plots.sensitivity import Output  # noqa: E402
-from gudgeon_plots.study import Parameter, Runs  # noqa: E402
-
-
+PLOT = (sys.executable, "-m", "gudgeon")
 SNAKEMAKE = Path(sys.executable).with_name("snakemake")
 
 
@@ -61,7 +66,7 @@ def ishigami(x: np.ndarray, a: float = 7.0, b: float = 0.1) -> np.ndarray:
 
 
 class Indices(unittest.TestCase):
-    """The analysis of scripts/sensitivity.py, for functions with known indices."""
+    """The analysis of gudgeon-plot sensitivity, for functions with known indices."""
 
     #: Ishigami's function with a = 7, b = 0.1: V1 = (1 + b pi^4/5)^2 / 2, V2 = a^2/8, V13 = 8 b^2 pi^8 / 225.
     PARTS = np.array([0.5 * (1 + 0.1 * np.pi**4 / 5) ** 2, 49 / 8, 8 * 0.01 * np.pi**8 / 225])
@@ -181,7 +186,7 @@ class Files(InDirectory):
 
 
 class Pictures(InDirectory):
-    """The numbers of scripts/plot_study.py."""
+    """The numbers of gudgeon-plot study."""
 
     def test_period(self) -> None:
         def period(*values: float) -> int:
@@ -411,7 +416,7 @@ class Sweeps(InDirectory):
     def test_samples(self) -> None:
         ranges = TOP / "cases" / "studies" / "sensitivity_I.nml"
         for design in ("sobol", "latin_hypercube"):
-            command = (sys.executable, TOP / "scripts" / "sample_study.py", ranges, "--runs", 64, "--design", design, "-o", self.work)
+            command = (*PLOT, "sample", ranges, "--runs", 64, "--design", design, "-o", self.work)
             outcome = self.run_program(*command)
             self.assertEqual(outcome.returncode, 0, outcome.stderr)
             table = (self.work / f"sensitivity_I.{design}.csv").read_bytes()
@@ -452,7 +457,7 @@ class Sweeps(InDirectory):
         rows = ["sobol,z,joint.clearance,ST,0.5,0.1,8,0", "sobol,z,mechanism.gravity,ST,0.21,0.14,8,0"]
         (self.work / "sensitivity_IV.indices.csv").write_text("\n".join([head, *rows]) + "\n")
         outcome = self.run_program(
-            *(sys.executable, TOP / "scripts" / "sensitivity.py", "--table", "--out", self.work),
+            *(*PLOT, "sensitivity", "--table", "--out", self.work),
             *(shipped / "sensitivity_I.nml", shipped / "sensitivity_IV.nml"),
         )
         self.assertEqual(outcome.returncode, 0, outcome.stderr)
@@ -465,7 +470,7 @@ class Sweeps(InDirectory):
 
     def test_sensitivity_of_a_small_study(self) -> None:
         outcome = self.run_program(
-            *(sys.executable, TOP / "scripts" / "sensitivity.py", self.study, "--program", self.program),
+            *(*PLOT, "sensitivity", self.study, "--program", self.program),
             *(
                 "--method",
                 "morris",

@@ -1,11 +1,11 @@
 !> The parts of parameter studies: grids, tables, rows, checksums.
 module test_study
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
-  use gudgeon_errors, only: error_t
-  use gudgeon_checksum, only: checksum_t
+  use error_handling, only: error_t
+  use checksums, only: checksum_t
   use number_text, only: number_writer_t
-  use gudgeon_posix, only: remove_file
+  use posix_files, only: remove_file
   use study_definition, only: study_t
   use study_file, only: read_study
   use study_design, only: study_design_t, new_design

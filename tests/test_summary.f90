@@ -1,11 +1,11 @@
 !> Texts of the summary.
 module test_summary
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: piston_pin
   use checks, only: checks_t
-  use gudgeon_summary, only: build_advice, summary_table, summary_value
+  use run_summary, only: build_advice, summary_table, summary_value
   use case_definition, only: case_t
-  use gudgeon_simulation, only: run_report_t
+  use simulation, only: run_report_t
   use text_tools, only: integer_text
   use joint_places, only: crank_pin
   implicit none
@@ -16,7 +16,7 @@ contains
 
   subroutine run_test_summary(check)
     class(checks_t), intent(inout) :: check
-    call a_status_is_one_field(check, 'done', '"done"')
+    call a_status_is_one_field(check, 'done', 'done')
     call a_status_is_one_field(check, '"a","b', '"""a"",""b"')
     call a_status_is_one_field(check, 'a""', '"a"""""')
     call times_by_method_stand_under_their_phases(check)

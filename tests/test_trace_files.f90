@@ -1,13 +1,13 @@
 !> The files of a running case: they contain exactly what the run has passed to them.
 module test_trace_files
   use, intrinsic :: iso_fortran_env, only: int64
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use trace_row, only: column_list_t, name_length
   use trace_files, only: trace_files_t
   use trace_sink, only: trace_event_t
-  use gudgeon_scene, only: event_contact_begins, event_contact_ends
-  use gudgeon_posix, only: make_directory, remove_file
+  use scene_problem, only: event_contact_begins, event_contact_ends
+  use posix_files, only: make_directory, remove_file
   use checks, only: checks_t
   implicit none
   private
@@ -39,11 +39,11 @@ contains
     type(trace_event_t) :: event
     call files%open(folder//'/a', column_list_t(id=[1, 2, 4], names=names), 12, .true., error)
     call check%that(.not. allocated(error), 'a trace is opened')
-    call files%take_row([1e-3_dp, 2.0_dp, -0.0_dp])
+    call files%accept_row([1e-3_dp, 2.0_dp, -0.0_dp])
     event = trace_event_t(event_contact_begins, 0.5_dp, -1.0_dp, 0.25_dp, 9.0_dp, 9.0_dp, 9.0_dp)
-    call files%take_event(event)
+    call files%accept_event(event)
     event%kind = event_contact_ends
-    call files%take_event(event)
+    call files%accept_event(event)
     call files%close(error)
     call check%that(.not. allocated(error), 'a trace is closed')
     call expect_line(check, 'a.csv', 1, 'time[s],phase[-],gas_force[N]')
@@ -69,7 +69,7 @@ contains
     end do
     call files%open(folder//'/a', column_list_t(id=[(j, j=1, fields)], names=[(names(1), j=1, fields)]), 17, .false., error)
     do i = 1, rows
-      call files%take_row(values(:, i))
+      call files%accept_row(values(:, i))
     end do
     call files%close(error)
     wrong = 0

@@ -1,8 +1,8 @@
 !> Scenes with clearance at both pins, built without case files.
 module test_two_joints
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use checks, only: checks_t
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use chain_motion, only: crank_pin, piston_pin
@@ -10,11 +10,11 @@ module test_two_joints
   use clearance_joint, only: clearance_joint_t
   use state_layout, only: layout_t
   use chain_reactions, only: reactions_t
-  use gudgeon_scene, only: scene_t, evaluation_t, phase_contact
-  use state_making, only: put_contact
+  use scene_problem, only: scene_t, evaluation_t, phase_contact
+  use state_making, only: set_contact
   use ode_method, only: ode_method_t
-  use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, integration_done
+  use ode_methods, only: new_method
+  use ode_solver, only: integrate, integration_done
   use scene_builder, only: build_scene, settings_for
   use joint_watcher, only: joint_watcher_t
   implicit none
@@ -52,7 +52,7 @@ contains
     scene%chain%is_loose = .false.
     do i = 1, size(places)
       joints(i) = scene%joints(1)
-      call joints(i)%put_at(places(i))
+      call joints(i)%set_place(places(i))
       scene%chain%is_loose(places(i)) = .true.
     end do
     call move_alloc(joints, scene%joints)
@@ -85,9 +85,9 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now, start
-    logical :: inside
-    call scene%evaluate(0.0_dp, scene%initial_state(), start, inside)
-    call scene%evaluate(t, y, now, inside)
+    logical :: in_domain
+    call scene%evaluate(0.0_dp, scene%initial_state(), start, in_domain)
+    call scene%evaluate(t, y, now, in_domain)
     energy_residual = (scene%chain%energy(now%motion) - scene%chain%energy(start%motion) - scene%work(y)) &
       /scene%chain%energy(start%motion)
   end function energy_residual
@@ -120,7 +120,7 @@ contains
     type(evaluation_t) :: now
     type(reactions_t) :: r
     real(dp), allocatable :: y(:)
-    logical :: inside
+    logical :: in_domain
     integer :: i
     call make('cases/flores/friction_050.nml', [character(len=long) :: 'mechanism.gravity=9.81'], [piston_pin, crank_pin], &
       case, scene)
@@ -133,8 +133,8 @@ contains
         y(at%rate:at%rate + 1) = [0.2_dp, -0.3_dp]*i
       end associate
     end do
-    call scene%evaluate(1e-3_dp, y, now, inside)
-    call check%that(inside .and. now%joint(1)%normal_force > 10 .and. now%joint(2)%normal_force > 10, &
+    call scene%evaluate(1e-3_dp, y, now, in_domain)
+    call check%that(in_domain .and. now%joint(1)%normal_force > 10 .and. now%joint(2)%normal_force > 10, &
       'both pins have a normal force')
     r = scene%chain%reactions(now%motion, now%accelerations, now%loads)
     call check%close_to(maxval(abs(r%pin + now%joint(1)%contact))/norm2(r%pin), 0.0_dp, 1e-10_dp, 'F5, F6 with two joints')
@@ -184,7 +184,7 @@ contains
     real(dp), allocatable :: y(:), f(:)
     real(dp), parameter :: dt = 1e-9_dp
     real(dp) :: worst
-    logical :: inside
+    logical :: in_domain
     integer :: i, k
     character(len=long) :: overrides(4)
     do k = 1, 2
@@ -194,16 +194,16 @@ contains
       y = scene%initial_state()
       allocate (f(scene%n))
       do i = 1, 2
-        call put_contact(scene%joints(i), 1.0_dp, 0)
+        call set_contact(scene%joints(i), 1.0_dp, 0)
         associate (at => scene%joints(i)%at)
           y(at%position:at%position + 1) = 1.02_dp*case%joints(piston_pin)%clearance*[cos(1.3_dp*i), sin(1.3_dp*i)]
           y(at%rate:at%rate + 1) = [0.4_dp*cos(2.1_dp*i), 0.3_dp*sin(1.7_dp*i)]
         end associate
       end do
-      call scene%derivatives(1e-3_dp, y, f, inside)
-      call scene%evaluate(1e-3_dp, y, now, inside)
-      call scene%evaluate(1e-3_dp + dt, y + dt*f, ahead, inside)
-      call scene%evaluate(1e-3_dp - dt, y - dt*f, behind, inside)
+      call scene%derivatives(1e-3_dp, y, f, in_domain)
+      call scene%evaluate(1e-3_dp, y, now, in_domain)
+      call scene%evaluate(1e-3_dp + dt, y + dt*f, ahead, in_domain)
+      call scene%evaluate(1e-3_dp - dt, y - dt*f, behind, in_domain)
       worst = maxval(abs(ahead%joint%sliding_speed - behind%joint%sliding_speed))/(2*dt)
       call check%that(minval(abs(now%joint%friction_force)) > 1, 'both sticking pins have friction forces')
       call check%close_to(worst, 0.0_dp, 1e-2_dp, 'both pins stick: change of the sliding speeds [m/s2]')

@@ -1,9 +1,9 @@
 !> Units in case files: their values against decimals computed elsewhere, what the syntax allows, what is refused and how, and that
 !> a case with units is the case in SI.
 module test_units
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
-  use gudgeon_parameters, only: key_t, real_kind
+  use kinds, only: dp
+  use error_handling, only: error_t
+  use model_parameters, only: key_t, real_kind
   use joint_places, only: n_places
   use case_definition, only: case_t
   use case_file, only: parse_case

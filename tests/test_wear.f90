@@ -2,9 +2,9 @@
 !> distribution of a run against an independent program and against quadratures of its trace; runs with other joints, films and
 !> members; the motion with and without wear.
 module test_wear
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: pi, two_pi
+  use bearing_size, only: bearing_t
   use checks, only: checks_t
   use joint_places, only: name_prefix
   use archard_wear, only: worn_surface_t, of_pin, of_bore

@@ -1,9 +1,9 @@
 !> The worn bore: its force against the closed form of a round one and against the gradient of an energy from another quadrature;
 !> wear under a constant load against the table of an independent implementation; runs whose bore changes, and errors in cases.
 module test_worn_bore
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: two_pi
+  use bearing_size, only: bearing_t
   use checks, only: checks_t
   use archard_wear, only: worn_surface_t, of_bore
   use worn_bore, only: worn_bore_t, touching_cells_t

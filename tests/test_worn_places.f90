@@ -2,10 +2,10 @@
 !> arcs of contact and in the frames of bodies that turn, bend and tilt; and the motion, by all methods, with and without wear.
 module test_worn_places
   use, intrinsic :: iso_fortran_env, only: int64
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi
-  use gudgeon_bearing, only: bearing_t
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: pi, two_pi
+  use bearing_size, only: bearing_t
+  use error_handling, only: error_t
   use checks, only: checks_t
   use archard_wear, only: of_pin, of_bore
   use contact_law, only: contact_law_t

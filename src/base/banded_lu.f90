@@ -4,7 +4,7 @@
 !> stay at most twice as large as the largest element of the matrix (Wilkinson 1961), half as many diagonals are filled as with row
 !> exchanges, and a third of the work is done. Two columns are eliminated in each pass, which halves the traffic with the cache.
 module banded_lu
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: decompose_band, solve_band

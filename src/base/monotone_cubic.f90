@@ -4,7 +4,7 @@
 !> Value and first derivative are continuous; the second derivative is discontinuous at the points. Between two points the function
 !> is monotone, so that its largest value is that of a point.
 module monotone_cubic
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: monotone_cubic_t, new_monotone_cubic, new_periodic_cubic
@@ -42,7 +42,7 @@ contains
       slope(0) = end_slope(width(1), width(2), secant(1), secant(2))
       slope(n) = end_slope(width(n), width(n - 1), secant(n), secant(n - 1))
     end if
-    call take_points(curve, x, y, slope)
+    call set_points(curve, x, y, slope)
   end function new_monotone_cubic
 
   !> The periodic curve through (x, y), at least two points within less than a period, x increasing; y(x + period) = y(x).
@@ -60,7 +60,7 @@ contains
       slope(i) = inner_slope(width(i), width(i + 1), secant(i), secant(i + 1))
     end do
     slope(n) = slope(0)
-    call take_points(curve, [x, x(0) + period], [y, y(0)], slope)
+    call set_points(curve, [x, x(0) + period], [y, y(0)], slope)
     curve%period = period
   end function new_periodic_cubic
 
@@ -84,7 +84,7 @@ contains
     if (abs(slope) > 2*abs(secant)) slope = 2*secant
   end function end_slope
 
-  pure subroutine take_points(curve, x, y, slope)
+  pure subroutine set_points(curve, x, y, slope)
     type(monotone_cubic_t), intent(out) :: curve
     real(dp), intent(in) :: x(0:), y(0:), slope(0:)
     real(dp) :: width, secant
@@ -108,7 +108,7 @@ contains
       end do
       curve%place(k) = i
     end do
-  end subroutine take_points
+  end subroutine set_points
 
   !> Number of the equal part that contains x.
   pure integer function part_of(curve, x)
@@ -123,23 +123,23 @@ contains
     real(dp), intent(in) :: x
     integer, intent(out) :: i
     real(dp), intent(out) :: along
-    real(dp) :: inside
+    real(dp) :: in_domain
     integer :: k, last, middle
-    inside = x
-    if (self%period > 0) inside = x - self%period*floor((x - self%first)/self%period)
-    inside = min(max(inside, self%first), self%last)
-    k = part_of(self, inside)
+    in_domain = x
+    if (self%period > 0) in_domain = x - self%period*floor((x - self%first)/self%period)
+    in_domain = min(max(in_domain, self%first), self%last)
+    k = part_of(self, in_domain)
     i = self%place(k)
     last = self%place(min(k + 1, ubound(self%place, 1)))
     do while (i < last)
       middle = (i + last + 1)/2
-      if (self%point(middle) <= inside) then
+      if (self%point(middle) <= in_domain) then
         i = middle
       else
         last = middle - 1
       end if
     end do
-    along = inside - self%point(i)
+    along = in_domain - self%point(i)
   end subroutine find
 
   !> Value at x: on a periodic curve anywhere, otherwise beyond the ends that at the nearer end.

@@ -9,7 +9,7 @@
 module number_text
   use, intrinsic :: iso_fortran_env, only: int64
   use, intrinsic :: ieee_arithmetic, only: ieee_is_nan
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use text_tools, only: whole_number, integer_text
   implicit none
   private
@@ -153,9 +153,9 @@ contains
           at = at - int(shifta(transfer(values(i), bits), 63))
         end if
         if (self%digits < 17) then
-          call put_sixteen(whole*self%to_sixteen, text(at + 1:at + 18))
+          call write_sixteen(whole*self%to_sixteen, text(at + 1:at + 18))
         else
-          call put_sixteen(whole/10, text(at + 1:at + 18))
+          call write_sixteen(whole/10, text(at + 1:at + 18))
           text(at + 18:at + 18) = achar(48 + int(mod(whole, 10_int64)))
         end if
         at = at + self%digits + 1
@@ -172,7 +172,7 @@ contains
 
   !> Write sixteen digits with a point after the first, and a blank, from the number as a fraction of 53 bits that is too large by
   !> less than 1.1 units of the last bit. Its whole part is the first digit; each multiplication by a thousand gives three more.
-  pure subroutine put_sixteen(number, text)
+  pure subroutine write_sixteen(number, text)
     integer(int64), value :: number
     character(len=18), intent(inout) :: text
     integer(wide), parameter :: scale = 5192296858534827629_int64   !! 2**112/10**15, rounded up
@@ -188,7 +188,7 @@ contains
       fraction = 1000*iand(fraction, mask)
       text(i:i + 3) = triples(shiftr(fraction, 53))
     end do
-  end subroutine put_sixteen
+  end subroutine write_sixteen
 
   !> Append a real in the form of `append` with a formatted write. Negative zero keeps its sign.
   pure subroutine append_formatted(line, used, value, digits)

@@ -75,7 +75,7 @@ contains
     shown = ''
     i = 1
     do while (i <= len(text))
-      call take_character(text, i, code, bytes)
+      call read_character(text, i, code, bytes)
       if (any(first_invisible <= code .and. code <= last_invisible)) bytes = 0
       if (len(shown) + max(bytes, 4) > limit .and. len(shown) + len(text) - i + 1 > limit) then
         shown = shown//'...'
@@ -98,7 +98,7 @@ contains
     clean = .true.
     i = 1
     do while (i <= len(text) .and. clean)
-      call take_character(text, i, code, bytes)
+      call read_character(text, i, code, bytes)
       clean = bytes > 0
       i = i + bytes
     end do
@@ -106,7 +106,7 @@ contains
 
   !> The code of the UTF-8 character that begins at `i`, and its number of bytes; 0 bytes if there is none or it is a control
   !> character.
-  pure subroutine take_character(text, i, code, bytes)
+  pure subroutine read_character(text, i, code, bytes)
     character(len=*), intent(in) :: text
     integer, intent(in) :: i
     integer, intent(out) :: code, bytes
@@ -123,7 +123,7 @@ contains
       code = 64*code + next
     end do
     if (code >= least(n) .and. code <= 1114111 .and. code/2048 /= 27) bytes = n   ! 27: halves of a pair of UTF-16
-  end subroutine take_character
+  end subroutine read_character
 
   !> The word of a list that is most similar to a misspelt one, or else the shortest that begins with it; empty if there is none.
   pure function nearest_word(word, list) result(nearest)

@@ -1,7 +1,7 @@
 !> Units of numbers in case files, settings, studies and the heads of tables: SI and what engineers write beside it.
 module units
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use text_tools, only: lowercase, nearest_word, replaced, integer_text, whole_number
   implicit none
   private

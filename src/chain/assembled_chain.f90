@@ -2,14 +2,14 @@
 !> chains that have none. Additional coordinates (modes of an elastic rod, the flywheel angle, a piston that moves across its bore)
 !> are additional columns of the velocity maps below.
 module assembled_chain
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t, bearing_moment
   use loose_piston, only: pin_eccentricity
-  use gudgeon_assembly, only: equations_t, body_t, most_coordinates
+  use body_assembly, only: equations_t, body_t, most_coordinates
   use elastic_rod, only: elastic_rod_t
-  use elastic_rod_body, only: put_own_equations, put_elastic_map, put_chord
+  use elastic_rod_body, only: set_own_equations, set_elastic_map, set_chord
   implicit none
   private
   public :: accelerate_assembled
@@ -192,9 +192,9 @@ contains
     type(body_t), intent(out) :: body
     call body%begin(3 + elastic_rod%n, at%n)
     call move_big_end(bodies, motion, at, body)
-    call put_elastic_map(elastic_rod, bodies%crank%length, motion, at%pin, at%shape, body)
+    call set_elastic_map(elastic_rod, bodies%crank%length, motion, at%pin, at%shape, body)
     call move_by_bore(motion, at, 1/(motion%chord*motion%cos_rod), body)
-    call put_own_equations(elastic_rod, bodies, loads, motion, body)
+    call set_own_equations(elastic_rod, bodies, loads, motion, body)
   end subroutine make_elastic_rod
 
   !> Terms of a piston in its guide due to the change of length of an elastic rod.
@@ -205,7 +205,7 @@ contains
     type(body_t), intent(inout) :: piston
     real(dp) :: by_chord(most_coordinates), bias
     by_chord = 0
-    call put_chord(elastic_rod, motion, at%shape, by_chord, bias)
+    call set_chord(elastic_rod, motion, at%shape, by_chord, bias)
     piston%map(1, :at%n) = piston%map(1, :at%n) + motion%cos_rod*by_chord(:at%n)
     piston%bias(1) = piston%bias(1) + motion%cos_rod*bias - 2*motion%chord_rate*motion%sin_rod*motion%rod_speed
   end subroutine stretch_to_piston

@@ -3,7 +3,7 @@
 !> x is vertical, upwards, along the cylinder axis; y is horizontal; angles are positive from x towards y. q is the crank angle from
 !> +x. The rod angle A is measured in the opposite sense: the angular speed of the rod is -dA/dt.
 module chain_bodies
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: motion_t
   implicit none
   private

@@ -1,6 +1,6 @@
 !> Loads on the bodies of the chain other than gravity and the drive.
 module chain_loads
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: n_pins
   implicit none
   private
@@ -8,8 +8,8 @@ module chain_loads
 
   !> Loads of the pins, of the gas and of the bore. The force of an ideal pin is found together with the accelerations.
   type :: loads_t
-    real(dp) :: force(2, n_pins)    !! (:, pin): force of the pin's joint on its journal [N]; the opposite force acts on the bearing
-    real(dp) :: moment(n_pins)  !! moment on the journal about its centre, positive from x to y [N m]; for the bearing see
+    real(dp) :: force(2, n_pins)    !! (:, pin): force of the pin's joint on its pin [N]; the opposite force acts on the bearing
+    real(dp) :: moment(n_pins)  !! moment on the pin about its centre, positive from x to y [N m]; for the bearing see
                                 !! `bearing_moment`
     real(dp) :: axial_force         !! on the piston along -x: force of the gas minus friction of the bore [N]
     real(dp) :: bore_force  !! force of the bore on a piston with clearance, along y [N]; that of an ideal guide is a reaction
@@ -26,7 +26,7 @@ contains
     force_size = sqrt(force(1)**2 + force(2)**2)   ! without the scaling of norm2
   end function force_size
 
-  !> Moment on the bearing about its centre [N m], from the eccentricity [m], the force [N] on the journal and the moment on it.
+  !> Moment on the bearing about its centre [N m], from the eccentricity [m], the force [N] on the pin and the moment on it.
   !> Forces and moments on the two bodies balance about every point, so that a joint does not change their total angular momentum.
   pure real(dp) function bearing_moment(eccentricity, force, moment)
     real(dp), intent(in) :: eccentricity(2), force(2), moment

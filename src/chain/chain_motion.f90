@@ -2,7 +2,7 @@
 !> 3.70-3.72).
 !>
 !> The coordinates are the crank angle q and, for each pin with clearance, its eccentricity: c at the crank pin, e at the piston
-!> pin. It is the vector from the centre of the bearing to the centre of the journal (crank pin or piston pin). An ideal pin has no
+!> pin. It is the vector from the centre of the bearing to the centre of the pin. An ideal pin has no
 !> coordinate. With o = c + e everything else follows in closed form:
 !>
 !>     sin A = (R sin q - o_y)/L,    A' = (R cos q q' - o_y')/(L cos A)
@@ -14,7 +14,7 @@
 !> the position of the centre of mass relative to the pin's bearing, that bearing has the offset y - p_y, and o = c + e + (0, y -
 !> p_y).
 module chain_motion
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: motion_t, tilting_t, accelerations_t, crank_pin, piston_pin, n_pins, most_shapes
@@ -22,8 +22,8 @@ module chain_motion
   public :: turn_crank, follow_rod, follow_piston
 
   !> The pins of the chain.
-  integer, parameter :: crank_pin = 1    !! journal on the crank, bearing in the rod
-  integer, parameter :: piston_pin = 2   !! journal on the rod, bearing in the piston
+  integer, parameter :: crank_pin = 1    !! pin on the crank, bearing in the rod
+  integer, parameter :: piston_pin = 2   !! pin on the rod, bearing in the piston
   integer, parameter :: n_pins = 2
 
   !> The bodies as they turn at the pins; an elastic rod turns differently at its two ends.

@@ -1,6 +1,6 @@
 !> Reactions in the joints and on the frame, from the accelerations (Reis 2013, 3.83, with parentheses restored).
 module chain_reactions
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin
   use chain_bodies, only: bodies_t
   use chain_loads, only: loads_t, bearing_moment

@@ -7,7 +7,7 @@
 !>     Q_A = -F_x L sin A - F_y L cos A - M_pin + gravity
 !>     m_piston x'' = -F_gas - F_x + m_piston g_x
 module crank_rod
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t

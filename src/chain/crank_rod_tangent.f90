@@ -1,7 +1,7 @@
 !> Derivatives of the equations of motion of crank with rod and piston with respect to the state, for implicit integration: the
 !> tangent of `follow_rod` and of `accelerate_crank_rod`.
 module crank_rod_tangent
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, piston_pin
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t

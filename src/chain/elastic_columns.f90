@@ -6,13 +6,13 @@ module elastic_columns
   use elastic_members, only: elastic_members_t
   implicit none
   private
-  public :: put_elastic_columns
+  public :: add_elastic_columns
 
 contains
 
-  !> Put the columns of elastic members into a row. Rates and accelerations of the rod's shapes, and the flywheel's acceleration,
+  !> Add the columns of elastic members to a row. Rates and accelerations of the rod's shapes, and the flywheel's acceleration,
   !> are written only on request.
-  pure subroutine put_elastic_columns(elastic, motion, accelerations, row)
+  pure subroutine add_elastic_columns(elastic, motion, accelerations, row)
     type(elastic_members_t), intent(in) :: elastic
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(in) :: accelerations
@@ -21,16 +21,16 @@ contains
     if (allocated(elastic%rod)) then
       associate (rod => elastic%rod)
         do i = 1, rod%n_bending + rod%n_axial
-          call row%put(shape_name(rod, i)//'[m]', motion%shape(i), shape_meaning(rod, i))
+          call row%add(shape_name(rod, i)//'[m]', motion%shape(i), shape_meaning(rod, i))
         end do
-        call row%put('rod_mid_deflection[m]', rod%mid_deflection(motion%shape), &
+        call row%add('rod_mid_deflection[m]', rod%mid_deflection(motion%shape), &
           'bending deflection of the rod midway between its pins')
-        call row%put('rod_strain_energy[J]', rod%strain_energy(motion), 'elastic energy stored in the rod')
+        call row%add('rod_strain_energy[J]', rod%strain_energy(motion), 'elastic energy stored in the rod')
         if (row%is_naming .or. row%wants(2*(rod%n_bending + rod%n_axial))) then
           do i = 1, rod%n_bending + rod%n_axial
-            call row%put_on_request(shape_name(rod, i)//'_rate[m/s]', motion%shape_rate(i), &
+            call row%add_on_request(shape_name(rod, i)//'_rate[m/s]', motion%shape_rate(i), &
               'time derivative of '//shape_name(rod, i))
-            call row%put_on_request(shape_name(rod, i)//'_acceleration[m/s2]', accelerations%shape(i), &
+            call row%add_on_request(shape_name(rod, i)//'_acceleration[m/s2]', accelerations%shape(i), &
               'second time derivative of '//shape_name(rod, i))
           end do
         else
@@ -39,11 +39,11 @@ contains
       end associate
     end if
     if (.not. allocated(elastic%crankshaft)) return
-    call row%put('crankshaft_twist[rad]', motion%flywheel_angle - motion%crank_angle, 'flywheel angle less crank angle')
-    call row%put('crankshaft_moment[N.m]', elastic%crankshaft%moment(motion), 'moment of the elastic shaft on the crank')
-    call row%put('flywheel_speed[rad/s]', motion%flywheel_speed, 'angular velocity of the flywheel')
-    call row%put_on_request('flywheel_acceleration[rad/s2]', accelerations%flywheel, 'angular acceleration of the flywheel')
-  end subroutine put_elastic_columns
+    call row%add('crankshaft_twist[rad]', motion%flywheel_angle - motion%crank_angle, 'flywheel angle less crank angle')
+    call row%add('crankshaft_moment[N.m]', elastic%crankshaft%moment(motion), 'moment of the elastic shaft on the crank')
+    call row%add('flywheel_speed[rad/s]', motion%flywheel_speed, 'angular velocity of the flywheel')
+    call row%add_on_request('flywheel_acceleration[rad/s2]', accelerations%flywheel, 'angular acceleration of the flywheel')
+  end subroutine add_elastic_columns
 
   !> The name of a shape's column.
   pure function shape_name(rod, i) result(name)

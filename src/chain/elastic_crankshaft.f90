@@ -5,8 +5,8 @@
 !> The moment M_s acts on the crank in place of the drive. If the speed is prescribed, it is that of the flywheel, and the crank
 !> oscillates about it.
 module elastic_crankshaft
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: has_parameters_t, parameter_list_t
   use chain_motion, only: motion_t
   use chain_bodies, only: drive_t, undriven
   implicit none

@@ -1,6 +1,6 @@
 !> The elastic members of a chain: their states, their contributions to the equations of motion, and their energy.
 module elastic_members
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use state_layout, only: layout_t, coordinates_t
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, most_shapes
@@ -24,10 +24,10 @@ module elastic_members
     real(dp) :: start_speed = 0                 !! [rad/s]
   contains
     procedure :: claim
-    procedure :: put_start
+    procedure :: set_start
     procedure :: declare
     procedure :: read_state
-    procedure :: put_rates
+    procedure :: set_rates
     procedure :: driven_speed
     procedure :: n_shapes
     procedure :: damping_power
@@ -66,15 +66,15 @@ contains
       call layout%claim_positions(1, 1.0_dp, crank_speed, self%flywheel, grows=.true.)
   end subroutine claim
 
-  !> Put the initial state into the state vector: the rod is straight and has its nominal length, the shaft is not twisted, and
+  !> Set the initial state in the state vector: the rod is straight and has its nominal length, the shaft is not twisted, and
   !> their rates are 0.
-  pure subroutine put_start(self, y)
+  pure subroutine set_start(self, y)
     class(elastic_members_t), intent(in) :: self
     real(dp), intent(inout) :: y(:)
     if (self%flywheel%n == 0) return
     y(self%flywheel%position) = self%start_angle
     y(self%flywheel%rate) = self%start_speed
-  end subroutine put_start
+  end subroutine set_start
 
   !> Declare the state of the members, at the angle and the speed of the crank.
   subroutine declare(self, list, t, y, crank_angle, crank_speed)
@@ -132,7 +132,7 @@ contains
     end if
   end subroutine read_state
 
-  pure subroutine put_rates(self, motion, accelerations, dydt)
+  pure subroutine set_rates(self, motion, accelerations, dydt)
     class(elastic_members_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(in) :: accelerations
@@ -145,7 +145,7 @@ contains
     if (self%flywheel%n == 0) return
     dydt(self%flywheel%position) = motion%flywheel_speed
     dydt(self%flywheel%rate) = accelerations%flywheel
-  end subroutine put_rates
+  end subroutine set_rates
 
   !> Angular speed of the part on which the drive acts: the flywheel of an elastic crankshaft, or the crank [rad/s].
   pure real(dp) function driven_speed(self, motion)

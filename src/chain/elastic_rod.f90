@@ -19,9 +19,9 @@
 !> Mass and moment of inertia are those of the rod in &mechanism. The elastic part is a uniform shank of mass m_b; point masses at
 !> the two pins give the rod its total mass and its centre of mass along the chord.
 module elastic_rod
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  use kinds, only: dp
+  use constants, only: pi
+  use model_parameters, only: has_parameters_t, parameter_list_t
   use chain_motion, only: motion_t, most_shapes, crank_pin, piston_pin, body_big_end, body_small_end
   use chain_bodies, only: rod_t
   use small_cholesky, only: factorise_cholesky, solve_cholesky

@@ -10,15 +10,15 @@
 !>
 !> and Lagrange's equations of T and of V = sum K eta^2/2 + sum ka a^2/2 - gravity . (m B + g) give mass matrix and loads.
 module elastic_rod_body
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins
   use chain_bodies, only: bodies_t
   use chain_loads, only: loads_t, unloaded, bearing_moment
-  use gudgeon_assembly, only: body_t
+  use body_assembly, only: body_t
   use elastic_rod, only: elastic_rod_t, most_of_a_kind
   implicit none
   private
-  public :: rod_terms_t, find_terms, find_loads, put_own_equations, put_elastic_map, put_chord
+  public :: rod_terms_t, find_terms, find_loads, set_own_equations, set_elastic_map, set_chord
   public :: elastic_rod_energy, elastic_end_forces
 
   !> Terms that mass matrix, loads and energy have in common, in the rod's axes e1, e2.
@@ -127,7 +127,7 @@ contains
   end subroutine find_loads
 
   !> Mass matrix and loads of a body, in the rod's velocities.
-  pure subroutine put_own_equations(rod, bodies, loads, motion, body)
+  pure subroutine set_own_equations(rod, bodies, loads, motion, body)
     type(elastic_rod_t), intent(in) :: rod
     type(bodies_t), intent(in) :: bodies
     type(loads_t), intent(in) :: loads
@@ -161,7 +161,7 @@ contains
         body%mass(4 + n:3 + n + na, 3 + n + j) = rod%axial_mass(:na, j)
       end do
     end associate
-  end subroutine put_own_equations
+  end subroutine set_own_equations
 
   !> Couple one velocity with B_x' and B_y'.
   pure subroutine couple(i, with, mass)
@@ -173,7 +173,7 @@ contains
   end subroutine couple
 
   !> Velocity map from the chain's coordinates to the rod: the chord's angle from l sin A = R sin q - o_y, and the shapes.
-  pure subroutine put_elastic_map(rod, crank_length, motion, pin_at, shape_at, body)
+  pure subroutine set_elastic_map(rod, crank_length, motion, pin_at, shape_at, body)
     type(elastic_rod_t), intent(in) :: rod
     real(dp), intent(in) :: crank_length       !! R [m]
     type(motion_t), intent(in) :: motion
@@ -185,7 +185,7 @@ contains
     associate (sa => motion%sin_rod, ca => motion%cos_rod)
       per_arm = 1/(motion%chord*ca)
       chord_map = 0
-      call put_chord(rod, motion, shape_at, chord_map, chord_bias)
+      call set_chord(rod, motion, shape_at, chord_map, chord_bias)
       body%map(3, shape_at:shape_at + rod%n - 1) = -sa*per_arm*chord_map(shape_at:shape_at + rod%n - 1)
       body%map(3, 1) = crank_length*motion%cos_crank*per_arm
       do pin = 1, n_pins
@@ -197,10 +197,10 @@ contains
         body%map(3 + k, shape_at + k - 1) = 1
       end do
     end associate
-  end subroutine put_elastic_map
+  end subroutine set_elastic_map
 
   !> Map from the rates of the shapes to l', and l'' for vanishing accelerations of the shapes.
-  pure subroutine put_chord(rod, motion, shape_at, map, bias)
+  pure subroutine set_chord(rod, motion, shape_at, map, bias)
     type(elastic_rod_t), intent(in) :: rod
     type(motion_t), intent(in) :: motion
     integer, intent(in) :: shape_at
@@ -211,7 +211,7 @@ contains
       if (rod%n_axial > 0) map(shape_at + n) = 1
       bias = -2*sum(rod%shortening(:n)*motion%shape_rate(:n)**2)
     end associate
-  end subroutine put_chord
+  end subroutine set_chord
 
   !> Kinetic energy, potential energy (0 at the crank axis) and elastic energy of the rod [J].
   pure real(dp) function elastic_rod_energy(rod, bodies, motion) result(energy)
@@ -248,7 +248,7 @@ contains
     type(body_t) :: body
     real(dp) :: own(3 + rod%n), radius(2)
     call body%begin(3 + rod%n, 1)
-    call put_own_equations(rod, bodies, unloaded, motion, body)
+    call set_own_equations(rod, bodies, unloaded, motion, body)
     radius = bodies%crank%length*[motion%cos_crank, motion%sin_crank]
     own(1:2) = [-radius(2), radius(1)]*accelerations%crank - radius*motion%crank_speed**2 - accelerations%pin(:, crank_pin)
     own(3) = accelerations%rod

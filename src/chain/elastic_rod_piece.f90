@@ -2,7 +2,7 @@
 !> clearance. The shapes of the rod are eliminated first: their own mass matrix is constant, and few terms couple them with the
 !> motion of the rod's axes. The remaining equations have the order of those of a rigid rod.
 module elastic_rod_piece
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t

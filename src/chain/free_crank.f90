@@ -1,6 +1,6 @@
 !> The crank alone, for a crank pin with clearance.
 module free_crank
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: motion_t, crank_pin
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t

@@ -7,7 +7,7 @@
 !> G is the rod's centre of mass, B the centre of its big end, S that of the piston pin. J is the force on the crank pin; the
 !> opposite force acts at B. F is the force on the piston pin, at S.
 module free_rod
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t, bearing_moment

@@ -1,6 +1,6 @@
 !> Closed form for a chain with two ideal pins, which has one degree of freedom.
 module ideal_chain
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t

@@ -1,21 +1,21 @@
 !> The places of joints in the chain. A joint at a further place is a line in `places`.
 module joint_places
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: crank_pin, piston_pin, body_crank, body_big_end, body_small_end, body_piston
   implicit none
   private
   public :: place_t, places, n_places, in_order, name_prefix, joint_group, crank_pin, piston_pin
 
-  !> One place: its names, and how its joint enters the chain. The eccentricity of the pin in its bearing is that of the pin of the
-  !> chain, the joint's force on its journal acts on the body nearer to the crank, and the opposite force on the other; the other
-  !> way round if the journal belongs to the body farther from the crank.
+  !> One place: its names, and how its joint enters the chain. The eccentricity of the pin in its bearing is that of the chain
+  !> at this pin, the joint's force on its pin acts on the body nearer to the crank, and the opposite force on the other; the other
+  !> way round if the pin belongs to the body farther from the crank.
   type :: place_t
     character(len=10) :: name      !! in cases and results
     character(len=11) :: prefix    !! of the names of its quantities
     character(len=10) :: title     !! in messages
     integer :: pin                 !! of the chain, where it enters: crank_pin or piston_pin
-    integer :: journal, bearing    !! bodies with which they turn: see chain_motion
-    real(dp) :: sense              !! 1: the journal belongs to the body nearer to the crank; -1: to the other
+    integer :: pin_body, bearing   !! bodies with which they turn: see chain_motion
+    real(dp) :: sense              !! 1: the pin belongs to the body nearer to the crank; -1: to the other
   end type place_t
 
   integer, parameter :: n_places = 2

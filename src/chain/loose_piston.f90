@@ -9,7 +9,7 @@
 !>
 !> F is the force on the piston pin; the opposite force acts at the pin's bearing, at -p from the centre of mass c.
 module loose_piston
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, piston_pin, body_piston
   use chain_bodies, only: bodies_t, piston_t
   use chain_loads, only: loads_t, bearing_moment

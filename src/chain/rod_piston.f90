@@ -7,7 +7,7 @@
 !>     (m_rod + m_piston) x'' + m_rod k A'' = m_rod h A'^2 + B_x - F_gas + (m_rod + m_piston) g_x
 !>     m_rod k x'' + (I_rod + m_rod (h^2 + k^2)) A'' = B_x L sin A + B_y L cos A - M_b + m_rod (g_x k - g_y h)
 module rod_piston
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t, bearing_moment

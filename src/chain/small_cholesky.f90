@@ -1,6 +1,6 @@
 !> Cholesky factorisation of small symmetric positive definite matrices, without pivoting.
 module small_cholesky
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: factorise_cholesky, solve_cholesky

@@ -3,7 +3,7 @@
 !> The prescribed speed changes within the time T according to w = w_0 + (w_1 - w_0) s^3 (10 - 15 s + 6 s^2), s = t/T, so that its
 !> acceleration and the rate of its acceleration are 0 at both ends.
 module varying_drive
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use monotone_cubic, only: monotone_cubic_t
   use chain_motion, only: motion_t
   use chain_bodies, only: drive_t

@@ -1,9 +1,9 @@
 !> The IMPACT force of Adams and MotionSolve: a damper in parallel with the elastic force, whose coefficient rises with the
 !> penetration.
 module adams_impact
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use model_parameters, only: parameter_list_t
+  use bearing_size, only: bearing_t
   use contact_law, only: contact_law_t
   implicit none
   private

@@ -1,9 +1,9 @@
 !> Wear of a pin and its bore by Archard's law: the depth at a point of a surface increases by k p |v| dt, where k is the wear rate
 !> of its material, p the contact pressure there and v the sliding speed.
 module archard_wear
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  use kinds, only: dp
+  use constants, only: two_pi
+  use model_parameters, only: has_parameters_t, parameter_list_t
   implicit none
   private
   public :: wear_law_t, worn_surface_t, of_pin, of_bore

@@ -1,9 +1,9 @@
 !> Frictionless contact of a pin in a bore of nearly equal radius, in plane strain, for contact angles of any size.
 module conformal
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_parameters, only: parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: pi
+  use model_parameters, only: parameter_list_t
+  use bearing_size, only: bearing_t
   use trace_row, only: trace_row_t
   use contact_geometry, only: contact_geometry_t
   implicit none
@@ -30,7 +30,7 @@ module conformal
     procedure :: half_angle
     procedure :: pressure
     procedure :: total_pressure
-    procedure :: put_columns
+    procedure :: add_columns
   end type conformal_t
 
   !> Coefficients of P, beginning with the constant.
@@ -174,9 +174,9 @@ contains
     total_pressure = 2*(u + atanh(u/(2 + u))/u)/(1 + u)
   end function total_pressure
 
-  !> Put the half-angle of the contact into a row, which follows from the penetration, and the pressure in its middle, which follows
+  !> Add the half-angle of the contact to a row, which follows from the penetration, and the pressure in its middle, which follows
   !> from the normal force.
-  pure subroutine put_columns(self, penetration, normal_force, row)
+  pure subroutine add_columns(self, penetration, normal_force, row)
     class(conformal_t), intent(in) :: self
     real(dp), intent(in) :: penetration, normal_force
     type(trace_row_t), intent(inout) :: row
@@ -187,7 +187,7 @@ contains
       half_angle = self%half_angle(penetration)
       peak = normal_force/self%area*self%pressure(half_angle, 0.0_dp)
     end if
-    call row%put('contact_half_angle[rad]', half_angle, 'half-angle of the arc on which pin and bearing touch; 0 without contact')
-    call row%put('peak_pressure[Pa]', peak, 'largest contact pressure; 0 without contact')
-  end subroutine put_columns
+    call row%add('contact_half_angle[rad]', half_angle, 'half-angle of the arc on which pin and bearing touch; 0 without contact')
+    call row%add('peak_pressure[Pa]', peak, 'largest contact pressure; 0 without contact')
+  end subroutine add_columns
 end module conformal

@@ -1,8 +1,8 @@
 !> Interface of all contact geometries: the elastic force between pin and bearing as a function of the penetration.
 module contact_geometry
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: law_t, parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use model_parameters, only: law_t, parameter_list_t
+  use bearing_size, only: bearing_t
   use trace_row, only: trace_row_t
   implicit none
   private
@@ -28,7 +28,7 @@ module contact_geometry
     procedure :: half_angle => line_contact
     procedure :: pressure => no_pressure
     procedure :: total_pressure => only_the_force
-    procedure :: put_columns => no_columns
+    procedure :: add_columns => no_columns
     procedure, non_overridable :: material_parameters
     procedure, non_overridable :: contact_modulus
     procedure, non_overridable :: fastest_impact
@@ -161,7 +161,7 @@ contains
     total = 1
   end function only_the_force
 
-  !> Put columns that only this geometry has into a row. The default is none.
+  !> Add columns that only this geometry has to a row. The default is none.
   pure subroutine no_columns(self, penetration, normal_force, row)
     class(contact_geometry_t), intent(in) :: self
     real(dp), intent(in) :: penetration    !! [m]; 0 without contact

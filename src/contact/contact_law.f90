@@ -1,8 +1,8 @@
 !> The normal force of a contact: the elastic force of the geometry, and the damping of the law.
 module contact_law
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: law_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use model_parameters, only: law_t
+  use bearing_size, only: bearing_t
   use contact_geometry, only: contact_geometry_t
   implicit none
   private

@@ -1,8 +1,8 @@
 !> The contact laws and geometries that a case can name. A new one needs a `use` line and a line with its name in one of the
 !> procedures below.
 module contact_laws
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: parameter_list_t
   use contact_geometry, only: contact_geometry_t
   use hertz, only: hertz_t
   use restitution_laws, only: lankarani_nikravesh_t, hunt_crossley_t, herbert_mcwhannell_t, gonthier_t, zhiying_qishao_t, &

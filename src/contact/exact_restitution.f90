@@ -1,6 +1,6 @@
 !> A contact law whose restitution in a free impact equals the coefficient of restitution.
 module exact_restitution
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use restitution_law, only: restitution_law_t, one_percent
   implicit none
   private

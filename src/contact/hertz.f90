@@ -1,6 +1,6 @@
 !> Contact without damping (4.1).
 module hertz
-  use gudgeon_parameters, only: parameter_list_t
+  use model_parameters, only: parameter_list_t
   use contact_law, only: contact_law_t
   implicit none
   private

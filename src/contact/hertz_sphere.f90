@@ -1,8 +1,8 @@
 !> Hertz's contact of two spheres (4.1), for a pin in a bearing; their lengths are not used.
 module hertz_sphere
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use model_parameters, only: parameter_list_t
+  use bearing_size, only: bearing_t
   use contact_geometry, only: contact_geometry_t
   implicit none
   private

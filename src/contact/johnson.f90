@@ -1,9 +1,9 @@
 !> Johnson's contact of a cylinder in a cylindrical bore (Contact Mechanics, 1985), in which both are treated as half-spaces near
 !> the contact.
 module johnson
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: pi
+  use bearing_size, only: bearing_t
   use contact_geometry, only: contact_geometry_t
   implicit none
   private

@@ -1,8 +1,8 @@
 !> The contact of a pin in a bore by Pereira, Ramalho and Ambrosio (2011): a power of the penetration, fitted to Johnson's law.
 module pereira
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use model_parameters, only: parameter_list_t
+  use bearing_size, only: bearing_t
   use hertz_sphere, only: hertz_sphere_t
   implicit none
   private

@@ -4,10 +4,10 @@
 !> chi alone, for any mass and geometry: chi (1 + e*) = ln[(1 + chi)/(1 - chi e*)]. The laws differ in their chi for the coefficient
 !> e of the case, and therefore in the difference between e* and e.
 module restitution_law
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use number_text, only: short_text
-  use gudgeon_parameters, only: parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use model_parameters, only: parameter_list_t
+  use bearing_size, only: bearing_t
   use contact_law, only: contact_law_t
   implicit none
   private

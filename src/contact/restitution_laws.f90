@@ -1,7 +1,7 @@
 !> The contact laws whose damping follows from a coefficient of restitution by one formula, chi(e). The three numbers after each
 !> formula are the actual restitution of a free impact for e = 0.9, 0.5 and 0.1.
 module restitution_laws
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use restitution_law, only: restitution_law_t, one_percent
   implicit none
   private

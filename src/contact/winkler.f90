@@ -1,8 +1,8 @@
 !> A foundation of independent springs around the bore: the contact of a bearing with a thin, soft liner.
 module winkler
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use model_parameters, only: parameter_list_t
+  use bearing_size, only: bearing_t
   use contact_geometry, only: contact_geometry_t
   implicit none
   private

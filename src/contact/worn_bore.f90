@@ -8,8 +8,8 @@
 !> both ends and the curvature of e . u; its error is that of the third derivative, (dtheta)^3 |e|/15 at most, and changes its sign
 !> in the middle.
 module worn_bore
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   implicit none
   private
   public :: worn_bore_t, touching_cells_t

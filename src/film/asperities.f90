@@ -1,10 +1,10 @@
 !> Contact of rough surfaces through a film: Greenwood and Tripp's model of paraboloids with Gaussian heights, and the mean gap that
 !> is left for the oil (Patir and Cheng).
 module asperities
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: pi
+  use model_parameters, only: has_parameters_t, parameter_list_t
+  use bearing_size, only: bearing_t
   use uniform_spline, only: spline_weights, through_values, before, after
   implicit none
   private

@@ -9,7 +9,7 @@
 !> Without memory (Reynolds' condition) the film is full everywhere; a ruptured cell, where q = 0, lacks oil in its balance. The
 !> unknown f of such a cell is then 1 less this lack over a rate.
 module film_balance
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use film_cells, only: film_cells_t, ruptured, filled, supplied
   implicit none
   private

@@ -5,10 +5,10 @@
 !> plane, in which the film is symmetric) or, beside a circumferential groove, along one of two equal lands (from the groove).
 !> Lengths along the axis are over the pin's radius R, film thicknesses over the radial clearance c.
 module film_cells
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi, degree
-  use gudgeon_errors, only: error_t, fail, status_case_file
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: pi, two_pi, degree
+  use error_handling, only: error_t, fail, status_case_file
+  use bearing_size, only: bearing_t
   implicit none
   private
   public :: supply_t, film_cells_t, new_film_cells
@@ -107,6 +107,7 @@ contains
         else if (.not. (cells%share > 0 .and. cells%share < 1)) then
           call fail(error, 'a circumferential groove must be narrower than the bearing', status_case_file)
         end if
+      case default   ! no supply
       end select
     end associate
   end subroutine check_supply

@@ -4,8 +4,8 @@
 !>     M = sqrt(B^2 + w^2 T^2), u = (1 + B/M)/2, q = (u + w^2)/w^2,  S_t = M q,  S_r = M q^(3/2)
 !>     tau = atan2(eps, w),  chi = atan2(|T| B (1 + w), B^2 - w T^2)/2 in [0, pi]
 module film_coordinates
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   implicit none
   private
   public :: find_scales, scale_slopes, chi_of, chi_slopes, tau_of, gap_at, direction_at

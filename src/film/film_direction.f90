@@ -1,6 +1,6 @@
 !> Derivatives of forces that are given along the eccentricity and perpendicular to it, with respect to components in x and y.
 module film_direction
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use film_law, only: film_law_t, film_motion_t
   implicit none
   private

@@ -5,7 +5,7 @@
 !> conductances along a line, W: widths of its cells), and each mode has a tridiagonal system of its own around the film. These
 !> lines are eliminated. A small system remains, for the active nodes of the other lines, which are at the edges of the film.
 module film_equations
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use reynolds_grid, only: reynolds_grid_t
   implicit none
   private

@@ -4,10 +4,10 @@
 !> it is marched with steps that become longer until the content of the cells does not act any more. The memory may be left out
 !> (Reynolds' condition), for comparison.
 module film_history
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_errors, only: error_t, fail, status_integration
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: pi
+  use error_handling, only: error_t, fail, status_integration
+  use bearing_size, only: bearing_t
   use film_cells, only: film_cells_t, supply_t, new_film_cells, supply_none, filled, supplied
   use film_balance, only: film_conditions_t, film_state_t, new_state, find_gap
   use film_step, only: step_solver_t, new_step_solver, step_solved, step_closed, step_unbounded

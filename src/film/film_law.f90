@@ -1,9 +1,9 @@
 !> Interface of all lubricating films.
 module film_law
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
-  use gudgeon_parameters, only: law_t, parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: two_pi
+  use model_parameters, only: law_t, parameter_list_t
+  use bearing_size, only: bearing_t
   use reynolds_grid, only: reynolds_grid_t, new_reynolds_grid
   implicit none
   private

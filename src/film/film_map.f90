@@ -14,8 +14,8 @@
 !> largest pressure over mu R^2/c^2 is M q^2 G_p, and the side flow out of both ends over c R^2 is V G_q. The force of a film
 !> without cavitation is linear in B and T, V Phi_r = B w^-3 G_r and V Phi_t = T w^-1 G_t, with G_r and G_t functions of tau alone.
 module film_map
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use film_law, only: table_watch_t
   use finite_film, only: film_answer_t, cavitation_none
   use film_solution, only: film_solution_t
@@ -94,7 +94,7 @@ contains
     end do
     if (stops) self%points = 0
     if (stops) return
-    call make_room(self)
+    call allocate_table(self)
     do k = 1, 4
       by_chi = through_mirrored(g(:, :, k), merge(-1, 1, k == 2 .and. cavitation /= cavitation_none))
       by_chi = transpose(through_values(transpose(by_chi)))
@@ -104,13 +104,13 @@ contains
     call find_errors(self, between)
   end subroutine build
 
-  pure subroutine make_room(self)
+  pure subroutine allocate_table(self)
     class(film_map_t), intent(inout) :: self
     if (allocated(self%c)) deallocate (self%c, self%more)
     associate (first => 1 - before, last => self%points + after)
       allocate (self%c(2, first:last, first:last), self%more(2, first:last, first:last))
     end associate
-  end subroutine make_room
+  end subroutine allocate_table
 
   !> G_r, G_t, G_p and G_q of one row (tau), for all chi.
   subroutine solve_row(self, tau, g)
@@ -354,7 +354,7 @@ contains
     self%mean_error = numbers(6)
     self%per_tau = (self%points - 1)/tau_of(last_gap)
     self%per_chi = (self%points - 1)/pi
-    call make_room(self)
+    call allocate_table(self)
     self%c = reshape(numbers(head + 1:head + n), shape(self%c))
     self%more = reshape(numbers(head + n + 1:), shape(self%more))
   end subroutine restore

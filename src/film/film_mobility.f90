@@ -4,8 +4,8 @@
 !> direction of v* is therefore the one in which the film's force is opposite to the load, and its magnitude is the load divided by
 !> the force of a unit velocity.
 module film_mobility
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use film_law, only: film_law_t, film_motion_t
   implicit none
   private

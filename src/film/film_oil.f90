@@ -5,7 +5,7 @@
 !> Since grad p/mu = grad q/mu_0, the equation of the film in q is that of a constant viscosity. It has no solution beyond
 !> alpha q = 1. Pressures are in any one unit, alpha in its reciprocal.
 module film_oil
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: film_oil_t

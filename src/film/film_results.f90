@@ -1,6 +1,6 @@
 !> What a film with memory gives after a step: force and moment on the pin, flows, filling, extremes, and fields.
 module film_results
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use film_cells, only: supplied
   use film_balance, only: film_conditions_t, film_state_t
   use film_step, only: step_solver_t

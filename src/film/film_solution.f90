@@ -1,7 +1,7 @@
 !> Solutions of the film of finite length at one eccentricity ratio by Richardson's extrapolation, from pairs of grids of which one
 !> has half as many nodes in each direction. They are used for the table of `film_map`.
 module film_solution
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use finite_film, only: film_solver_t, film_answer_t, cavitation_reynolds
   implicit none
   private

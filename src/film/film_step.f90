@@ -9,8 +9,8 @@
 !>
 !> While no cell changes its kind the factors of a round serve for the next ones, which need a single right-hand side.
 module film_step
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use banded_lu, only: decompose_band, solve_band
   use small_lu, only: decompose, solve
   use film_oil, only: film_oil_t

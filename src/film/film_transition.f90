@@ -1,4 +1,4 @@
-!> Transition from film to contact: sudden when journal and bearing touch, or weighted over a range of penetrations (proposed in
+!> Transition from film to contact: sudden when pin and bearing touch, or weighted over a range of penetrations (proposed in
 !> chapter 7 of Reis 2013; weights after Flores et al. 2004).
 !>
 !> With the penetration d = |e| - c the total force is (1 - w) F_film + w F_contact, friction included, where w = s or s^2 (3 - 2
@@ -6,9 +6,9 @@
 !> this eccentricity is used, with the actual direction and rate of the eccentricity. The depth e0 and q are not properties of the
 !> joint: results depend on them.
 module film_transition
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use model_parameters, only: has_parameters_t, parameter_list_t
+  use bearing_size, only: bearing_t
   use film_law, only: film_law_t, film_motion_t
   implicit none
   private

@@ -1,7 +1,7 @@
 !> The lubricating films that a case can name. A new law needs a `use` line and a line with its name below. A type that
 !> implements one variant of a law comes before that of the others.
 module films
-  use gudgeon_parameters, only: parameter_list_t
+  use model_parameters, only: parameter_list_t
   use pinkus_sternlicht, only: pinkus_sternlicht_t
   use half_film, only: half_film_t
   use oscillating_film, only: oscillating_film_t

@@ -4,9 +4,9 @@
 !> Wedge and squeeze motion act together as one velocity, v* = e' - (omega/2) z x e (Booker 1965). The force is mu L R^3/c^2 |v*|/c
 !> times a function of eps = |e|/c and of the direction of v*.
 module finite_bearing
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use model_parameters, only: parameter_list_t
+  use bearing_size, only: bearing_t
   use film_law, only: film_law_t, film_motion_t, table_watch_t, difference_derivatives, field_points, yes
   use film_direction, only: derivatives_in_components, least_ratio_of_derivatives
   use finite_film, only: film_answer_t, film_solver_t, cavitation_none, cavitation_gumbel, cavitation_reynolds

@@ -1,7 +1,7 @@
 !> Solver for the pressure of a film of finite length and its results. The table of the law `finite_bearing` is computed with it.
 module finite_film
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use reynolds_grid, only: reynolds_grid_t, new_reynolds_grid
   use film_equations, only: film_equations_t
   implicit none

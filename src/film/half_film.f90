@@ -1,8 +1,8 @@
 !> The Pinkus-Sternlicht film with its pressure (5.20) integrated exactly over the arc where it is positive. The closed form
 !> (5.34-5.37) approximates this integral, well while the pin approaches the wall and poorly while it separates from it.
 module half_film
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use film_law, only: film_motion_t, difference_derivatives
   use pinkus_sternlicht, only: pinkus_sternlicht_t, max_eccentricity_ratio
   implicit none

@@ -8,7 +8,7 @@
 !>     (m + 1) M_m+1 = (2m + 1) M_m - m (1 - eps^2) M_m-1,                      M_0 = M_1 = 1
 !>     (m + 2) H_m+1 = (m + 1) [(2m + 1)/m H_m - (1 - eps^2) H_m-1],            H_0 = 0, H_1 = -1/2
 module inertia_series
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: inertia_series_t, remainder_t, new_inertia_series

@@ -1,6 +1,6 @@
 !> Mixed lubrication: a film between rough surfaces in parallel with the contact of their asperities. There is no event at |e| = c.
 module mixed_film
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use film_law, only: film_law_t, film_motion_t, difference_steps, moved
   use asperities, only: asperities_t
   implicit none
@@ -19,12 +19,12 @@ contains
     real(dp), intent(out) :: film_force(2), film_moment   !! of the film on the pin [N], [N m]
     real(dp), intent(out) :: pressing, friction           !! of the asperities: towards the centre, and along t [N]
     type(film_motion_t) :: seen
-    real(dp) :: distance, tangential, journal_speed, bearing_speed
+    real(dp) :: distance, tangential, pin_angular_speed, bearing_speed
     call see_gap(film, rough, motion, seen, distance, tangential)
-    journal_speed = 0.5_dp*(motion%pin_speed + motion%turning_speed)
+    pin_angular_speed = 0.5_dp*(motion%pin_speed + motion%turning_speed)
     bearing_speed = 0.5_dp*(motion%pin_speed - motion%turning_speed)
     pressing = rough%force(distance)
-    friction = rough%friction_force(tangential + journal_speed*pin_radius - bearing_speed*(distance + pin_radius), pressing)
+    friction = rough%friction_force(tangential + pin_angular_speed*pin_radius - bearing_speed*(distance + pin_radius), pressing)
     call film%film_force(seen, film_force, film_moment)
   end subroutine mixed_forces
 

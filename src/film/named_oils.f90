@@ -4,7 +4,7 @@
 !> mineral oil. SAE single grades have the viscosities of the ISO grades that public tables of equivalents name beside them.
 !> Multigrades, and all densities, are typical of data sheets. Each SAE grade is within SAE J300 (2015) at 100 degrees C.
 module named_oils
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use text_tools, only: lowercase, likely_word
   implicit none
   private

@@ -5,8 +5,8 @@
 !> the temperature as for lubricating oils (ASTM D1250, table 54D): rho = rho_15 exp(-k (1 + 0.8 k)), k = 0.6278 (T - 288.15)/rho_15
 !> in kg/m^3.
 module oil_viscosity
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: has_parameters_t, parameter_list_t
   use named_oils, only: named_oil_t, oil_temperatures => known_temperatures, find_oil, unknown_oil
   implicit none
   private

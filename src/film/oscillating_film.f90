@@ -4,10 +4,10 @@
 !> Without squeeze it does not resist motions of the pin's centre: where the centre moves along the film faster than half of the
 !> pin's surface, the film supplies energy to the bodies instead of dissipating it.
 module oscillating_film
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi
-  use gudgeon_parameters, only: parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: pi, two_pi
+  use model_parameters, only: parameter_list_t
+  use bearing_size, only: bearing_t
   use film_law, only: film_law_t, film_motion_t
   use oscillating_response, only: oscillating_response_t, film_phasors_t, new_oscillating_response, max_eccentricity_ratio
   implicit none

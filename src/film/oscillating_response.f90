@@ -16,8 +16,8 @@
 !> whose number does not depend on the eccentricity. P*' and t* are even in th: pressure and shear have no resultant along the line
 !> of centres, and half of the circle is sufficient.
 module oscillating_response
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use inertia_series, only: inertia_series_t, remainder_t, new_inertia_series
   implicit none
   private

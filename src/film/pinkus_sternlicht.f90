@@ -1,9 +1,9 @@
 !> The Pinkus-Sternlicht film (5.10-5.37): a long bearing in which only the positive pressures act.
 module pinkus_sternlicht
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_parameters, only: parameter_list_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use constants, only: pi
+  use model_parameters, only: parameter_list_t
+  use bearing_size, only: bearing_t
   use film_law, only: film_law_t, film_motion_t, difference_derivatives, yes
   use film_direction, only: derivatives_in_components, least_ratio_of_derivatives
   implicit none

@@ -9,8 +9,8 @@
 !> uniform in a variable that resolves all length scales of the film from sqrt((1 - eps)/(1 + eps)) to 1, and dense at the end of
 !> the bearing.
 module reynolds_grid
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   implicit none
   private
   public :: reynolds_grid_t, new_reynolds_grid

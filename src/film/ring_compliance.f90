@@ -5,8 +5,8 @@
 !> a = C p. The first harmonic is left out, since it shifts the bore as a whole: the eccentricity of the pin is measured from the
 !> middle of the deformed bore. The outside of the ring is free, its pin is rigid.
 module ring_compliance
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_case_file
   use small_lu, only: decompose, solve
   implicit none
   private

@@ -1,7 +1,7 @@
 !> Ocvirk's film of a short bearing in closed form; only the positive part of the pressure acts.
 module short_bearing
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use film_law, only: film_motion_t, angles_of_film
   use finite_bearing, only: finite_bearing_t
   implicit none

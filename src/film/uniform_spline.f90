@@ -1,7 +1,7 @@
 !> Interpolating splines of the fifth degree through equidistant values, as sums of B-splines. Their fourth derivative is
 !> continuous.
 module uniform_spline
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use small_lu, only: decompose, solve
   implicit none
   private

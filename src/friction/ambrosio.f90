@@ -1,8 +1,8 @@
 !> Coulomb friction with a linear ramp at small sliding speeds, after Ambrosio (4.9, 4.10).
 module ambrosio
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use number_text, only: short_text
-  use gudgeon_parameters, only: parameter_list_t
+  use model_parameters, only: parameter_list_t
   use friction_law, only: friction_law_t
   implicit none
   private

@@ -8,9 +8,9 @@
 !> which bristles relax as the load grows (z' minus z F_N'/F_N while that is positive) supplies none, but then friction dissipates
 !> 3, 14 and 9 % less; it is not offered.
 module bristle_law
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use number_text, only: short_text
-  use gudgeon_parameters, only: parameter_list_t
+  use model_parameters, only: parameter_list_t
   use trace_row, only: trace_row_t
   use static_friction, only: static_friction_t
   implicit none
@@ -31,7 +31,7 @@ module bristle_law
     procedure :: friction_ratio_slope
     procedure :: state_friction
     procedure :: state_slopes
-    procedure :: put_columns
+    procedure :: add_columns
     procedure, non_overridable :: add_common
     procedure, non_overridable :: add_sliding
     procedure, non_overridable :: steady_sliding
@@ -186,12 +186,12 @@ contains
     end associate
   end subroutine state_slopes
 
-  pure subroutine put_columns(self, states, row)
+  pure subroutine add_columns(self, states, row)
     class(bristle_law_t), intent(in) :: self
     real(dp), intent(in) :: states(:)
     type(trace_row_t), intent(inout) :: row
     associate (unused => self)
     end associate
-    call row%put('bristle[m]', states(1), 'mean deflection of the bristles, the state of the friction law')
-  end subroutine put_columns
+    call row%add('bristle[m]', states(1), 'mean deflection of the bristles, the state of the friction law')
+  end subroutine add_columns
 end module bristle_law

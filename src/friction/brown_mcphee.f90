@@ -1,7 +1,7 @@
 !> Friction with a static peak and derivatives of all orders (Brown & McPhee 2016, J. Comput. Nonlinear Dynam. 11, 054502).
 module brown_mcphee
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: parameter_list_t
   use static_friction, only: static_friction_t
   implicit none
   private

@@ -1,7 +1,7 @@
 !> Coulomb friction (4.8).
 module coulomb
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: parameter_list_t
   use static_friction, only: static_friction_t
   implicit none
   private

@@ -1,6 +1,6 @@
 !> Dahl's friction (1968): bristles without damping, and static friction equal to sliding friction.
 module dahl
-  use gudgeon_parameters, only: parameter_list_t
+  use model_parameters, only: parameter_list_t
   use lugre, only: lugre_t
   implicit none
   private

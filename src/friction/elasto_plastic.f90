@@ -1,9 +1,9 @@
 !> Elasto-plastic friction (Dupont, Hayward, Armstrong & Altpeter 2002, IEEE Trans. Autom. Control 47, 787): bristles that slip only
 !> above a break-away deflection, so that sticking surfaces do not drift.
 module elasto_plastic
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_parameters, only: parameter_list_t
+  use kinds, only: dp
+  use constants, only: pi
+  use model_parameters, only: parameter_list_t
   use bristle_law, only: bristle_law_t
   implicit none
   private

@@ -1,7 +1,7 @@
 !> Interface of all dry friction laws.
 module friction_law
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: law_t, parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: law_t, parameter_list_t
   use trace_row, only: trace_row_t
   implicit none
   private
@@ -27,7 +27,7 @@ module friction_law
     procedure :: touch_down_limit => no_limit
     procedure :: state_friction => steady_friction
     procedure :: state_slopes => steady_slopes
-    procedure :: put_columns => no_columns
+    procedure :: add_columns => no_columns
     procedure, non_overridable :: add_coefficient
   end type friction_law_t
 
@@ -125,7 +125,7 @@ contains
     slopes(1, 1) = self%friction_ratio_slope(sliding_speed)
   end subroutine steady_slopes
 
-  !> Put the columns of the states into a row.
+  !> Add the columns of the states to a row.
   pure subroutine no_columns(self, states, row)
     class(friction_law_t), intent(in) :: self
     real(dp), intent(in) :: states(:)           !! (most_friction_states); 0 without contact

@@ -1,6 +1,6 @@
 !> The friction laws that a case can name. A new law needs a `use` line and a line with its name in `offer_friction_laws`.
 module friction_laws
-  use gudgeon_parameters, only: parameter_list_t
+  use model_parameters, only: parameter_list_t
   use ambrosio, only: ambrosio_t
   use coulomb, only: coulomb_t
   use threlfall, only: threlfall_t

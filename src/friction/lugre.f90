@@ -1,7 +1,7 @@
 !> LuGre friction (Canudas de Wit, Olsson, Astrom & Lischinsky 1995, IEEE Trans. Autom. Control 40, 419).
 module lugre
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: parameter_list_t
   use bristle_law, only: bristle_law_t
   implicit none
   private

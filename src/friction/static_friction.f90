@@ -1,8 +1,8 @@
 !> Common part of the friction laws in which static friction exceeds sliding friction.
 module static_friction
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use number_text, only: short_text
-  use gudgeon_parameters, only: parameter_list_t
+  use model_parameters, only: parameter_list_t
   use friction_law, only: friction_law_t
   implicit none
   private

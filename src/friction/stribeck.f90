@@ -1,8 +1,8 @@
 !> Friction that decreases from a static to a sliding value with the sliding speed (Stribeck), with a smooth transition through zero
 !> speed.
 module stribeck
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: parameter_list_t
   use static_friction, only: static_friction_t
   implicit none
   private

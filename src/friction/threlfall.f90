@@ -1,7 +1,7 @@
 !> Coulomb friction with an exponential transition at small sliding speeds, after Threlfall.
 module threlfall
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: parameter_list_t
   use friction_law, only: friction_law_t
   implicit none
   private

@@ -1,10 +1,10 @@
 !> A piston compressor: suction and discharge at given pressures through self-acting valves, polytropic compression, and
 !> re-expansion of the gas in the dead space.
 module compressor
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use number_text, only: short_text
-  use gudgeon_errors, only: error_t
-  use gudgeon_parameters, only: parameter_list_t
+  use error_handling, only: error_t
+  use model_parameters, only: parameter_list_t
   use cylinder, only: new_cylinder
   use gas_law, only: gas_law_t
   use valve_gas, only: valve_gas_t

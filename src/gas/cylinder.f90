@@ -1,7 +1,7 @@
 !> The cylinder volume as a function of the crank angle (Reis 2013, A.10-A.11, the second corrected).
 module cylinder
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   implicit none
   private
   public :: cylinder_t, new_cylinder

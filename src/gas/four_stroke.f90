@@ -1,8 +1,8 @@
 !> The four-stroke cycle: 720 degrees long, with the cylinder closed from 180 to 540 degrees.
 module four_stroke
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use number_text, only: short_text
-  use gudgeon_constants, only: pi
+  use constants, only: pi
   use wiebe_law, only: wiebe_law_t
   implicit none
   private

@@ -6,13 +6,13 @@
 !> expansion, open. The pressure depends on the crank angle alone. It is therefore integrated once, when the scene is built, and
 !> then interpolated; as a state it would require a power function and stricter error control in every evaluation.
 module gas_cycle
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use kinds, only: dp
+  use constants, only: pi
+  use error_handling, only: error_t, fail, status_case_file
   use ode_problem, only: ode_problem_t
   use ode_method, only: ode_method_t
   use adams, only: adams_t
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_done
+  use ode_solver, only: integrate, silent_observer_t, integration_done
   use cylinder, only: cylinder_t
   use hermite_table, only: hermite_table_t, new_hermite_table
   implicit none
@@ -61,7 +61,7 @@ module gas_cycle
     real(dp), allocatable :: value(:)   !! (0:n)
     integer :: next = 0
   contains
-    procedure :: step_taken
+    procedure :: step_accepted
   end type point_keeper_t
 
 contains
@@ -219,17 +219,17 @@ contains
     end if
   end function power
 
-  pure subroutine pressure_derivative(self, t, y, dydt, inside)
+  pure subroutine pressure_derivative(self, t, y, dydt, in_domain)
     class(combustion_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     real(dp) :: unused_curvature
     call pressure_slopes(self%gas, part_combustion, t, y(1), dydt(1), unused_curvature)
-    inside = .true.
+    in_domain = .true.
   end subroutine pressure_derivative
 
-  subroutine step_taken(self, method, problem, t_to)
+  subroutine step_accepted(self, method, problem, t_to)
     class(point_keeper_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
@@ -244,7 +244,7 @@ contains
       self%value(self%next) = y(1)
       self%next = self%next + 1
     end do
-  end subroutine step_taken
+  end subroutine step_accepted
 
   !> The part of the cycle at crank angle q, and the angle at which its cycle began, a multiple of the period. At a bound between
   !> parts it is the part after the bound or, if the crank turns `backwards`, the part before it; empty parts are skipped.

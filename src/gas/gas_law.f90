@@ -1,8 +1,8 @@
 !> Parameters of the gas in the cylinder: one of the cycles that a case can name, or a measured pressure.
 module gas_law
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
-  use gudgeon_parameters, only: law_t, parameter_list_t
+  use kinds, only: dp
+  use error_handling, only: error_t
+  use model_parameters, only: law_t, parameter_list_t
   use working_gas, only: working_gas_t
   implicit none
   private

@@ -1,6 +1,6 @@
 !> The cycles of the gas that a case can name. A new one needs a `use` line and a line with its name below.
 module gas_laws
-  use gudgeon_parameters, only: parameter_list_t
+  use model_parameters, only: parameter_list_t
   use four_stroke, only: four_stroke_t
   use two_stroke, only: two_stroke_t
   use compressor, only: compressor_t

@@ -1,6 +1,6 @@
 !> A function on [0, 1] as quintic polynomials between equidistant points, from values and two derivatives at the points.
 module hermite_table
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: hermite_table_t, new_hermite_table

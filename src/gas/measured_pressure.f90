@@ -1,10 +1,10 @@
 !> Parameters of a cylinder whose pressure has been measured as a function of the crank angle.
 module measured_pressure
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: degree
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: degree
+  use error_handling, only: error_t
   use text_tools, only: integer_text
-  use gudgeon_parameters, only: parameter_list_t
+  use model_parameters, only: parameter_list_t
   use measured_curve, only: measured_curve_t
   use monotone_cubic, only: new_periodic_cubic
   use cylinder, only: new_cylinder

@@ -1,10 +1,10 @@
 !> The two-stroke cycle with ports controlled by the piston: 360 degrees long, with the cylinder closed from `port_opens_deg` before
 !> the firing dead centre to the same angle after it.
 module two_stroke
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use number_text, only: short_text
-  use gudgeon_constants, only: two_pi, degree
-  use gudgeon_parameters, only: parameter_list_t
+  use constants, only: two_pi, degree
+  use model_parameters, only: parameter_list_t
   use wiebe_law, only: wiebe_law_t
   implicit none
   private

@@ -5,8 +5,8 @@
 !> suction valve behaves correspondingly at the suction pressure. The state of the valves follows from the motion of the piston, for
 !> either sense of rotation. At each opening and closing the derivative of the pressure is discontinuous.
 module valve_gas
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi
+  use kinds, only: dp
+  use constants, only: pi, two_pi
   use cylinder, only: cylinder_t
   use run_state, only: run_state_t
   implicit none

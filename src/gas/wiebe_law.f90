@@ -1,10 +1,10 @@
 !> Parameters of an engine with Wiebe's heat release, for all cycles.
 module wiebe_law
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: degree, two_pi
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: degree, two_pi
+  use error_handling, only: error_t
   use number_text, only: short_text, quantity_text
-  use gudgeon_parameters, only: parameter_list_t
+  use model_parameters, only: parameter_list_t
   use cylinder, only: new_cylinder
   use gas_cycle, only: gas_cycle_t, heat_release_t, new_gas_cycle
   use gas_law, only: gas_law_t

@@ -1,8 +1,8 @@
 !> The gas in the cylinder of a running machine: the cycle of an engine and its present part, the gas of a compressor and the state
 !> of its valves, or a measured pressure.
 module working_gas
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: degree
+  use kinds, only: dp
+  use constants, only: degree
   use trace_row, only: trace_row_t
   use run_state, only: run_state_t
   use monotone_cubic, only: monotone_cubic_t
@@ -38,7 +38,7 @@ module working_gas
     procedure :: force_slope
     procedure :: events
     procedure :: pass
-    procedure :: put_columns
+    procedure :: add_columns
   end type working_gas_t
 
 contains
@@ -97,19 +97,19 @@ contains
     force = (pressure - self%crankcase_pressure)*self%cylinder%area
   end function force
 
-  !> Put pressure [Pa], force and volume at a crank angle with this sine and cosine into a row.
-  pure subroutine put_columns(self, sin_crank, cos_crank, pressure, row)
+  !> Add pressure [Pa], force and volume at a crank angle with this sine and cosine to a row.
+  pure subroutine add_columns(self, sin_crank, cos_crank, pressure, row)
     class(working_gas_t), intent(in) :: self
     real(dp), intent(in) :: sin_crank, cos_crank, pressure
     type(trace_row_t), intent(inout) :: row
     real(dp) :: volume
-    call row%put('cylinder_pressure[Pa]', pressure, 'absolute pressure of the gas in the cylinder')
+    call row%add('cylinder_pressure[Pa]', pressure, 'absolute pressure of the gas in the cylinder')
     volume = 0
     if (row%wants(1)) volume = self%cylinder%volume_at(sin_crank, cos_crank)
-    call row%put('cylinder_volume[m3]', volume, 'volume of the gas in the cylinder')
-    call row%put('gas_force[N]', self%force(pressure), &
+    call row%add('cylinder_volume[m3]', volume, 'volume of the gas in the cylinder')
+    call row%add('gas_force[N]', self%force(pressure), &
       'force of the gas on the piston along -x: pressure difference to the crankcase times bore area')
-  end subroutine put_columns
+  end subroutine add_columns
 
   !> Derivative of the force with respect to the crank angle [N/rad].
   pure real(dp) function force_slope(self, crank_angle)

@@ -1,6 +1,6 @@
 !> The accuracy levels of the command line, as values of keys of the case. Those with method `auto` were chosen by measurement:
-!> scripts/measure_tradeoff.py --presets reports the errors that each level has in shipped cases; scripts/record.py writes them to
-!> data/measured/presets.md. `dissertation` is the integration of Reis (3.8, 4.4).
+!> scripts/bench/measure_tradeoff.py --presets reports the errors that each level has in shipped cases (data/measured/presets.md).
+!> `dissertation` is the integration of Reis (3.8, 4.4).
 module accuracy_presets
   implicit none
   private

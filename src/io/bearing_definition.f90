@@ -1,8 +1,8 @@
 !> The data of a bearing case: one bearing, its oil and its supply, and a table of what it is given over a cycle, without a
 !> mechanism. Its file has the groups of cases that a bearing needs.
 module bearing_definition
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: has_parameters_t, parameter_list_t
   use case_schema, only: schema_t, key_table_t
   implicit none
   private
@@ -95,7 +95,7 @@ contains
     call march%parameters(schema)
     call schema%group('output', 'Numbers of the results', .false.)
     call output%parameters(schema)
-    call schema%take(table)
+    call schema%get_table(table)
   end subroutine bearing_schema_of
 
   subroutine title_parameters(self, list)

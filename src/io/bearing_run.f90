@@ -1,10 +1,10 @@
 !> Runs a bearing case: the film with memory over the cycle of a table. Results are NAME.film_history.csv, one row for each interval
 !> of the last cycle, NAME.summary.csv and NAME.resolved.nml.
 module bearing_run
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, keep_first, status_case_file, status_command_line
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, keep_first, status_case_file, status_command_line
   use film_cells, only: film_cells_t, supply_grooves, supply_holes, supply_circumferential, new_film_cells
-  use gudgeon_bearing, only: bearing_t
+  use bearing_size, only: bearing_t
   use film_history, only: film_history_t, film_duty_t
   use ring_compliance, only: new_ring
   use bearing_definition, only: bearing_case_t
@@ -14,7 +14,7 @@ module bearing_run
   use case_values, only: case_values_t
   use duty_file, only: read_duty
   use growing_text, only: growing_text_t
-  use gudgeon_posix, only: absolute_path
+  use posix_files, only: absolute_path
   use number_text, only: real_text, short_text
   use result_file, only: write_text
   use text_tools, only: integer_text, path_beside, printable, quoted

@@ -1,7 +1,7 @@
 !> Rules that the values of a case with a guide that is not ideal, or with elastic members, must obey together.
 module body_rules
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi
+  use kinds, only: dp
+  use constants, only: pi, two_pi
   use number_text, only: short_text
   use case_definition, only: case_t
   use case_values, only: case_values_t
@@ -45,7 +45,7 @@ contains
           'with kind = ''clearance''')
       end do
       if (values%is_said(values%place_of('guide', 'dissipation'))) call values%check_family('guide', 'dissipation')
-      if (.not. values%problems%blames('guide')) call check_piston_start(c, values)
+      if (.not. values%problems%concerns('guide')) call check_piston_start(c, values)
     else
       do i = 1, size(starts)
         call values%forbid(values%is_said(values%place_of('initial', trim(starts(i)))), 'initial', trim(starts(i)), &
@@ -70,7 +70,7 @@ contains
     call law%prepare()
     call values%forbid(law%coefficient > 0 .and. law%set_valued, 'guide', 'v1', &
       'must be > 0: friction on the guide is a function of the speed')
-    if (values%problems%blames('guide') .or. values%problems%blames('mechanism')) return
+    if (values%problems%concerns('guide') .or. values%problems%concerns('mechanism')) return
     is_loose = c%loose_pins()
     if (c%has_loose_guide() .or. is_loose(piston_pin)) return
     associate (m => c%mechanism)
@@ -113,24 +113,24 @@ contains
     type(elastic_rod_t) :: rod
     type(rod_t) :: rigid
     real(dp) :: own, least   ! moment of inertia about the crank pin without rod_inertia, and that of the transverse modes
-    if (.not. allocated(c%elastic_rod) .or. values%problems%blames('mechanism')) return
+    if (.not. allocated(c%elastic_rod) .or. values%problems%concerns('mechanism')) return
     associate (m => c%mechanism)
       rigid = rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com)
       call values%forbid(m%rod_mass <= 0, 'mechanism', 'rod_mass', 'must be > 0 with an elastic rod')
       call values%forbid(m%rod_com(1) <= 0 .or. m%rod_com(1) >= m%rod_length, 'mechanism', 'rod_com', &
         'must be between the pins, > 0 and < rod_length = '//short_text(m%rod_length)//', with an elastic rod')
-      if (values%problems%blames('mechanism')) return
+      if (values%problems%concerns('mechanism')) return
       call values%forbid(c%elastic_rod%shank_mass > largest_shank(rigid)*(1 + 1e-12_dp), 'elastic_rod', 'shank_mass', &
         'must be <= '//short_text(largest_shank(rigid))//': a heavier uniform shank leaves a lump of negative mass on one of '// &
         'the pins, with this rod_mass and rod_com')
-      if (values%problems%blames('elastic_rod')) return
+      if (values%problems%concerns('elastic_rod')) return
       rod = c%elastic_rod
       call rod%prepare(rigid)
       own = m%rod_mass*sum(m%rod_com**2)
       least = sum(rod%t(:rod%n_bending)**2)/rod%bending_mass
       call values%forbid(m%rod_inertia + own <= least, 'mechanism', 'rod_inertia', 'must be > '//short_text(least - own)// &
         ' with an elastic rod of this shank: its transverse modes alone have more')
-      if (values%problems%blames('mechanism')) return
+      if (values%problems%concerns('mechanism')) return
       call values%forbid(.not. is_definite(c, rigid, rod), 'elastic_rod', 'transverse_modes', &
         'mass matrix not positive definite with these shapes: must be fewer, or rod_inertia or crank_inertia larger, or '// &
         'rod_com nearer to the line of the pins')

@@ -1,9 +1,9 @@
 !> Reads and checks the files of measured curves that a case names, and puts the curves into the case.
 module case_curves
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
-  use gudgeon_checksum, only: checksum_t
-  use gudgeon_posix, only: absolute_path
+  use kinds, only: dp
+  use error_handling, only: error_t
+  use checksums, only: checksum_t
+  use posix_files, only: absolute_path
   use measured_curve, only: measured_curve_t
   use measured_pressure, only: measured_pressure_periods
   use number_text, only: short_text
@@ -52,17 +52,17 @@ contains
     type(checksum_t) :: sum
     integer, allocatable :: lines(:)
     integer :: line, place
-    logical :: is_there
+    logical :: is_read
 
     if (curve%file == '') then
       call values%refuse(group, key, 'must be the name of a file')
       return
     end if
     path = path_beside(case_file, curve%file)
-    is_there = .false.
-    if (allocated(curve%path)) is_there = curve%path == path
+    is_read = .false.
+    if (allocated(curve%path)) is_read = curve%path == path
     head = values%file//': '//shown_group(group)//' '//key//': '
-    if (.not. is_there) then
+    if (.not. is_read) then
       if (allocated(curve%path)) deallocate (curve%path)
       call read_text_file(path, largest_file, 'table', text, error)
       if (allocated(error)) then

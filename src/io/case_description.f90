@@ -1,7 +1,7 @@
 !> What the program has understood of a case, in units that people use: the answer to --check.
 module case_description
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi, two_pi
+  use kinds, only: dp
+  use constants, only: pi, two_pi
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use joint_places, only: places, n_places, in_order

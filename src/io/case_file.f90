@@ -1,7 +1,7 @@
 !> Reads case files into cases, and writes cases as text. All errors have the exit status of case files and are one line: file, line
 !> or group and key, value as written, and what is allowed.
 module case_file
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: lowercase, printable, case_name, likely_word
   use text_file, only: read_text_file
   use joint_places, only: places, n_places, in_order, joint_group
@@ -80,9 +80,9 @@ contains
       call case_schema_of(values%key_table_t)
     end if
     call values%set_defaults(path)
-    call take_file(values, text)
+    call set_from_file(values, text)
     do i = 1, size(overrides)
-      call take_override(values, trim(overrides(i)), behind_file + i, error)
+      call apply_override(values, trim(overrides(i)), behind_file + i, error)
       if (allocated(error)) values%problems%is_structural = .true.
       call values%problems%add_error(error, '--set', behind_file + i)
     end do
@@ -119,8 +119,8 @@ contains
     this%file = path
     this%name = case_name(path)
     if (this%name == '') this%name = 'case'
-    if (.not. (values%problems%is_structural .or. values%problems%blames('mechanism') .or. values%problems%blames('initial') .or. &
-               any([(values%problems%blames(joint_group(i)), i=1, n_places)]))) then
+    if (.not. (values%problems%is_structural .or. values%problems%concerns('mechanism') .or. &
+               values%problems%concerns('initial') .or. any([(values%problems%concerns(joint_group(i)), i=1, n_places)]))) then
       call values%problems%settle()
       call load_case(values, this)
       call replace_oils(values)
@@ -138,8 +138,8 @@ contains
     text = template_text('A case of gudgeon with every key there is. Keys marked required have no default.', table)
   end function template
 
-  !> Put the groups and keys of a file's text into the values.
-  subroutine take_file(values, text)
+  !> Set the values from the groups and keys of a file's text.
+  subroutine set_from_file(values, text)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: text
     type(namelist_t) :: list
@@ -174,7 +174,7 @@ contains
     end do
     if (allocated(syntax)) values%problems%is_structural = .true.
     call values%problems%add_error(syntax, '', behind_file)
-  end subroutine take_file
+  end subroutine set_from_file
 
   !> Begin a group of the file. Error: an unknown group, or one that has begun before.
   subroutine begin_group(values, name, line, at, is_known, error)
@@ -200,7 +200,7 @@ contains
     end if
   end subroutine begin_group
 
-  !> Put the place of a joint in front of the name of its group: crank_pin.joint.
+  !> Write the place of a joint in front of the name of its group: crank_pin.joint.
   subroutine name_place(values, list, number, error)
     type(case_values_t), intent(in) :: values
     type(namelist_t), intent(inout) :: list
@@ -250,9 +250,9 @@ contains
     end do
   end function place_names
 
-  !> Put an override GROUP.KEY=VALUE into the values; texts need no quotes. GROUP=none removes everything that the file and earlier
+  !> Apply an override GROUP.KEY=VALUE to the values; texts need no quotes. GROUP=none removes everything that the file and earlier
   !> overrides have set in that group.
-  subroutine take_override(values, override, line, error)
+  subroutine apply_override(values, override, line, error)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: override
     integer, intent(in) :: line   !! for the order of messages
@@ -270,7 +270,7 @@ contains
           ' alone is given: the group '//group(dot + 1:)//' is for all pins, and --set '//group(dot + 1:)// &
           '=none removes it from all', status_case_file)
       else
-        call values%take_out(group, at, error)
+        call values%remove_group(group, at, error)
       end if
       return
     else if (dot == 0) then
@@ -287,7 +287,7 @@ contains
     values%values(place)%line = line
     if (allocated(error) .and. lowercase(text) == 'none') &
       error%message = error%message//'; --set '//group//'=none takes the group out'
-  end subroutine take_override
+  end subroutine apply_override
 
   !> Whether a further joint follows the group of this name for all joints, because it has none of its own.
   pure logical function is_shared(values, group)

@@ -1,7 +1,7 @@
 !> Builds a case from the values of a case file: a visitor that sets every parameter and selects the laws that the case names.
 module case_loader
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: parameter_list_t, has_parameters_t, law_t, key_t, word_kind
+  use kinds, only: dp
+  use model_parameters, only: parameter_list_t, has_parameters_t, law_t, key_t, word_kind
   use case_definition, only: case_t, visit_case
   use case_schema, only: find_group, find_key, is_listed
   use value_reader, only: set_to_default, read_times

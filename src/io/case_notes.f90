@@ -1,8 +1,8 @@
 !> Notes on values of a valid case that are not of the sizes of real machines: units that were mixed up, diameters for radii, a
 !> speed in revolutions per minute. A note refuses nothing. Each key declares its usual sizes; the relations between keys are here.
 module case_notes
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use joint_places, only: places, n_places, in_order, name_prefix, joint_group
@@ -21,7 +21,7 @@ module case_notes
 
 contains
 
-  !> Put the notes on a valid case into it. Only keys that the user has set are noted, each of them once.
+  !> Add the notes on a valid case to it. Only keys that the user has set are noted, each of them once.
   subroutine note_case(c, values)
     type(case_t), intent(inout) :: c
     type(case_values_t), intent(in) :: values

@@ -1,7 +1,7 @@
 !> Rules that the values of a case must obey together: valid inertias, models that match their joint, a run that ends.
 module case_rules
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   use number_text, only: short_text
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
@@ -123,7 +123,7 @@ contains
         'needs contact or lubrication: without them no force would act on the pin')
       call forbid(allocated(joint%friction) .and. .not. allocated(joint%contact), law_group('friction', place), 'law', &
         'needs the group contact: dry friction follows the normal force')
-      if (values%problems%blames(group)) return
+      if (values%problems%concerns(group)) return
       if (allocated(joint%asperities)) then
         call check_asperities(joint, law_group('asperities', place))
       else if (allocated(joint%contact)) then
@@ -283,7 +283,7 @@ contains
         turning(body_crank) = 1
         turning([body_big_end, body_small_end]) = m%crank_length/m%rod_length
         turning(body_piston) = 0
-        speed = turning(places(place)%journal) + turning(places(place)%bearing)
+        speed = turning(places(place)%pin_body) + turning(places(place)%bearing)
         speed = speed*abs(c%initial%crank_speed)*bearing%pin_radius()
       end associate
       limit = joint%friction%touch_down_limit()
@@ -318,7 +318,7 @@ contains
           call check_pin(c%joints(in_order(place)), joint_group(in_order(place)), name_prefix(in_order(place)), &
             distance(in_order(place)), start%eccentricity_rate(:, in_order(place)))
         end do
-        if (values%problems%blames('mechanism') .or. values%problems%blames('initial')) return
+        if (values%problems%concerns('mechanism') .or. values%problems%concerns('initial')) return
         place = in_order(max(1, findloc(distance(in_order) > 0, .true., 1)))
         call forbid(sum(distance) >= m%rod_length - m%crank_length, 'initial', name_prefix(place)//'eccentricity', &
           'must be shorter than rod_length - crank_length = '//short_text(m%rod_length - m%crank_length))
@@ -333,7 +333,7 @@ contains
       real(dp), intent(in) :: distance, rate(2)
       associate (key => prefix//'eccentricity')
         if (joint%has_clearance()) then
-          if (values%problems%blames(group)) return
+          if (values%problems%concerns(group)) return
           if (distance >= joint%bearing_radius) then
             call values%refuse('initial', key, 'must be shorter than bearing_radius = '//short_text(joint%bearing_radius)// &
               ': the pin would leave its bearing')

@@ -1,24 +1,24 @@
 !> One run of a case with its result files: of the scene itself, or of its ideal twin.
 module case_run
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, keep_first, status_output
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, keep_first, status_output
   use case_definition, only: case_t
   use command_line, only: command_line_t
-  use gudgeon_columns, only: column_list_t
+  use trace_columns, only: column_list_t
   use film_files, only: write_film_file
   use wear_file, only: write_wear_file
-  use gudgeon_simulation, only: run_t, run_report_t
+  use simulation, only: run_t, run_report_t
   use run_state, only: run_state_t
   use state_file, only: state_text, state_suffix, reached
-  use patient_run, only: steps_between_looks
+  use whole_run, only: steps_between_looks
   use trace_files, only: trace_files_t
   use result_file, only: result_file_t, remove_result, write_text
   use certificate, only: certificate_t, make_certificate, certificate_table, certificate_summary, certificate_clause
-  use gudgeon_summary, only: summary_table
+  use run_summary, only: summary_table
   use run_line, only: lines_for_user
-  use gudgeon_progress, only: progress_t, clock, tell
+  use run_progress, only: progress_t, clock, tell
   use text_file, only: read_whole
-  use gudgeon_posix, only: synchronise_folder, file_length, absolute_path, error_text, interrupted
+  use posix_files, only: synchronise_folder, file_length, absolute_path, error_text, interrupted
   use text_tools, only: printable, replaced
   use joint_places, only: n_places
   implicit none
@@ -239,8 +239,8 @@ contains
     end if
     wall_time = clock() - self%began
     self%line = lines_for_user(case, self%report, wall_time, self%base, remark)
-    call self%summary%put(summary_table(case, self%report, wall_time, self%is_twin))
-    if (allocated(self%certificate)) call self%summary%put(certificate_summary(self%certificate))
+    call self%summary%append(summary_table(case, self%report, wall_time, self%is_twin))
+    if (allocated(self%certificate)) call self%summary%append(certificate_summary(self%certificate))
   end subroutine write_summary
 
   !> Collect the errors of the run: an error of the output takes precedence over one of the integration.
@@ -267,7 +267,7 @@ contains
     has_events = self%case%has_contact() .and. .not. self%is_twin
   end function has_events
 
-  !> Put the name of the case file in front of each line of an error message that does not contain it.
+  !> Write the name of the case file in front of each line of an error message that does not contain it.
   subroutine name_file(path, error)
     character(len=*), intent(in) :: path
     type(error_t), intent(inout) :: error

@@ -1,8 +1,8 @@
 !> Runs cases from their files to their results: each scene and, if requested, its ideal twin.
 module case_runner
   use, intrinsic :: iso_fortran_env, only: compiler_options
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, keep_first, status_ok, status_command_line, status_integration
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, keep_first, status_ok, status_command_line, status_integration
   use case_definition, only: case_t
   use accuracy_presets, only: with_preset
   use case_description, only: description
@@ -11,14 +11,14 @@ module case_runner
   use case_values, only: case_values_t
   use command_line, only: command_line_t
   use film_files, only: provide_tables, tell_tables
-  use gudgeon_columns, only: column_list_t, choose_columns
-  use gudgeon_summary, only: build_advice
+  use trace_columns, only: column_list_t, choose_columns
+  use run_summary, only: build_advice
   use run_start, only: try_start
   use case_run, only: case_run_t, name_file
   use bearing_run, only: bearing_run_t
   use result_file, only: fail_with_file
-  use gudgeon_posix, only: absolute_path, make_directory, interrupted
-  use gudgeon_progress, only: tell, say, clock, progress_wanted
+  use posix_files, only: absolute_path, make_directory, interrupted
+  use run_progress, only: tell, say, clock, progress_wanted
   use measured_curve, only: measured_curve_t
   use process_pool, only: tasks_t, note_t, share, available_processors
   use text_tools, only: case_name, printable, integer_text, path_beside, replaced
@@ -42,7 +42,7 @@ module case_runner
     integer :: status = status_ok                     !! largest exit status so far
   contains
     procedure :: carry_out
-    procedure :: take_note
+    procedure :: record_note
     procedure :: lost
   end type case_jobs_t
 
@@ -219,11 +219,11 @@ contains
     end associate
   end subroutine carry_out
 
-  subroutine take_note(self, note)
+  subroutine record_note(self, note)
     class(case_jobs_t), intent(inout) :: self
     type(note_t), intent(in) :: note
     self%status = max(self%status, note%numbers(1))
-  end subroutine take_note
+  end subroutine record_note
 
   subroutine lost(self, task, signal)
     class(case_jobs_t), intent(inout) :: self

@@ -2,8 +2,8 @@
 !> each of which declares its parameters beside the components that hold them (`parameters`). Ranges and lists of words are texts,
 !> which are shown to the user unchanged. The default of a key is allowed even outside its range, and then means "not given".
 module case_schema
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: parameter_list_t, law_t, key_t, real_kind, integer_kind, logical_kind, word_kind, text_kind
+  use kinds, only: dp
+  use model_parameters, only: parameter_list_t, law_t, key_t, real_kind, integer_kind, logical_kind, word_kind, text_kind
   use joint_places, only: places, in_order
   use case_definition, only: case_t, visit_case
   implicit none
@@ -40,7 +40,7 @@ module case_schema
     character(len=:), allocatable :: law_name, difference
   contains
     procedure :: begin
-    procedure :: take
+    procedure :: get_table
     procedure :: visit => collect
     procedure :: group => collect_group
     procedure :: choice => collect_choice
@@ -57,7 +57,7 @@ contains
     call schema%begin()
     call visit_case(case, schema)
     call add_laws_of_one_joint(schema)
-    call schema%take(table)
+    call schema%get_table(table)
   end subroutine case_schema_of
 
   !> Initialise the visitor.
@@ -69,13 +69,13 @@ contains
   end subroutine begin
 
   !> Return the collected groups and keys.
-  subroutine take(self, table)
+  subroutine get_table(self, table)
     class(schema_t), intent(in) :: self
     type(key_table_t), intent(out) :: table
     table%groups = self%groups(:self%n_groups)
     table%keys = self%keys(:self%n_keys)
     table%difference = self%difference
-  end subroutine take
+  end subroutine get_table
 
   !> Whether case files have a group of this name.
   logical function is_group_of_cases(name)

@@ -1,9 +1,9 @@
 !> Cases as text: the template with every key and its default, and the resolved case.
 module case_text
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use text_tools, only: integer_text, quoted
   use number_text, only: exact_text
-  use gudgeon_parameters, only: key_t, real_kind, integer_kind, logical_kind
+  use model_parameters, only: key_t, real_kind, integer_kind, logical_kind
   use case_schema, only: group_definition_t, key_table_t, find_key, is_listed
   use case_values, only: case_values_t, value_t
   implicit none

@@ -1,8 +1,8 @@
 !> The values of one case, key by key in the order of the schema: taken from a file or an override, and checked for kind, count,
 !> words and range.
 module case_values
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, nearest_word, allowed
   use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, real_kind, integer_kind, &
     word_kind, text_kind
@@ -28,12 +28,12 @@ module case_values
     procedure :: set_defaults
     procedure :: find         !! index of a key, or an error
     procedure :: list_keys
-    procedure :: excuse
+    procedure :: count_as_given
     procedure :: place_of     !! index of a key
     procedure :: give         !! assign the values of an entry of the file
     procedure :: assign       !! give a key its values as written
     procedure :: assign_text  !! the same, from a text of the user, as an override
-    procedure :: take_out     !! remove a group, as if the file did not contain it
+    procedure :: remove_group     !! remove a group, as if the file did not contain it
     procedure :: prefer_overrides   !! to other keys of the same family
     procedure :: prefer
     procedure :: check_family
@@ -68,7 +68,7 @@ contains
 
   !> Remove a group and all values given for it so far, as if the file did not contain it. `at` names the origin of the request in
   !> messages.
-  subroutine take_out(self, name, at, error)
+  subroutine remove_group(self, name, at, error)
     class(case_values_t), intent(inout) :: self
     character(len=*), intent(in) :: name, at
     type(error_t), allocatable, intent(out) :: error
@@ -82,7 +82,7 @@ contains
     do i = 1, size(self%keys)
       if (self%keys(i)%group == name) call set_to_default(self%keys(i), self%values(i))
     end do
-  end subroutine take_out
+  end subroutine remove_group
 
   !> Let keys set by overrides replace keys of the same family that the file sets.
   subroutine prefer_overrides(self)
@@ -222,7 +222,7 @@ contains
   end subroutine list_keys
 
   !> Count the key of a group that a misspelt name probably means as given, so that it is not demanded too.
-  subroutine excuse(self, group, misspelt)
+  subroutine count_as_given(self, group, misspelt)
     class(case_values_t), intent(inout) :: self
     character(len=*), intent(in) :: group, misspelt
     character(len=name_length), allocatable :: names(:)
@@ -231,7 +231,7 @@ contains
     call self%list_keys(group, names)
     place = self%place_of(group, nearest_word(misspelt, names))
     if (place > 0) self%values(place)%given = .true.
-  end subroutine excuse
+  end subroutine count_as_given
 
   !> Give a key of a group the values of an entry of the file; `at` names file and line. What is wrong is noted.
   subroutine give(self, group, entry, at)
@@ -242,7 +242,7 @@ contains
     integer :: place
     call self%find(group, entry%key, at, place, error)
     if (allocated(error)) then
-      call self%excuse(group, entry%key)
+      call self%count_as_given(group, entry%key)
     else
       call self%assign(place, entry%index, entry%tokens, at, .false., error)
       self%values(place)%line = entry%line
@@ -372,7 +372,7 @@ contains
       group = find_group(self%groups, trim(key%group))
       if (self%is_present(group)) then
         call self%refuse(trim(key%group), trim(key%name), 'required'//self%by_law(key))
-      else if (.not. (self%groups(group)%is_model .or. self%problems%blames(''))) then
+      else if (.not. (self%groups(group)%is_model .or. self%problems%concerns(''))) then
         call self%problems%add(self%file//': '//shown_group(trim(key%group))//': this group is required', trim(key%group), &
           behind_file)
       end if
@@ -471,11 +471,11 @@ contains
   end subroutine forbid
 
   !> Note an error of a number that is missing, or given as 0. `why` says when it is required.
-  subroutine demand(self, is_there, group, name, why)
+  subroutine demand(self, is_met, group, name, why)
     class(case_values_t), intent(inout) :: self
-    logical, intent(in) :: is_there
+    logical, intent(in) :: is_met
     character(len=*), intent(in) :: group, name, why
-    if (is_there) return
+    if (is_met) return
     if (self%is_given(group, name)) then
       call self%refuse(group, name, 'must be > 0')
     else

@@ -3,17 +3,17 @@
 !> may be the least accurate of the three. A run is certified up to the time at which the error of any coordinate or speed first
 !> exceeds 1e-3 of its range, and not beyond the time at which the two others differ by that. Results of runs are compared too.
 module certificate
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
-  use gudgeon_errors, only: error_t, fail, status_integration
+  use kinds, only: dp
+  use constants, only: two_pi
+  use error_handling, only: error_t, fail, status_integration
   use case_definition, only: case_t, output_case_t
-  use gudgeon_columns, only: column_list_t, choose_columns, column_name
-  use gudgeon_simulation, only: run_t, run_report_t
-  use gudgeon_summary, only: summary_table, summary_value
+  use trace_columns, only: column_list_t, choose_columns, column_name
+  use simulation, only: run_t, run_report_t
+  use run_summary, only: summary_table, summary_value
   use film_files, only: provide_tables
   use joint_places, only: n_places
   use number_text, only: real_text, short_text
-  use patient_run, only: go_to_end
+  use whole_run, only: go_to_end
   use row_store, only: row_store_t
   use text_tools, only: next_line, quoted
   implicit none

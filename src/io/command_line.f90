@@ -1,6 +1,6 @@
 !> Reads the command line: options, overrides and case files. The arguments are passed as an array so that it can be tested.
 module command_line
-  use gudgeon_errors, only: error_t, fail, status_command_line
+  use error_handling, only: error_t, fail, status_command_line
   use text_tools, only: printable, lowercase, nearest_word, likely_word, case_name
   use case_templates, only: template_kinds
   use accuracy_presets, only: accuracy_levels
@@ -83,9 +83,9 @@ contains
       else if (text == '--') then
         only_cases = .true.
       else if (index(text, '--') == 1) then
-        call take_long()
+        call read_long_option()
       else
-        call take_short()
+        call read_short_options()
       end if
     end do
     if (allocated(error) .or. line%help .or. line%version) return
@@ -121,7 +121,7 @@ contains
     end subroutine refuse
 
     !> `--name`, `--name value` or `--name=value`.
-    subroutine take_long()
+    subroutine read_long_option()
       character(len=:), allocatable :: name, near
       character(len=10) :: names(size(options))
       integer :: equals, place
@@ -135,47 +135,47 @@ contains
         if (near /= '') near = '; did you mean --'//near//'?'
         call refuse('--'//printable(name, 40)//': unknown option'//near)
       else if (equals == 0) then
-        call take_option(options(place), '--'//name)
+        call read_option(options(place), '--'//name)
       else if (options(place)%takes_value .or. options(place)%may_take_value) then
-        call take(options(place)%long, text(equals + 1:), has_value=.true.)
+        call set_option(options(place)%long, text(equals + 1:), has_value=.true.)
       else
         call refuse('--'//name//': takes no value')
       end if
-    end subroutine take_long
+    end subroutine read_long_option
 
     !> `-s VALUE`, `-sVALUE`, `-q`, or several options without values together, such as `-qh`.
-    subroutine take_short()
+    subroutine read_short_options()
       integer :: k, place
       do k = 2, len(text)
         place = findloc(options%short == text(k:k) .and. options%short /= '', .true., 1)
         if (place == 0) then
           call refuse(printable(text, 40)//': unknown option')
         else if (options(place)%takes_value .and. k < len(text)) then
-          call take(options(place)%long, text(k + 1:))
+          call set_option(options(place)%long, text(k + 1:))
           return
         else
-          call take_option(options(place), '-'//text(k:k))
+          call read_option(options(place), '-'//text(k:k))
         end if
         if (allocated(error)) return
       end do
-    end subroutine take_short
+    end subroutine read_short_options
 
     !> Carry out an option to which no value is attached: if it takes one, that is the next argument.
-    subroutine take_option(option, shown)
+    subroutine read_option(option, shown)
       type(option_t), intent(in) :: option
       character(len=*), intent(in) :: shown
       if (.not. option%takes_value) then
-        call take(option%long, '')
+        call set_option(option%long, '')
       else if (i == size(arguments)) then
         call refuse(shown//': a value is missing')
       else
         i = i + 1
-        call take(option%long, trim(arguments(i)))
+        call set_option(option%long, trim(arguments(i)))
       end if
-    end subroutine take_option
+    end subroutine read_option
 
     !> Carry out one option.
-    subroutine take(name, value, has_value)
+    subroutine set_option(name, value, has_value)
       character(len=*), intent(in) :: name, value
       logical, intent(in), optional :: has_value   !! of an option that may do without
       character(len=:), allocatable :: wanted
@@ -233,7 +233,7 @@ contains
         line%version = .true.
       end select
       if (allocated(wanted)) call refuse('--'//trim(name)//' '//printable(value, 60)//': '//wanted)
-    end subroutine take
+    end subroutine set_option
 
     !> Check that no two cases would write files of the same name: a/x.nml and b/x.nml, or x.nml and x.ideal.nml, x.film.nml, ...
     subroutine check_names()

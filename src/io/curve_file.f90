@@ -1,7 +1,7 @@
 !> Reads measured curves from CSV files: a header that names two columns with their units, such as crank_angle[deg],pressure[bar],
 !> and a row of two numbers for each point. Empty lines and lines that begin with # are ignored.
 module curve_file
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use text_tools, only: printable, integer_text, replaced, next_line
   use units, only: find_head_unit, head_units
   use value_reader, only: read_real

@@ -1,7 +1,7 @@
 !> Reads the table of a bearing case: a header of columns, and a row of numbers for each time.
 module duty_file
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_case_file
   use film_history, only: film_duty_t
   use text_file, only: read_text_file
   use text_tools, only: printable, integer_text, next_line

@@ -7,19 +7,19 @@
 !> the cache, the run continues without storing it. A file that a case names is replaced only if it is a table of a film, of any
 !> parameters.
 module film_files
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_integration, status_case_file
-  use gudgeon_bearing, only: bearing_t
-  use gudgeon_checksum, only: checksum_t, mark_of, mark_length
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_integration, status_case_file
+  use bearing_size, only: bearing_t
+  use checksums, only: checksum_t, checksum_of, checksum_length
   use joint_places, only: places, n_places, in_order
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use film_snapshots, only: film_field_t
   use film_law, only: film_law_t, table_watch_t
-  use gudgeon_posix, only: make_directory, interrupted, error_text, error_no_entry
+  use posix_files, only: make_directory, interrupted, error_text, error_no_entry
   use growing_text, only: growing_text_t
   use number_text, only: real_text, short_text, quantity_text
-  use gudgeon_progress, only: progress_t, clock, tell
+  use run_progress, only: progress_t, clock, tell
   use result_file, only: write_text
   use text_tools, only: path_beside, printable
   use text_file, only: read_whole
@@ -69,7 +69,7 @@ contains
     type(progress_watch_t) :: watch
     type(bearing_t) :: bearing
     character(len=:), allocatable :: key, path
-    logical :: is_there, is_named
+    logical :: is_restored, is_named
     real(dp) :: began   ! [s]
     if (.not. (allocated(joint%film) .and. joint%has_clearance())) return
     bearing = joint%bearing(case%mechanism%rod_length)
@@ -78,8 +78,8 @@ contains
       if (key == joint%film%table_of) return
       began = clock()
       call find_file(joint%film, case, key, .true., path, is_named)
-      call load(path, key, joint%film, is_named, is_there, error)
-      if (.not. (is_there .or. allocated(error))) then
+      call load(path, key, joint%film, is_named, is_restored, error)
+      if (.not. (is_restored .or. allocated(error))) then
         if (announces) call tell(printable(case%file, 200)//': computing the film table of a bearing with L/D = '// &
                                  short_text(0.5_dp*bearing%length/bearing%pin_radius())//place_of(path))
         call watch%progress%start(case%name//': film table', shows_progress)
@@ -124,7 +124,7 @@ contains
     type(trial_watch_t) :: watch
     type(bearing_t) :: bearing
     character(len=:), allocatable :: key, path
-    logical :: is_there, is_named
+    logical :: is_restored, is_named
     text = ''
     if (.not. (allocated(joint%film) .and. joint%has_clearance())) return
     allocate (film, source=joint%film)
@@ -132,10 +132,10 @@ contains
     key = film%table_key(bearing, case%integrator%relative_tolerance)
     if (key == '') return
     call find_file(film, case, key, .false., path, is_named)
-    call load(path, key, film, is_named, is_there, error)
+    call load(path, key, film, is_named, is_restored, error)
     if (allocated(error)) return
     text = 'stored in '//printable(path, 200)
-    if (is_there) return
+    if (is_restored) return
     watch%began = clock()
     call film%make_table(bearing, case%integrator%relative_tolerance, watch)
     text = 'must be computed, in about '//quantity_text(watch%took/watch%share, 's', 1)
@@ -214,17 +214,17 @@ contains
 
   !> Read a table from its file, if there is a complete one. Error: the file that the case names is there, but is not a table of a
   !> film (status_case_file).
-  subroutine load(path, key, film, is_named, is_there, error)
+  subroutine load(path, key, film, is_named, is_restored, error)
     character(len=*), intent(in) :: path, key
     class(film_law_t), intent(inout) :: film
     logical, intent(in) :: is_named
-    logical, intent(out) :: is_there
+    logical, intent(out) :: is_restored
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: bytes, head, fault
     real(dp) :: numbers(0)
     integer :: status, last
 
-    is_there = .false.
+    is_restored = .false.
     if (path == '') return
     call read_whole(path, bytes, status)
     fault = ''
@@ -233,13 +233,13 @@ contains
     if (is_named .and. fault /= '') call fail(error, '&lubrication table_file = '//printable(film%table_file, 200)//': '//fault, &
       status_case_file)
     head = title//key//newline
-    last = len(bytes) - mark_length
+    last = len(bytes) - checksum_length
     if (status /= 0 .or. last < len(head)) return
     if (bytes(:len(head)) /= head) return
-    if (bytes(last + 1:) /= mark_of(bytes(:last))) return
+    if (bytes(last + 1:) /= checksum_of(bytes(:last))) return
     film%table_of = ''
-    call film%restore_table(transfer(bytes(len(head) + 1:last), numbers), is_there)
-    if (is_there) film%table_of = key
+    call film%restore_table(transfer(bytes(len(head) + 1:last), numbers), is_restored)
+    if (is_restored) film%table_of = key
   end subroutine load
 
   !> Store a table if possible. It is written under a temporary name first.
@@ -253,7 +253,7 @@ contains
     numbers = film%table_numbers()
     allocate (character(len=8*size(numbers)) :: bytes)
     bytes = title//key//newline//transfer(numbers, bytes)
-    call write_text(path, bytes//mark_of(bytes), error)
+    call write_text(path, bytes//checksum_of(bytes), error)
   end subroutine save
 
   !> Write one row for each node of the film: the angle from x towards y in the frame of the bearing, and the axial distance from

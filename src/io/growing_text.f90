@@ -9,7 +9,7 @@ module growing_text
     integer :: used = 0
   contains
     procedure :: append
-    procedure :: make_room
+    procedure :: reserve
   end type growing_text_t
 
 contains
@@ -18,13 +18,13 @@ contains
   pure subroutine append(self, piece)
     class(growing_text_t), intent(inout) :: self
     character(len=*), intent(in) :: piece
-    call self%make_room(len(piece))
+    call self%reserve(len(piece))
     self%text(self%used + 1:self%used + len(piece)) = piece
     self%used = self%used + len(piece)
   end subroutine append
 
   !> Allocate memory for `more` additional characters.
-  pure subroutine make_room(self, more)
+  pure subroutine reserve(self, more)
     class(growing_text_t), intent(inout) :: self
     integer, intent(in) :: more
     integer, parameter :: first_length = 4096
@@ -34,5 +34,5 @@ contains
     allocate (character(len=2*(self%used + more)) :: longer)
     longer(:self%used) = self%text(:self%used)
     call move_alloc(longer, self%text)
-  end subroutine make_room
+  end subroutine reserve
 end module growing_text

@@ -2,7 +2,7 @@
 !> reader of a compiler, which accepts some mistakes: only comments may stand outside a group, every group must be closed by / or
 !> &end, every key must have values, and no value may be missing between commas. A word behind a number is its unit.
 module namelist_reader
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text
   use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, word_is_next, &
     slash_of_unit, digits, shown
@@ -132,6 +132,7 @@ contains
         next = name_here(scan)
         if (next /= 'end') call not_closed(scan, group, '&'//printable(next, shown))
         return
+      case default   ! a key
       end select
       if (list%n_entries == most) scan%message = 'too many keys'
       if (allocated(scan%message)) return
@@ -189,14 +190,14 @@ contains
   subroutine read_index(scan, n)
     type(scanner_t), intent(inout) :: scan
     integer, intent(out) :: n
-    character(len=:), allocatable :: inside
+    character(len=:), allocatable :: in_domain
     integer :: length
     n = 0
     length = index(scan%text(scan%at:min(scan%at + 20, len(scan%text))), ')')
     if (length == 0) return
-    inside = trim(adjustl(scan%text(scan%at + 1:scan%at + length - 2)))
-    if (len(inside) < 1 .or. len(inside) > 4 .or. verify(inside, digits) > 0) return
-    read (inside, *) n
+    in_domain = trim(adjustl(scan%text(scan%at + 1:scan%at + length - 2)))
+    if (len(in_domain) < 1 .or. len(in_domain) > 4 .or. verify(in_domain, digits) > 0) return
+    read (in_domain, *) n
     scan%at = scan%at + length
   end subroutine read_index
 

@@ -1,4 +1,4 @@
-!> Interfaces of calls of the C library and their structures on Linux; gudgeon_posix provides procedures that use them.
+!> Interfaces of calls of the C library and their structures on Linux; posix_files provides procedures that use them.
 module posix_calls
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_short, c_ptr, c_size_t
   implicit none

@@ -1,6 +1,6 @@
 !> The errors in a file of the user, collected so that all of them are reported, one line each, in the order of the file.
 module problem_list
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: integer_text
   implicit none
   private
@@ -26,7 +26,7 @@ module problem_list
     procedure :: add
     procedure :: add_error
     procedure :: absorb
-    procedure :: blames
+    procedure :: concerns
     procedure :: settle
     procedure :: clear
     procedure :: report
@@ -85,15 +85,15 @@ contains
   end subroutine absorb
 
   !> Whether a problem of this group was found; with an empty name, one of an unknown group.
-  pure logical function blames(self, group)
+  pure logical function concerns(self, group)
     class(problem_list_t), intent(in) :: self
     character(len=*), intent(in) :: group
     integer :: i
-    blames = .false.
+    concerns = .false.
     do i = 1, self%n
-      if (self%found(i)%group == group) blames = .true.
+      if (self%found(i)%group == group) concerns = .true.
     end do
-  end function blames
+  end function concerns
 
   !> Do not blame the groups again that are blamed now: what follows may follow from these problems.
   pure subroutine settle(self)

@@ -1,7 +1,7 @@
 !> Shares numbered tasks among processes: copies of this program that take one task after the other, each the next that nobody has
 !> taken. What a task has to report is sent to this process as a note.
 module process_pool
-  use gudgeon_posix, only: read_bytes, write_all, close_file, wait_for_input, interrupted, error_interrupted
+  use posix_files, only: read_bytes, write_all, close_file, wait_for_input, interrupted, error_interrupted
   use posix_processes, only: fork_worker, wait_for_worker, ask_to_end, leave_worker, open_pipe, available_processors
   implicit none
   private
@@ -17,15 +17,15 @@ module process_pool
   end type note_t
 
   type, abstract :: tasks_t
-    logical :: is_over = .false.        !! set by `take_note`: nothing more is to be done
+    logical :: is_over = .false.        !! set by `record_note`: nothing more is to be done
   contains
     procedure(carry_out), deferred :: carry_out
-    procedure(take_note), deferred :: take_note
+    procedure(record_note), deferred :: record_note
     procedure(lost), deferred :: lost
   end type tasks_t
 
   abstract interface
-    !> Carry out a task, in a copy of this program or here. `note` is for `take_note`. An interruption must end it soon.
+    !> Carry out a task, in a copy of this program or here. `note` is for `record_note`. An interruption must end it soon.
     subroutine carry_out(self, task, note)
       import :: tasks_t, note_t
       class(tasks_t), intent(inout) :: self
@@ -34,11 +34,11 @@ module process_pool
     end subroutine carry_out
 
     !> A task has ended with this note.
-    subroutine take_note(self, note)
+    subroutine record_note(self, note)
       import :: tasks_t, note_t
       class(tasks_t), intent(inout) :: self
       type(note_t), intent(in) :: note
-    end subroutine take_note
+    end subroutine record_note
 
     !> A process was killed by this signal (0: it ended by itself) while it carried out this task.
     subroutine lost(self, task, signal)
@@ -74,7 +74,7 @@ contains
     do i = 1, n
       note = note_t(task=i)
       call tasks%carry_out(i, note)
-      call tasks%take_note(note)
+      call tasks%record_note(note)
     end do
   end subroutine share
 
@@ -115,12 +115,12 @@ contains
   subroutine supervise(tasks, n, process, queue, notes)
     class(tasks_t), intent(inout) :: tasks
     integer, intent(in) :: n, process(:), queue, notes
-    integer, parameter :: patience = 200   !! [ms]
+    integer, parameter :: timeout = 200   !! [ms]
     integer, parameter :: room = 500       !! number of tasks that the queue can hold
     character(len=storage_size(note_t())/8) :: bytes
     type(note_t) :: note
     integer :: present_task(size(process)), given, ended, done, status, i
-    logical :: is_there, is_over, was_asked
+    logical :: has_input, is_over, was_asked
     present_task = 0
     was_asked = .false.
     given = 0
@@ -131,7 +131,7 @@ contains
         call write_all(queue, transfer(given, '    '), done, status)
         if (given == n) call close_end(queue)
       end do
-      call wait_for_input(notes, patience, is_there)
+      call wait_for_input(notes, timeout, has_input)
       is_over = interrupted()
       if ((is_over .or. tasks%is_over) .and. .not. was_asked) then
         was_asked = .true.
@@ -139,7 +139,7 @@ contains
           if (process(i) > 0) call ask_to_end(process(i))
         end do
       end if
-      if (.not. is_there) cycle
+      if (.not. has_input) cycle
       call read_bytes(notes, bytes, done, status)
       if (status == error_interrupted) cycle
       if (done < len(bytes)) exit
@@ -147,7 +147,7 @@ contains
       present_task(note%worker) = merge(note%task, 0, note%has_begun)
       if (note%has_begun) cycle
       ended = ended + 1
-      call tasks%take_note(note)
+      call tasks%record_note(note)
     end do
     call close_end(notes)
     do i = 1, size(process)

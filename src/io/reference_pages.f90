@@ -1,18 +1,18 @@
 !> Reference pages of the manual in Markdown, generated from the declarations of the models: the keys of case and study files, the
 !> columns and quantities of results. `gudgeon --reference` prints them.
 module reference_pages
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
-  use gudgeon_parameters, only: key_t, logical_kind
+  use kinds, only: dp
+  use error_handling, only: error_t
+  use model_parameters, only: key_t, logical_kind
   use case_schema, only: group_definition_t, key_table_t, find_key
   use case_definition, only: case_t
   use case_file, only: parse_case, template
-  use gudgeon_columns, only: choose_columns
+  use trace_columns, only: choose_columns
   use trace_row, only: column_list_t, name_length
   use text_tools, only: replaced
   use named_oils, only: oils, sources
   use number_text, only: short_text
-  use summary_quantities, only: quantity_t, quantities_of_runs, event_columns, wear_columns
+  use summary_quantities, only: quantity_t, quantities_of_runs, event_columns, wear_columns, study_columns
   implicit none
   private
   public :: keys_reference, results_reference, oils_reference
@@ -123,7 +123,8 @@ contains
     end do
     text = text//'## Columns of NAME.events.csv'//newline//newline//quantity_table(event_columns)//newline// &
       '## Columns of NAME.wear.csv'//newline//newline//quantity_table(wear_columns)//newline// &
-      '## Quantities of NAME.summary.csv'//newline//newline//quantity_table(quantities_of_runs)
+      '## Quantities of NAME.summary.csv'//newline//newline//quantity_table(quantities_of_runs)// &
+      newline//'## Columns of NAME.runs.csv and NAME.cycles.csv of a study'//newline//newline//quantity_table(study_columns)
   end function results_reference
 
   !> Page of the named oils.

@@ -3,9 +3,9 @@
 !> NAME.part.)
 module result_file
   use, intrinsic :: iso_c_binding, only: c_long
-  use gudgeon_errors, only: error_t, fail, status_output
+  use error_handling, only: error_t, fail, status_output
   use text_tools, only: printable
-  use gudgeon_posix, only: open_for_writing, open_file, lock_file, to_append, write_all, truncate_file, reserve_file, &
+  use posix_files, only: open_for_writing, open_file, lock_file, to_append, write_all, truncate_file, reserve_file, &
     synchronise_file, close_file, rename_file, remove_file, error_text, error_interrupted, error_locked, error_no_entry, &
     error_is_directory
   implicit none
@@ -17,7 +17,7 @@ module result_file
   !> A file that is being written. After a failed write nothing more is written: further rows are discarded, `conclude` keeps the
   !> rows that were written completely, and `close` reports the failure.
   type :: result_file_t
-    character(len=:), allocatable :: buffer  !! after a call of `make_room` whole rows may be added here, and their length to `used`
+    character(len=:), allocatable :: buffer  !! after `require_space` whole rows may be added here, and their length to `used`
     integer :: used = 0                                 !! number of bytes in the buffer
     character(len=:), allocatable, private :: path      !! final name
     integer, private :: descriptor = -1
@@ -28,8 +28,8 @@ module result_file
   contains
     procedure :: open => open_result
     procedure :: reopen
-    procedure :: put
-    procedure :: make_room
+    procedure :: append
+    procedure :: require_space
     procedure :: reserve
     procedure :: flush => flush_rows
     procedure :: synchronise
@@ -74,26 +74,26 @@ contains
   end subroutine reopen
 
   !> Add whole rows; `text` must end with an end of line.
-  subroutine put(self, text)
+  subroutine append(self, text)
     class(result_file_t), intent(inout) :: self
     character(len=*), intent(in) :: text
     if (self%descriptor < 0 .or. self%status /= 0) return
-    call self%make_room(len(text))
+    call self%require_space(len(text))
     if (len(text) > buffer_size) then
       call write_rows(self, text)
     else if (self%status == 0) then
       self%buffer(self%used + 1:self%used + len(text)) = text
       self%used = self%used + len(text)
     end if
-  end subroutine put
+  end subroutine append
 
   !> Make room in the buffer for `length` bytes, at most `buffer_size`.
-  subroutine make_room(self, length)
+  subroutine require_space(self, length)
     class(result_file_t), intent(inout) :: self
     integer, intent(in) :: length
     if (self%used + length > buffer_size) call self%flush()
     if (.not. allocated(self%buffer)) allocate (character(len=buffer_size) :: self%buffer)
-  end subroutine make_room
+  end subroutine require_space
 
   !> Reserve disk space before anything is written, so that the file can be written even if the disk is full later. Error: there is
   !> not enough space.

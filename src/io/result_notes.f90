@@ -1,7 +1,7 @@
 !> Notes on the results of a run: what no machine can do, and what the models do not describe.
 module result_notes
-  use gudgeon_kinds, only: dp
-  use gudgeon_simulation, only: run_report_t
+  use kinds, only: dp
+  use simulation, only: run_report_t
   use run_figures, only: pin_figures_t
   use joint_places, only: places, n_places, in_order
   use case_definition, only: case_t

@@ -1,6 +1,6 @@
 !> A sink that stores rows and events in memory.
 module row_store
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use trace_sink, only: trace_sink_t, trace_event_t
   implicit none
   private
@@ -12,8 +12,8 @@ module row_store
     type(trace_event_t), allocatable :: event(:)    !! larger than necessary
   contains
     procedure :: hand_over
-    procedure :: take_row
-    procedure :: take_event
+    procedure :: accept_row
+    procedure :: accept_event
   end type row_store_t
 
 contains
@@ -29,21 +29,21 @@ contains
     if (allocated(self%event)) event = self%event(:self%events)
   end subroutine hand_over
 
-  subroutine take_row(self, values)
+  subroutine accept_row(self, values)
     class(row_store_t), intent(inout) :: self
     real(dp), intent(in), contiguous :: values(:)
     if (.not. allocated(self%values)) allocate (self%values(size(values), 1000))
     if (self%rows == size(self%values, 2)) self%values = reshape(self%values, [size(values), 2*self%rows], pad=[0.0_dp])
     self%rows = self%rows + 1
     self%values(:, self%rows) = values
-  end subroutine take_row
+  end subroutine accept_row
 
-  subroutine take_event(self, event)
+  subroutine accept_event(self, event)
     class(row_store_t), intent(inout) :: self
     type(trace_event_t), intent(in) :: event
     if (.not. allocated(self%event)) allocate (self%event(100))
     if (self%events == size(self%event)) self%event = [self%event, self%event]   ! more room
     self%events = self%events + 1
     self%event(self%events) = event
-  end subroutine take_event
+  end subroutine accept_event
 end module row_store

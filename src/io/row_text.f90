@@ -5,7 +5,7 @@
 !> written with an apostrophe in front; so is a text that begins with apostrophes followed by such a character. A reader removes one
 !> apostrophe from such fields. Numbers are not changed.
 module row_text
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use value_reader, only: read_real
   use number_text, only: number_writer_t, longest_number
   use growing_text, only: growing_text_t
@@ -27,7 +27,7 @@ contains
 
   pure subroutine clear(self)
     class(row_text_t), intent(inout) :: self
-    call self%make_room(0)
+    call self%reserve(0)
     self%used = 0
     self%is_open = .false.
   end subroutine clear
@@ -81,18 +81,18 @@ contains
     self%is_open = .true.
   end subroutine add_whole
 
-  !> Append a number, or an empty field if `is_there` is false.
-  pure subroutine add_number(self, numbers, value, is_there)
+  !> Append a number, or an empty field if `is_known` is false.
+  pure subroutine add_number(self, numbers, value, is_known)
     class(row_text_t), intent(inout) :: self
     type(number_writer_t), intent(in) :: numbers
     real(dp), intent(in) :: value
-    logical, intent(in), optional :: is_there
+    logical, intent(in), optional :: is_known
     if (self%is_open) call self%append(',')
     self%is_open = .true.
-    if (present(is_there)) then
-      if (.not. is_there) return
+    if (present(is_known)) then
+      if (.not. is_known) return
     end if
-    call self%make_room(longest_number)
+    call self%reserve(longest_number)
     call numbers%append(self%text, self%used, value)
   end subroutine add_number
 

@@ -1,11 +1,12 @@
 !> What the user is told about a run that has ended: the physics in one line, its cost in another one, and the notes on its results.
 module run_line
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
-  use gudgeon_simulation, only: run_report_t
+  use kinds, only: dp
+  use constants, only: two_pi
+  use simulation, only: run_report_t
   use run_figures, only: pin_figures_t
   use period_watch, only: period_watch_t
-  use joint_places, only: places, n_places, in_order, name_prefix
+  use cycle_answers, only: cycle_quantities
+  use joint_places, only: places, n_places, in_order
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use result_notes, only: notes_on_results, relative_residual
@@ -97,9 +98,9 @@ contains
 
   !> A value of the last whole cycle in brackets, where it differs from that of the whole run by more than 5 %, as after a start far
   !> from the settled motion; empty otherwise.
-  function cycle_text(report, name, place, of_run, unit) result(text)
+  function cycle_text(report, name, place, of_run) result(text)
     type(run_report_t), intent(in) :: report
-    character(len=*), intent(in) :: name, unit   !! of the answer of the cycle
+    character(len=*), intent(in) :: name   !! of the answer of the cycle
     integer, intent(in) :: place
     real(dp), intent(in) :: of_run
     character(len=:), allocatable :: text
@@ -109,8 +110,9 @@ contains
     if (.not. allocated(report%answers)) return
     do i = 1, size(report%answers)
       associate (it => report%answers(i))
-        if (it%name == name_prefix(place)//name .and. abs(it%value - of_run) > remarkable*abs(of_run)) &
-          text = ' ('//quantity_text(it%value, unit)//' in the last cycle)'
+        if (cycle_quantities(it%quantity)%name == name .and. it%place == place .and. &
+          abs(it%value - of_run) > remarkable*abs(of_run)) &
+          text = ' ('//quantity_text(it%value, trim(cycle_quantities(it%quantity)%unit))//' in the last cycle)'
       end associate
     end do
   end function cycle_text
@@ -131,12 +133,12 @@ contains
         text = text//'penetration up to '//quantity_text(-pin%min_film_thickness, 'm')//', '
       else if (allocated(joint%film)) then
         text = text//'film of at least '//quantity_text(pin%min_film_thickness, 'm')// &
-          cycle_text(report, 'cycle_min_film_thickness', place, pin%min_film_thickness, 'm')//', '
+          cycle_text(report, 'cycle_min_film_thickness', place, pin%min_film_thickness)//', '
         if (joint%film%table_of /= '' .and. joint%film%table_error > tolerance) &
           text = text//'its table good to '//short_text(100*joint%film%table_error, 2)//' %, '
       end if
     end if
     text = text//'pin force up to '//quantity_text(pin%max_force, 'N')// &
-      cycle_text(report, 'cycle_max_force', place, pin%max_force, 'N')
+      cycle_text(report, 'cycle_max_force', place, pin%max_force)
   end function pin_text
 end module run_line

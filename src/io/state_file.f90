@@ -1,13 +1,13 @@
 !> Files of states, NAME.state.nml: the state that a run has reached, and from which another run may start. The group &initial holds
 !> the motion, the group &so_far what the run has counted. Without &so_far a run begins at t = 0 with that motion.
 module state_file
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_case_file
   use run_state, only: run_state_t, state_number_t
   use case_definition, only: case_t
   use case_schema, only: shown_group
   use case_values, only: case_values_t
-  use gudgeon_posix, only: absolute_path
+  use posix_files, only: absolute_path
   use namelist_reader, only: namelist_t, read_namelist
   use number_text, only: exact_text
   use text_file, only: read_text_file

@@ -1,10 +1,10 @@
-!> Descriptions of all quantities of NAME.summary.csv and of all columns of NAME.events.csv and NAME.wear.csv, for the
-!> manual. A test compares the summaries of all shipped cases with this table.
+!> The declarations of all quantities of NAME.summary.csv and of the columns of the other tables of results: name, unit, meaning.
+!> The writers of these tables and the reference pages read them here.
 module summary_quantities
   use cycle_answers, only: quantity_t, cycle_quantities
   implicit none
   private
-  public :: quantity_t, quantities_of_runs, event_columns, wear_columns
+  public :: quantity_t, quantities_of_runs, event_columns, wear_columns, study_columns, unit_of
 
   !> In the names N stands for a number and PHASE for the phases of the joints. Quantities of the crank pin have the prefix
   !> `crank_pin_`, those of the corners of the skirt `guide_1_` to `guide_4_`.
@@ -139,4 +139,53 @@ module summary_quantities
     quantity_t('bore_depth', 'm', 'mean depth worn from this bin of the bore'), &
     quantity_t('pin_volume', 'm3', 'volume worn from this bin of the pin'), &
     quantity_t('bore_volume', 'm3', 'volume worn from this bin of the bore')]
+
+  !> Columns of NAME.runs.csv and NAME.cycles.csv of a study, beside those of its parameters: of the whole revolutions after
+  !> `settle_cycles`, or of one revolution. Columns of the crank pin have the prefix `crank_pin_`, those of the corners of the skirt
+  !> together `guide_`.
+  type(quantity_t), parameter :: study_columns(*) = [ &
+    quantity_t('run', '', 'number of the run, from 1'), &
+    quantity_t('status', '', &
+      '`done`, or why the run failed; `no whole revolution after settle_cycles`: the run is too short, or the crank stopped'), &
+    quantity_t('cycles', '-', 'revolutions that the statistics are of'), &
+    quantity_t('min_film_thickness', 'm', 'smallest film thickness; negative: penetration'), &
+    quantity_t('min_film_thickness_mean', 'm', 'mean over the revolutions of the smallest film thickness of each'), &
+    quantity_t('contact_time_fraction', '-', 'share of the time in contact'), &
+    quantity_t('impacts', '-', 'contacts that begin in a revolution, on average'), &
+    quantity_t('max_penetration', 'm', 'deepest penetration'), &
+    quantity_t('max_pin_force', 'N', 'largest pin force'), &
+    quantity_t('max_pin_force_mean', 'N', 'mean over the revolutions of the largest pin force of each'), &
+    quantity_t('mean_pin_force', 'N', 'mean over time of the pin force'), &
+    quantity_t('mean_crank_speed', 'rad/s', 'mean crank speed'), &
+    quantity_t('dissipated_energy', 'J', 'energy that the joints take from the bodies in a revolution'), &
+    quantity_t('energy_residual', '-', 'relative energy residual: the integration error'), &
+    quantity_t('rhs_evaluations', '-', 'evaluations of the right-hand side'), &
+    quantity_t('simulated_time', 's', 'simulated time'), &
+    quantity_t('notes', '-', 'notes on implausible values and results, which a run of the case alone prints'), &
+    quantity_t('strobes', '-', 'rows of this run in NAME.strobe.csv (`strobe_columns`)'), &
+    quantity_t('max_force', 'N', 'largest force of a corner of the skirt'), &
+    quantity_t('max_force_mean', 'N', 'mean over the revolutions of the largest force of each'), &
+    quantity_t('period_revolutions', '-', 'period of the motion in revolutions, 0: not periodic (`run.until = ''periodic''`)'), &
+    quantity_t('lyapunov_exponent', '1/revolution', 'largest Lyapunov exponent (`run.lyapunov_revolutions`)'), &
+    quantity_t('lyapunov_exponent_error', '1/revolution', 'its standard error'), &
+    quantity_t('worn_volume_pin', 'm3', 'volume worn from the pin in the whole run, also before `settle_cycles`'), &
+    quantity_t('worn_volume_bore', 'm3', 'volume worn from the bore'), &
+    quantity_t('max_wear_depth_pin', 'm', 'largest mean depth of a bin on the pin'), &
+    quantity_t('max_wear_depth_bore', 'm', 'the same on the bore'), &
+    quantity_t('cycle', '', 'number of the revolution from the start of the run, from 1 (NAME.cycles.csv)'), &
+    quantity_t('duration', 's', 'its duration (NAME.cycles.csv)')]
+
+contains
+
+  !> The unit of a quantity of a table; `?` if it has none of that name.
+  pure function unit_of(table, name) result(unit)
+    type(quantity_t), intent(in) :: table(:)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: unit
+    integer :: i
+    unit = '?'
+    do i = 1, size(table)
+      if (table(i)%name == name) unit = trim(table(i)%unit)
+    end do
+  end function unit_of
 end module summary_quantities

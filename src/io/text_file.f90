@@ -1,9 +1,9 @@
 !> Reads whole files.
 module text_file
-  use gudgeon_errors, only: error_t, fail, status_case_file, status_integration
+  use error_handling, only: error_t, fail, status_case_file, status_integration
   use text_tools, only: printable, integer_text
   use growing_text, only: growing_text_t
-  use gudgeon_posix, only: open_file, to_read, open_standard_input, wait_for_input, interrupted, read_bytes, close_file, &
+  use posix_files, only: open_file, to_read, open_standard_input, wait_for_input, interrupted, read_bytes, close_file, &
     error_text, error_interrupted, error_no_entry, file_length
   implicit none
   private
@@ -64,12 +64,12 @@ contains
     type(growing_text_t) :: all
     integer :: done, ignored
     was_interrupted = .false.
-    call all%make_room(buffer_size)
+    call all%reserve(buffer_size)
     if (status == 0) then
       do while (all%used <= most)
         if (waits) call await_input(descriptor, was_interrupted)
         if (was_interrupted) exit
-        call all%make_room(buffer_size)
+        call all%reserve(buffer_size)
         call read_bytes(descriptor, all%text(all%used + 1:all%used + buffer_size), done, status)
         if (status == error_interrupted) cycle
         if (status /= 0 .or. done == 0) exit
@@ -84,13 +84,13 @@ contains
   subroutine await_input(descriptor, was_interrupted)
     integer, intent(in) :: descriptor
     logical, intent(out) :: was_interrupted
-    integer, parameter :: patience = 50   ! ms
-    logical :: is_there
+    integer, parameter :: timeout = 50   ! ms
+    logical :: has_input
     do
       was_interrupted = interrupted()
       if (was_interrupted) return
-      call wait_for_input(descriptor, patience, is_there)
-      if (is_there) return
+      call wait_for_input(descriptor, timeout, has_input)
+      if (has_input) return
     end do
   end subroutine await_input
 end module text_file

@@ -1,9 +1,9 @@
 !> Writes the result files of a running case: NAME.csv, row by row, and NAME.events.csv.
 module trace_files
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, keep_first
-  use gudgeon_columns, only: column_list_t, column_name
-  use gudgeon_scene, only: event_contact_begins
+  use kinds, only: dp
+  use error_handling, only: error_t, keep_first
+  use trace_columns, only: column_list_t, column_name
+  use scene_problem, only: event_contact_begins
   use trace_sink, only: trace_sink_t, trace_event_t, joint_names
   use result_file, only: result_file_t
   use row_text, only: row_text_t
@@ -26,8 +26,8 @@ module trace_files
     procedure :: open
     procedure :: tell_error
     procedure :: close
-    procedure :: take_row
-    procedure :: take_event
+    procedure :: accept_row
+    procedure :: accept_event
   end type trace_files_t
 
 contains
@@ -47,17 +47,17 @@ contains
     call self%file(trace)%open(path//trim(suffixes(trace)), error)
     if (allocated(error)) return
     do i = 1, size(list%id)
-      if (i > 1) call self%file(trace)%put(',')
-      call self%file(trace)%put(column_name(list, i))
+      if (i > 1) call self%file(trace)%append(',')
+      call self%file(trace)%append(column_name(list, i))
     end do
-    call self%file(trace)%put(newline)
+    call self%file(trace)%append(newline)
     if (.not. with_events) return
     call self%file(event_list)%open(path//suffixes(event_list), error)
     if (allocated(error)) then
       call self%file(trace)%abandon()
       return
     end if
-    call self%file(event_list)%put('time[s],crank_angle[rad],event,normal_speed[m/s],duration[s],max_penetration[m],'// &
+    call self%file(event_list)%append('time[s],crank_angle[rad],event,normal_speed[m/s],duration[s],max_penetration[m],'// &
       'max_normal_force[N],joint'//newline)
   end subroutine open
 
@@ -79,19 +79,19 @@ contains
     call keep_first(second, error)
   end subroutine close
 
-  subroutine take_row(self, values)
+  subroutine accept_row(self, values)
     class(trace_files_t), intent(inout) :: self
     real(dp), intent(in), contiguous :: values(:)
-    call put_row(self%numbers, self%phase_column, values, self%file(trace))
-  end subroutine take_row
+    call write_row(self%numbers, self%phase_column, values, self%file(trace))
+  end subroutine accept_row
 
   !> Add a row to a file, written directly into its buffer; the phase is one digit.
-  subroutine put_row(numbers, phase, values, file)
+  subroutine write_row(numbers, phase, values, file)
     type(number_writer_t), intent(in) :: numbers
     integer, intent(in) :: phase   !! index of the phase's column
     real(dp), intent(in), contiguous :: values(:)
     type(result_file_t), intent(inout) :: file
-    call file%make_room((longest_number + 1)*size(values))
+    call file%require_space((longest_number + 1)*size(values))
     associate (text => file%buffer, used => file%used)
       call numbers%append_list(text, used, values(:phase - 1))
       if (phase <= size(values)) then
@@ -101,9 +101,9 @@ contains
       end if
       text(used:used) = achar(10)
     end associate
-  end subroutine put_row
+  end subroutine write_row
 
-  subroutine take_event(self, event)
+  subroutine accept_event(self, event)
     class(trace_files_t), intent(inout) :: self
     type(trace_event_t), intent(in) :: event
     associate (row => self%event, numbers => self%numbers, has_ended => event%kind /= event_contact_begins)
@@ -117,7 +117,7 @@ contains
       call row%add_number(numbers, event%max_normal_force, has_ended)
       call row%add_text(joint_names(event%pin))
       call row%end_row()
-      call self%file(event_list)%put(row%text(:row%used))
+      call self%file(event_list)%append(row%text(:row%used))
     end associate
-  end subroutine take_event
+  end subroutine accept_event
 end module trace_files

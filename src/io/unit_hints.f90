@@ -1,7 +1,7 @@
 !> Guesses in which unit a value was probably meant that is not of a usual size in the unit of its key.
 module unit_hints
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: degree, pi
+  use kinds, only: dp
+  use constants, only: degree, pi
   implicit none
   private
   public :: likely_unit

@@ -2,7 +2,7 @@
 !> converted, a message says what is required; no input can cause an overflow.
 module value_reader
   use, intrinsic :: iso_fortran_env, only: int64
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use text_tools, only: lowercase, printable, is_clean, whole_number, likely_word
   use case_schema, only: key_t, is_listed, real_kind, integer_kind, logical_kind, word_kind
   use namelist_reader, only: token_t

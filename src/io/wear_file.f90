@@ -1,7 +1,7 @@
 !> NAME.wear.csv: the worn surfaces of pins and bores at the end of a run.
 module wear_file
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use error_handling, only: error_t
   use joint_places, only: places
   use archard_wear, only: of_pin, of_bore
   use wear_record, only: wear_profile_t

@@ -1,10 +1,10 @@
 !> A joint with clearance: its geometry, its motion, its phase, and the list of elements that carry its load.
 !>
-!> Without contact between journal and bearing the joint is free, or a film carries the load; in contact the contact law acts (Reis
+!> Without contact between pin and bearing the joint is free, or a film carries the load; in contact the contact law acts (Reis
 !> 2013, fig. 3.9). One element acts in each phase, and one may act in several; in free flight none does.
 module clearance_joint
-  use gudgeon_kinds, only: dp
-  use gudgeon_bearing, only: bearing_t, crossing_speed
+  use kinds, only: dp
+  use bearing_size, only: bearing_t, crossing_speed
   use state_layout, only: layout_t, coordinates_t, slice_t
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, angular_acceleration, body_crank, body_big_end, body_small_end, body_piston, &
@@ -46,7 +46,7 @@ module clearance_joint
     type(place_t) :: site = places(piston_pin)   !! that place
     logical :: bearing_turns = .false.      !! false for a bearing in a piston that does not tilt
     type(bearing_t) :: bearing
-    real(dp) :: pin_radius = 0              !! of the journal [m]
+    real(dp) :: pin_radius = 0              !! of the pin [m]
     type(wear_law_t), allocatable :: wear   !! wear of pin and bore is counted
     ! the elements
     integer :: n_elements = 0
@@ -71,13 +71,13 @@ module clearance_joint
     real(dp) :: start_eccentricity(2) = 0   !! initial value [m]
     real(dp) :: start_rate(2) = 0           !! initial value [m/s]
   contains
-    procedure :: put_at
+    procedure :: set_place
     procedure :: add
     procedure :: claim
     procedure :: own_speed
-    procedure :: put_start
+    procedure :: set_start
     procedure :: declare
-    procedure :: put_own_rates
+    procedure :: set_own_rates
     procedure :: reset_states
     procedure :: work_of_friction
     procedure, non_overridable :: read_state
@@ -88,7 +88,7 @@ module clearance_joint
     procedure :: relative_rates
     procedure, non_overridable :: complete
     procedure, non_overridable :: find_gap
-    procedure, non_overridable :: look
+    procedure, non_overridable :: find_contact_state
     procedure :: slopes
     procedure :: phase_apart
     procedure :: begin_contact
@@ -108,14 +108,14 @@ module clearance_joint
 
 contains
 
-  !> Put the joint at a place of the chain.
-  subroutine put_at(self, place)
+  !> Set the joint to a place of the chain.
+  subroutine set_place(self, place)
     class(clearance_joint_t), intent(inout) :: self
     integer, intent(in) :: place   !! index in `places`
     self%place = place
     self%site = places(place)
     self%bearing_turns = self%site%bearing /= body_piston
-  end subroutine put_at
+  end subroutine set_place
 
   !> Add an element, which has been prepared and acts in the given phases.
   subroutine add(self, element, phases)
@@ -139,12 +139,12 @@ contains
   end subroutine add
 
   !> Claim the eccentricity, and what the elements need, in the state vector. The scale of the eccentricity is the clearance, that
-  !> of its rate the clearance divided by the time in which the crank turns by one radian. Measured (scripts/compare_adams.sh,
+  !> of its rate the clearance divided by the time in which the crank turns by one radian. Measured (scripts/bench/compare_adams.sh,
   !> simulation IV, c = 20 um): the error of the eccentricity at the end is 4e-5 c at the relative tolerance 1e-4, 4e-9 c at 1e-6,
   !> and 1e-14 c at 1e-12; in the coordinates (q, A, x) rounding alone causes 4e-12 c.
   !>
-  !> Where the crank hardly turns the journal has a speed scale of its own, `own_speed`. The scale of the rate is then a hundredth
-  !> of the speed that crosses the clearance, since a journal that starts at rest is slow at first and may remain slow.
+  !> Where the crank hardly turns the pin has a speed scale of its own, `own_speed`. The scale of the rate is then a hundredth
+  !> of the speed that crosses the clearance, since a pin that starts at rest is slow at first and may remain slow.
   subroutine claim(self, layout, crank_speed, span)
     class(clearance_joint_t), intent(inout) :: self
     type(layout_t), intent(inout) :: layout
@@ -165,7 +165,7 @@ contains
     end do
   end subroutine claim
 
-  !> Natural size of the journal's speed in its bearing where it does not follow from the crank speed [m/s]: the initial speed, or
+  !> Natural size of the pin's speed in its bearing where it does not follow from the crank speed [m/s]: the initial speed, or
   !> the speed that crosses the clearance in the time simulated.
   pure real(dp) function own_speed(self, span)
     class(clearance_joint_t), intent(in) :: self
@@ -173,8 +173,8 @@ contains
     own_speed = max(norm2(self%start_rate), crossing_speed(self%bearing%clearance, span))
   end function own_speed
 
-  !> Put the initial values of the joint's states into the state vector.
-  pure subroutine put_start(self, y)
+  !> Set the initial values of the joint's states in the state vector.
+  pure subroutine set_start(self, y)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(inout) :: y(:)
     integer :: k
@@ -185,7 +185,7 @@ contains
         y(element%states%first:element%states%last) = element%start(:element%n_states)
       end associate
     end do
-  end subroutine put_start
+  end subroutine set_start
 
   !> Declare the joint's state, which is in part in the state vector. A position in a bearing of another clearance keeps its
   !> penetration in contact, else its ratio to the clearance.
@@ -233,7 +233,7 @@ contains
 
   !> Rates of the states of the elements, and of the work of friction. They are 0 while an element does not act, and without
   !> contact.
-  pure subroutine put_own_rates(self, joint, dydt)
+  pure subroutine set_own_rates(self, joint, dydt)
     class(clearance_joint_t), intent(in) :: self
     type(joint_evaluation_t), intent(in) :: joint
     real(dp), intent(inout) :: dydt(*)
@@ -249,7 +249,7 @@ contains
         if (joint%touches) dydt(element%friction_work%first) = joint%friction_force*joint%sliding_speed
       end associate
     end do
-  end subroutine put_own_rates
+  end subroutine set_own_rates
 
   !> Set the states to 0 that are 0 at the beginning of each contact, those of friction laws.
   pure subroutine reset_states(self, y)
@@ -320,7 +320,7 @@ contains
       if (self%needs_ideal_motion(self%phase)) call find_ideal_motion(self, bodies, motion, joint)
       call self%slots(k)%element%find_loads(y, joint)
       joint%power = (joint%force(1)*joint%eccentricity_rate(1) + joint%force(2)*joint%eccentricity_rate(2)) &
-        + joint%moment*joint%journal_speed
+        + joint%moment*joint%pin_angular_speed
       if (self%bearing_turns) &
         joint%power = joint%power + bearing_moment(joint%eccentricity, joint%force, joint%moment)*joint%bearing_speed
     else
@@ -331,7 +331,7 @@ contains
     call self%load_chain(joint, joint%force, joint%moment, all)
   end subroutine loads
 
-  !> Set the loads of the chain's pin from a force [N] and a moment [N m] on the journal.
+  !> Set the loads of the chain's pin from a force [N] and a moment [N m] on the pin.
   pure subroutine load_chain(self, joint, force, moment, all)
     class(clearance_joint_t), intent(in) :: self
     type(joint_evaluation_t), intent(in) :: joint
@@ -349,12 +349,12 @@ contains
     end associate
   end subroutine load_chain
 
-  !> Set the angular speeds of journal and bearing.
+  !> Set the angular speeds of pin and bearing.
   pure subroutine find_speeds(self, motion, joint)
     class(clearance_joint_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
     type(joint_evaluation_t), intent(inout) :: joint
-    joint%journal_speed = motion%turning(self%site%journal)
+    joint%pin_angular_speed = motion%turning(self%site%pin_body)
     joint%bearing_speed = 0
     if (self%bearing_turns) joint%bearing_speed = motion%turning(self%site%bearing)
   end subroutine find_speeds
@@ -370,22 +370,22 @@ contains
     turning(body_crank) = motion%crank_speed
     turning(body_big_end:body_small_end) = -rod_speed
     turning(body_piston) = 0
-    joint%ideal_speed = turning(self%site%journal) + turning(self%site%bearing)
+    joint%ideal_speed = turning(self%site%pin_body) + turning(self%site%bearing)
     joint%ideal_acceleration = -rod_acceleration
     joint%frequency = abs(motion%crank_speed)
   end subroutine find_ideal_motion
 
-  !> Accelerations of journal and bearing relative to each other.
+  !> Accelerations of pin and bearing relative to each other.
   pure type(joint_rates_t) function relative_rates(self, accelerations) result(rates)
     class(clearance_joint_t), intent(in) :: self
     type(accelerations_t), intent(in) :: accelerations
     rates%eccentricity = self%site%sense*accelerations%pin(:, self%site%pin)
-    rates%journal = angular_acceleration(accelerations, self%site%journal)
+    rates%pin = angular_acceleration(accelerations, self%site%pin_body)
     rates%bearing = 0
     if (self%bearing_turns) rates%bearing = angular_acceleration(accelerations, self%site%bearing)
   end function relative_rates
 
-  !> Set what `loads` does not: the relative motion of journal and bearing in any phase, and the states of the element that acts. If
+  !> Set what `loads` does not: the relative motion of pin and bearing in any phase, and the states of the element that acts. If
   !> the motion of the bodies is not known, angular speeds and sliding speed are not set.
   pure subroutine complete(self, motion, is_known, y, joint)
     class(clearance_joint_t), intent(in) :: self
@@ -406,7 +406,7 @@ contains
     call find_sliding(self%pin_radius, joint)
   end subroutine complete
 
-  !> Set the position of the journal in its bearing and the gap.
+  !> Set the position of the pin in its bearing and the gap.
   pure subroutine find_gap(self, y, joint)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
@@ -426,9 +426,9 @@ contains
     end do
   end subroutine find_own_gap
 
-  !> The position and velocity of the journal in its bearing, without angular and sliding speeds, and the normal force of the
+  !> The position and velocity of the pin in its bearing, without angular and sliding speeds, and the normal force of the
   !> contact: all that follows from the state without the motion of the bodies.
-  pure subroutine look(self, y, joint, normal_force)
+  pure subroutine find_contact_state(self, y, joint, normal_force)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
     type(joint_evaluation_t), intent(inout) :: joint
@@ -437,10 +437,10 @@ contains
     call self%find_gap(y, joint)
     normal_force = 0
     if (self%phase == phase_contact) normal_force = self%slots(self%acting(phase_contact))%element%normal_force(joint)
-  end subroutine look
+  end subroutine find_contact_state
 
-  !> Derivatives of the force and the moment on the journal (rows F_x, F_y, moment) and of the rates of the joint's states, with
-  !> respect to e_x, e_y, e_x', e_y', the angular speeds of journal and bearing, and the states (columns), for implicit integration.
+  !> Derivatives of the force and the moment on the pin (rows F_x, F_y, moment) and of the rates of the joint's states, with
+  !> respect to e_x, e_y, e_x', e_y', the angular speeds of pin and bearing, and the states (columns), for implicit integration.
   !> Not defined for surfaces that stick.
   pure subroutine slopes(self, joint, of_loads, of_rates)
     class(clearance_joint_t), intent(in) :: self
@@ -476,7 +476,7 @@ contains
     self%slots(self%acting(phase_contact))%element%force_is_lost = .false.
   end subroutine begin_contact
 
-  !> End a contact: the journal is free or carried by the film again, and its force is no longer lost.
+  !> End a contact: the pin is free or carried by the film again, and its force is no longer lost.
   pure subroutine end_contact(self)
     class(clearance_joint_t), intent(inout) :: self
     self%phase = self%phase_apart()

@@ -1,7 +1,7 @@
 !> The arc on which pin and bore of a joint press on each other, and the pressure along it, for the wear of their surfaces.
 module contact_arc
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   implicit none
   private
   public :: contact_arc_t
@@ -14,7 +14,7 @@ module contact_arc
     real(dp), allocatable :: loads(:)        !! Int p R L dtheta over each cell, relative to that of the others
   contains
     procedure :: divide
-    procedure :: make_room
+    procedure :: allocate_cells
   end type contact_arc_t
 
 contains
@@ -29,7 +29,7 @@ contains
     integer :: i
     self%n = 0
     if (.not. half_angle > 0) return
-    call self%make_room(max(least_cells, ceiling(2*half_angle/width)))
+    call self%allocate_cells(max(least_cells, ceiling(2*half_angle/width)))
     step = pi/self%n
     edge = -half_angle
     do i = 1, self%n
@@ -43,7 +43,7 @@ contains
   end subroutine divide
 
   !> Make room for n cells.
-  pure subroutine make_room(self, n)
+  pure subroutine allocate_cells(self, n)
     class(contact_arc_t), intent(inout) :: self
     integer, intent(in) :: n
     self%n = n
@@ -52,5 +52,5 @@ contains
       deallocate (self%ends, self%middles, self%loads)
     end if
     allocate (self%ends(2, n), self%middles(n), self%loads(n))
-  end subroutine make_room
+  end subroutine allocate_cells
 end module contact_arc

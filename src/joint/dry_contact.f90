@@ -1,9 +1,9 @@
 !> Load element: dry contact of a round pin in a round bore, with friction.
 !>
-!> The contact law gives the normal force F_N, the friction law the force F_T along the tangent t. On the journal act the force -F_N
+!> The contact law gives the normal force F_N, the friction law the force F_T along the tangent t. On the pin act the force -F_N
 !> n + F_T t and the moment F_T R. If set-valued friction holds the surfaces together, its force follows from the accelerations.
 module dry_contact
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use trace_row, only: trace_row_t
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t, most_friction_states
@@ -13,7 +13,7 @@ module dry_contact
   use load_element, only: load_element_t, n_motions, n_slopes
   implicit none
   private
-  public :: dry_contact_t, put_friction_columns
+  public :: dry_contact_t, add_friction_columns
 
   type, extends(load_element_t) :: dry_contact_t
     class(contact_law_t), allocatable :: contact
@@ -26,7 +26,7 @@ module dry_contact
     procedure :: find_slopes
     procedure, non_overridable :: find_friction_slopes
     procedure :: find_share
-    procedure :: put_columns
+    procedure :: add_columns
     procedure :: spread
   end type dry_contact_t
 
@@ -166,26 +166,26 @@ contains
     call self%contact%find_share(joint%penetration, joint%penetration_rate, outward_acceleration(joint, rates), share, share_rate)
   end subroutine find_share
 
-  pure subroutine put_columns(self, joint, row)
+  pure subroutine add_columns(self, joint, row)
     class(dry_contact_t), intent(in) :: self
     type(joint_evaluation_t), intent(in) :: joint
     type(trace_row_t), intent(inout) :: row
-    call row%put('normal_force[N]', joint%normal_force, &
+    call row%add('normal_force[N]', joint%normal_force, &
       'contact force along the line of centres, positive where it presses; 0 without contact')
-    call put_friction_columns(joint, row)
-    call self%contact%geometry%put_columns(merge(joint%penetration, 0.0_dp, joint%touches), joint%normal_force, row)
-    if (allocated(self%friction)) call self%friction%put_columns(joint%states, row)
-  end subroutine put_columns
+    call add_friction_columns(joint, row)
+    call self%contact%geometry%add_columns(merge(joint%penetration, 0.0_dp, joint%touches), joint%normal_force, row)
+    if (allocated(self%friction)) call self%friction%add_columns(joint%states, row)
+  end subroutine add_columns
 
-  !> Put the columns of friction, of a contact or of asperities.
-  pure subroutine put_friction_columns(joint, row)
+  !> Add the columns of friction, of a contact or of asperities.
+  pure subroutine add_friction_columns(joint, row)
     type(joint_evaluation_t), intent(in) :: joint
     type(trace_row_t), intent(inout) :: row
-    call row%put('friction_force[N]', joint%friction_force, &
+    call row%add('friction_force[N]', joint%friction_force, &
       'friction on the pin along the tangent t = (-n_y, n_x), n from the bearing centre to the pin centre')
-    call row%put('sliding_speed[m/s]', joint%sliding_speed, &
+    call row%add('sliding_speed[m/s]', joint%sliding_speed, &
       'velocity of the pin surface relative to the bearing along the same tangent')
-  end subroutine put_friction_columns
+  end subroutine add_friction_columns
 
   pure subroutine spread(self, joint, ratio, width, arc)
     class(dry_contact_t), intent(in) :: self

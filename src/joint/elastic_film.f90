@@ -10,15 +10,15 @@
 !> loss in the film, load . e_f', plus the change of the elastic energy of the walls. With `pressure_viscosity` the whole film has
 !> the viscosity mu exp(alpha p) (Barus) at its mean pressure p = load/(2 R L).
 module elastic_film
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use trace_row, only: trace_row_t
   use contact_geometry, only: contact_geometry_t
   use film_law, only: film_motion_t
   use film_mobility, only: driven_velocity
   use joint_case, only: joint_case_t
   use joint_evaluation, only: joint_evaluation_t, most_element_states
-  use load_element, only: n_slopes, n_motions, by_journal_speed, by_bearing_speed
-  use film_figures, only: put_film_force, put_film_figures
+  use load_element, only: n_slopes, n_motions, by_pin_speed, by_bearing_speed
+  use film_figures, only: add_film_force, add_film_figures
   use oil_film, only: oil_film_t, film_motion_of, unit_drag
   implicit none
   private
@@ -32,7 +32,7 @@ module elastic_film
     procedure :: find_loads
     procedure :: find_slopes
     procedure :: find_gap
-    procedure :: put_columns
+    procedure :: add_columns
     procedure :: see_film
     procedure :: velocity
   end type elastic_film_t
@@ -63,7 +63,7 @@ contains
     class(elastic_film_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
     type(joint_evaluation_t), intent(inout) :: joint
-    associate (e => y(self%states%first:self%states%last), drawn => 0.5_dp*(joint%journal_speed + joint%bearing_speed))
+    associate (e => y(self%states%first:self%states%last), drawn => 0.5_dp*(joint%pin_angular_speed + joint%bearing_speed))
       joint%film = -wall_load(self%walls, joint%eccentricity - e)
       joint%rates = self%velocity(e, -joint%film) + drawn*[-e(2), e(1)]
       joint%moment = 0
@@ -167,7 +167,7 @@ contains
     type(joint_evaluation_t), intent(in) :: joint
     real(dp), intent(out) :: of_loads(3, n_slopes), of_rates(most_element_states, n_slopes)
     integer, parameter :: first = n_motions + 1, last = n_motions + 2
-    real(dp) :: wall(2, 2), relieved(2, 2), of_film(3, by_journal_speed), pressing(2), factor, determinant, right(2, n_slopes), &
+    real(dp) :: wall(2, 2), relieved(2, 2), of_film(3, by_pin_speed), pressing(2), factor, determinant, right(2, n_slopes), &
       drag, by_load(2), d(2)
     type(film_motion_t) :: seen
     seen = motion_of_film(self, joint, joint%states)
@@ -183,7 +183,7 @@ contains
       by_load = 0.5_dp*[-seen%eccentricity(2), seen%eccentricity(1)] &
         + drag*seen%turning_speed*self%pressure_viscosity*self%per_area*pressing/max(norm2(pressing), tiny(1.0_dp))
       of_loads(3, 1:2) = matmul(by_load, wall)
-      of_loads(3, by_journal_speed) = drag
+      of_loads(3, by_pin_speed) = drag
       of_loads(3, by_bearing_speed) = -drag
       of_loads(3, first:last) = -of_loads(3, 1:2) + 0.5_dp*[pressing(2), -pressing(1)] &
         + drag*seen%turning_speed*seen%eccentricity/(self%bearing%clearance**2 - sum(seen%eccentricity**2))
@@ -195,8 +195,8 @@ contains
     relieved = relieved/factor
     right = 0
     right(:, 1:2) = -relieved
-    right(:, by_journal_speed) = -of_film(1:2, by_journal_speed)
-    right(:, by_bearing_speed) = -of_film(1:2, by_journal_speed)
+    right(:, by_pin_speed) = -of_film(1:2, by_pin_speed)
+    right(:, by_bearing_speed) = -of_film(1:2, by_pin_speed)
     right(:, first:last) = relieved - of_film(1:2, 1:2)
     of_rates = 0
     determinant = of_film(1, 3)*of_film(2, 4) - of_film(1, 4)*of_film(2, 3)
@@ -222,22 +222,22 @@ contains
     slopes(2, 2) = slopes(2, 2) + across
   end function wall_slopes
 
-  pure subroutine put_columns(self, joint, row)
+  pure subroutine add_columns(self, joint, row)
     class(elastic_film_t), intent(in) :: self
     type(joint_evaluation_t), intent(in) :: joint
     type(trace_row_t), intent(inout) :: row
     real(dp) :: deflection, stored
-    call put_film_force(joint, row)
-    call row%put('film_eccentricity_x[m]', joint%states(1), &
+    call add_film_force(joint, row)
+    call row%add('film_eccentricity_x[m]', joint%states(1), &
       'eccentricity of the film between elastic walls, along x: eccentricity less wall deflection')
-    call row%put('film_eccentricity_y[m]', joint%states(2), 'the same along y')
+    call row%add('film_eccentricity_y[m]', joint%states(2), 'the same along y')
     deflection = norm2(joint%eccentricity - joint%states)
-    call row%put('wall_deflection[m]', deflection, 'elastic deflection of the bearing walls under the film')
+    call row%add('wall_deflection[m]', deflection, 'elastic deflection of the bearing walls under the film')
     stored = 0
     if (row%wants(1) .and. deflection > 0) stored = self%walls%elastic_energy(deflection)
-    call row%put('wall_energy[J]', stored, 'elastic energy stored in the bearing walls')
-    call put_film_figures(self, joint, row)
-  end subroutine put_columns
+    call row%add('wall_energy[J]', stored, 'elastic energy stored in the bearing walls')
+    call add_film_figures(self, joint, row)
+  end subroutine add_columns
 
   !> The elastic energy of the walls does not belong to the film.
   pure subroutine see_film(self, joint, seen, rate, share, thickening)

@@ -1,14 +1,14 @@
 !> Results of the film of a load element besides its force: moment, power, largest pressure, side flow. The right-hand side does not
 !> need them, and they take additional evaluations; they are computed only on request.
 module film_figures
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use trace_row, only: trace_row_t
   use film_law, only: film_motion_t
   use joint_evaluation, only: joint_evaluation_t
   use load_element, only: load_element_t, power_of
   implicit none
   private
-  public :: film_figures_t, film_figures_of, put_film_force, put_film_figures
+  public :: film_figures_t, film_figures_of, add_film_force, add_film_figures
 
   type :: film_figures_t
     real(dp) :: power = 0         !! taken from the bodies by the film's force and by the moment of its shear, if that acts [W]
@@ -33,7 +33,7 @@ contains
       figures%power = -power_of(joint, joint%film, rate, element%film_moment(joint))
       if (film%neglects_shear()) then
         figures%neglected_moment = factor*film%drag_moment(seen, joint%film/factor)
-        figures%neglected_power = -figures%neglected_moment*(joint%journal_speed - joint%bearing_speed)
+        figures%neglected_power = -figures%neglected_moment*(joint%pin_angular_speed - joint%bearing_speed)
       end if
       if (.not. film%gives_pressure()) return
       call film%peak_and_flow(seen, figures%max_pressure, figures%side_flow)
@@ -42,24 +42,24 @@ contains
     end associate
   end function film_figures_of
 
-  !> Put the columns of the force of a film.
-  pure subroutine put_film_force(joint, row)
+  !> Add the columns of the force of a film.
+  pure subroutine add_film_force(joint, row)
     type(joint_evaluation_t), intent(in) :: joint
     type(trace_row_t), intent(inout) :: row
-    call row%put('film_force_x[N]', joint%film(1), 'force of the oil film on the pin along x')
-    call row%put('film_force_y[N]', joint%film(2), 'the same along y')
-  end subroutine put_film_force
+    call row%add('film_force_x[N]', joint%film(1), 'force of the oil film on the pin along x')
+    call row%add('film_force_y[N]', joint%film(2), 'the same along y')
+  end subroutine add_film_force
 
-  !> Put the column of the film's moment, and those that need more computation than its force, which are computed only if the case
+  !> Add the column of the film's moment, and those that need more computation than its force, which are computed only if the case
   !> names one.
-  pure subroutine put_film_figures(element, joint, row)
+  pure subroutine add_film_figures(element, joint, row)
     class(load_element_t), intent(in) :: element   !! with a film
     type(joint_evaluation_t), intent(in) :: joint
     type(trace_row_t), intent(inout) :: row
     type(film_figures_t) :: figures
     integer :: columns
     associate (film => element%film)
-      if (film%film_moment) call row%put('film_moment[N.m]', element%film_moment(joint), &
+      if (film%film_moment) call row%add('film_moment[N.m]', element%film_moment(joint), &
         'moment of the oil shear on the pin about its centre, positive from x to y')
       columns = 1
       if (film%neglects_shear()) columns = columns + 2
@@ -71,18 +71,18 @@ contains
         call row%skip(columns)
         return
       end if
-      call row%put_on_request('film_power[W]', figures%power, &
+      call row%add_on_request('film_power[W]', figures%power, &
         'power that the film takes from the bodies, by pressure and by shear that acts; < 0: it gives')
       if (film%neglects_shear()) then
-        call row%put_on_request('neglected_shear_moment[N.m]', figures%neglected_moment, &
+        call row%add_on_request('neglected_shear_moment[N.m]', figures%neglected_moment, &
           'moment of the oil shear on the pin that does not act (film_moment = .false.)')
-        call row%put_on_request('neglected_shear_power[W]', figures%neglected_power, &
+        call row%add_on_request('neglected_shear_power[W]', figures%neglected_power, &
           'power that this shear would take from the bodies')
       end if
-      if (film%gives_pressure()) call row%put_on_request('max_film_pressure[Pa]', figures%max_pressure, &
+      if (film%gives_pressure()) call row%add_on_request('max_film_pressure[Pa]', figures%max_pressure, &
         'largest pressure in the film')
-      if (film%gives_side_flow()) call row%put_on_request('film_side_flow[m3/s]', figures%side_flow, &
+      if (film%gives_side_flow()) call row%add_on_request('film_side_flow[m3/s]', figures%side_flow, &
         'oil flow out of both ends of the bearing')
     end associate
-  end subroutine put_film_figures
+  end subroutine add_film_figures
 end module film_figures

@@ -1,13 +1,13 @@
 !> Events of a piston with clearance in its bore: contacts of the corners of its skirt begin and end, and lose and regain
 !> their forces.
 module guide_events
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t
   use piston_guide, only: piston_guide_t, corner_t, n_corners
   implicit none
   private
   public :: n_guide_events, corner_events, corner_force_events, corner_share, change_contact, begin_corner_contact, &
-    contact_is_rough, rough_corner_end, inward_acceleration
+    contact_has_kink, corner_kink_time, inward_acceleration
 
 contains
 
@@ -28,7 +28,7 @@ contains
     real(dp), intent(in) :: y(:)
     real(dp), intent(out) :: g(n_corners), g_rate(n_corners)
     type(corner_t) :: corner(n_corners)
-    call guide%look(y, corner)
+    call guide%find_contact_state(y, corner)
     g = merge(-corner%depth, corner%depth, guide%touches)
     g_rate = merge(-corner%depth_rate, corner%depth_rate, guide%touches)
   end subroutine corner_events
@@ -73,7 +73,7 @@ contains
       guide%touches(i) = .false.
       guide%force_is_lost(i) = .false.
     else
-      call guide%look(y, corner)
+      call guide%find_contact_state(y, corner)
       call begin_corner_contact(guide, i, corner(i)%depth_rate)
     end if
   end subroutine change_contact
@@ -89,26 +89,26 @@ contains
   end subroutine begin_corner_contact
 
   !> Whether the force begins and ends with a power of the penetration that is not an integer.
-  pure logical function contact_is_rough(guide)
+  pure logical function contact_has_kink(guide)
     type(piston_guide_t), intent(in) :: guide
-    contact_is_rough = guide%contact%geometry%three_halves > 0
-  end function contact_is_rough
+    contact_has_kink = guide%contact%geometry%three_halves > 0
+  end function contact_has_kink
 
   !> Predicted end of the first of such contacts, of corners that are moving out of the wall; else the largest number.
-  pure real(dp) function rough_corner_end(guide, t, y) result(t_end)
+  pure real(dp) function corner_kink_time(guide, t, y) result(t_end)
     type(piston_guide_t), intent(in) :: guide
     real(dp), intent(in) :: t, y(:)
     type(corner_t) :: corner(n_corners)
     integer :: i
     t_end = huge(t_end)
     if (.not. any(guide%touches)) return
-    if (.not. contact_is_rough(guide)) return
-    call guide%look(y, corner)
+    if (.not. contact_has_kink(guide)) return
+    call guide%find_contact_state(y, corner)
     do i = 1, n_corners
       if (guide%touches(i) .and. corner(i)%depth > 0 .and. corner(i)%depth_rate < 0) &
         t_end = min(t_end, t - corner(i)%depth/corner(i)%depth_rate)
     end do
-  end function rough_corner_end
+  end function corner_kink_time
 
   !> Second derivative of the penetration of corner i [m/s^2].
   pure real(dp) function inward_acceleration(i, corner, motion, accelerations) result(a)

@@ -3,9 +3,9 @@
 !> The list of its groups is in the submodule `joint_groups`, so that a change of a law does not require the modules that use a case
 !> to be compiled again.
 module joint_case
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t, law_t
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use model_parameters, only: has_parameters_t, parameter_list_t, law_t
+  use bearing_size, only: bearing_t
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
   use film_law, only: film_law_t

@@ -1,6 +1,6 @@
 !> The columns of a joint with clearance. Columns of the piston pin have plain names, those of other places have a prefix.
 module joint_columns
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use trace_row, only: trace_row_t
   use joint_places, only: places, piston_pin
   use joint_evaluation, only: joint_evaluation_t
@@ -8,44 +8,44 @@ module joint_columns
   use archard_wear, only: of_pin, of_bore
   implicit none
   private
-  public :: put_joint_columns
+  public :: add_joint_columns
 
 contains
 
-  !> Put the columns of a joint and of its elements into a row.
-  pure subroutine put_joint_columns(joint, now, row)
+  !> Add the columns of a joint and of its elements to a row.
+  pure subroutine add_joint_columns(joint, now, row)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_evaluation_t), intent(in) :: now
     type(trace_row_t), intent(inout) :: row
     integer :: k
     row%place = places(joint%place)%prefix
-    call row%put('eccentricity_x[m]', now%eccentricity(1), 'centre of the pin from the centre of its bearing, along x')
-    call row%put('eccentricity_y[m]', now%eccentricity(2), 'the same along y')
+    call row%add('eccentricity_x[m]', now%eccentricity(1), 'centre of the pin from the centre of its bearing, along x')
+    call row%add('eccentricity_y[m]', now%eccentricity(2), 'the same along y')
     if (joint%place /= piston_pin) then  ! not among the other columns
-      call row%put('eccentricity_rate_x[m/s]', now%eccentricity_rate(1), 'rate of eccentricity_x')
-      call row%put('eccentricity_rate_y[m/s]', now%eccentricity_rate(2), 'rate of eccentricity_y')
+      call row%add('eccentricity_rate_x[m/s]', now%eccentricity_rate(1), 'rate of eccentricity_x')
+      call row%add('eccentricity_rate_y[m/s]', now%eccentricity_rate(2), 'rate of eccentricity_y')
     end if
-    call row%put('eccentricity_ratio[-]', now%distance/joint%bearing%clearance, &
+    call row%add('eccentricity_ratio[-]', now%distance/joint%bearing%clearance, &
       'eccentricity over radial clearance; above 1 the pin penetrates the bearing')
-    call row%put('film_thickness[m]', -now%penetration, &
+    call row%add('film_thickness[m]', -now%penetration, &
       'smallest gap between pin and bearing; negative where the pin penetrates')
-    call row%put('phase[-]', real(joint%phase, dp), 'what acts in the joint: 0 nothing (free flight), 1 the oil film, 2 contact')
+    call row%add('phase[-]', real(joint%phase, dp), 'what acts in the joint: 0 nothing (free flight), 1 the oil film, 2 contact')
     do k = 1, joint%n_elements
-      call joint%slots(k)%element%put_columns(now, row)
+      call joint%slots(k)%element%add_columns(now, row)
     end do
-    if (allocated(joint%wear)) call put_wear(joint, now, row)
+    if (allocated(joint%wear)) call add_wear(joint, now, row)
     row%place = ''
-  end subroutine put_joint_columns
+  end subroutine add_joint_columns
 
-  !> Put the volumes that wear in a second.
-  pure subroutine put_wear(joint, now, row)
+  !> Add the volumes that wear in a second.
+  pure subroutine add_wear(joint, now, row)
     type(clearance_joint_t), intent(in) :: joint
     type(joint_evaluation_t), intent(in) :: now
     type(trace_row_t), intent(inout) :: row
     real(dp) :: load
     load = 0
     if (row%wants(2)) load = joint%sliding_load(now)
-    call row%put('pin_wear_rate[m3/s]', joint%wear%rate(of_pin)*load, 'volume that wears from the pin in a second')
-    call row%put('bore_wear_rate[m3/s]', joint%wear%rate(of_bore)*load, 'volume that wears from the bore in a second')
-  end subroutine put_wear
+    call row%add('pin_wear_rate[m3/s]', joint%wear%rate(of_pin)*load, 'volume that wears from the pin in a second')
+    call row%add('bore_wear_rate[m3/s]', joint%wear%rate(of_bore)*load, 'volume that wears from the bore in a second')
+  end subroutine add_wear
 end module joint_columns

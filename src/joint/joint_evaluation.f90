@@ -1,6 +1,6 @@
-!> A joint in one evaluation of a scene: the relative motion of journal and bearing (Reis 2013, 3.70-3.78), and the loads.
+!> A joint in one evaluation of a scene: the relative motion of pin and bearing (Reis 2013, 3.70-3.78), and the loads.
 module joint_evaluation
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: joint_evaluation_t, joint_rates_t, most_element_states, clear_loads
@@ -10,25 +10,25 @@ module joint_evaluation
 
   !> Motion and loads of a joint. The right-hand side sets only the components that it needs.
   type :: joint_evaluation_t
-    real(dp) :: eccentricity(2)       !! e, from the centre of the bearing to the centre of the journal [m]
+    real(dp) :: eccentricity(2)       !! e, from the centre of the bearing to the centre of the pin [m]
     real(dp) :: eccentricity_rate(2)  !! [m/s]
-    real(dp) :: journal_speed         !! angular speeds of both bodies, positive from x to y [rad/s]
+    real(dp) :: pin_angular_speed         !! angular speeds of both bodies, positive from x to y [rad/s]
     real(dp) :: bearing_speed
     real(dp) :: normal(2)             !! n = e/|e|, (1, 0) at e = 0; the tangent is t = (-n_y, n_x)
     real(dp) :: distance              !! |e| [m]
     real(dp) :: penetration           !! |e| - c [m], negative without contact
     real(dp) :: penetration_rate      !! n . e' [m/s]
     real(dp) :: tangential_rate       !! t . e' [m/s]
-    real(dp) :: sliding_speed         !! v_T, of the journal's surface relative to the bearing's [m/s]
+    real(dp) :: sliding_speed         !! v_T, of the pin's surface relative to the bearing's [m/s]
     logical :: touches                !! the joint is in contact
     real(dp) :: impact_speed          !! penetration rate at the beginning of this contact [m/s]
     ! motion of an ideal mechanism at (q, q'), set only for a film that needs it
-    real(dp) :: ideal_speed           !! sum of the angular speeds of journal and bearing [rad/s]
+    real(dp) :: ideal_speed           !! sum of the angular speeds of pin and bearing [rad/s]
     real(dp) :: ideal_acceleration    !! its rate at constant crank speed [rad/s^2]
     real(dp) :: frequency             !! |q'| [rad/s]
-    ! loads on the journal; the opposite forces act on the bearing
+    ! loads on the pin; the opposite forces act on the bearing
     real(dp) :: force(2)              !! of all kinds [N]
-    real(dp) :: moment                !! of all kinds, about the journal's centre, positive from x to y [N m]
+    real(dp) :: moment                !! of all kinds, about the pin's centre, positive from x to y [N m]
     real(dp) :: power                 !! of all kinds, on the bodies [W]
     real(dp) :: contact(2)            !! force of contact and friction [N]
     real(dp) :: film(2)               !! force of the film [N]
@@ -40,10 +40,10 @@ module joint_evaluation
     real(dp) :: rates(most_element_states)   !! of these states
   end type joint_evaluation_t
 
-  !> Accelerations of journal and bearing relative to each other.
+  !> Accelerations of pin and bearing relative to each other.
   type :: joint_rates_t
     real(dp) :: eccentricity(2)       !! e'' [m/s^2]
-    real(dp) :: journal, bearing      !! angular accelerations [rad/s^2]
+    real(dp) :: pin, bearing      !! angular accelerations [rad/s^2]
   end type joint_rates_t
 
 contains
@@ -80,17 +80,17 @@ contains
     end associate
   end subroutine find_polar
 
-  !> Sliding speed v_T = t . e' + omega_journal R - omega_bearing (|e| + R), with the journal's radius R: the relative velocity of
+  !> Sliding speed v_T = t . e' + omega_pin R - omega_bearing (|e| + R), with the pin's radius R: the relative velocity of
   !> the material points in contact. Equations (3.74)-(3.76) as printed let the contact points rotate with the eccentricity, so that
   !> no sliding remains.
   pure subroutine find_sliding(pin_radius, joint)
     real(dp), intent(in) :: pin_radius   !! [m]
     type(joint_evaluation_t), intent(inout) :: joint
-    joint%sliding_speed = joint%tangential_rate + joint%journal_speed*pin_radius &
+    joint%sliding_speed = joint%tangential_rate + joint%pin_angular_speed*pin_radius &
       - joint%bearing_speed*(joint%distance + pin_radius)
   end subroutine find_sliding
 
-  !> Rate of the sliding speed, v_T' [m/s^2] = t . e'' - gamma' n . e' + omega_journal' R - omega_bearing' (|e| + R) - omega_bearing
+  !> Rate of the sliding speed, v_T' [m/s^2] = t . e'' - gamma' n . e' + omega_pin' R - omega_bearing' (|e| + R) - omega_bearing
   !> |e|', with gamma' = t . e'/|e|. With `at_rest` only the terms with accelerations are included.
   pure real(dp) function sliding_acceleration(pin_radius, joint, rates, at_rest) result(a)
     real(dp), intent(in) :: pin_radius
@@ -101,7 +101,7 @@ contains
       a = n(1)*pin(2) - n(2)*pin(1)
       if (.not. at_rest) a = a - joint%tangential_rate*joint%penetration_rate/joint%distance &
         - joint%bearing_speed*joint%penetration_rate
-      a = a + rates%journal*pin_radius - rates%bearing*(joint%distance + pin_radius)
+      a = a + rates%pin*pin_radius - rates%bearing*(joint%distance + pin_radius)
     end associate
   end function sliding_acceleration
 

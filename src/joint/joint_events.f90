@@ -1,6 +1,6 @@
 !> Events of a joint with clearance: contact begins and ends, and the events of its elements.
 module joint_events
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: step_admitted, step_too_deep, step_too_far
   use chain_motion, only: motion_t
   use joint_evaluation, only: joint_evaluation_t, joint_rates_t, find_polar, find_sliding, sliding_acceleration, reach_event
@@ -11,7 +11,7 @@ module joint_events
   public :: contact_changes, find_joint_events, has_force_events, find_joint_force_events, pass_joint_event
   public :: sliding_event, choose_sliding
   public :: may_touch, may_pass_static, may_lose_force, find_lost_force, static_speed
-  public :: penetration_and_rate, judge_entry, judge_reversal, rough_end
+  public :: penetration_and_rate, judge_entry, judge_reversal, contact_kink_time
 
 contains
 
@@ -238,7 +238,7 @@ contains
     fraction = max(upper, 1e-3_dp)
   end subroutine judge_entry
 
-  !> Refuse a step in which a journal in contact reverses its sliding and passes over the static friction: at both ends the speed is
+  !> Refuse a step in which a pin in contact reverses its sliding and passes over the static friction: at both ends the speed is
   !> beyond that of static friction, with opposite signs. No evaluation may show that the surfaces would stick in between. (Brown
   !> and McPhee's law, c_s = 10 c_f, v_t = 1e-5 m/s, simulation I with a softer pin, 1e-6: the motion of Coulomb's law with 33,000
   !> evaluations; without this verdict another motion from the first sticking on, with 73,000.) `fraction` leads to the reversal by
@@ -275,16 +275,16 @@ contains
     hermite = (1 + 2*s)*(1 - s)**2*left(1) + s*(1 - s)**2*left(2) + s**2*(3 - 2*s)*right(1) - s**2*(1 - s)*right(2)
   end function hermite
 
-  !> Predicted end of a contact, if the journal is moving out of the wall: near it the force varies with the power 1.5 of the
+  !> Predicted end of a contact, if the pin is moving out of the wall: near it the force varies with the power 1.5 of the
   !> penetration. Else the largest number.
-  pure real(dp) function rough_end(joint, t, y)
+  pure real(dp) function contact_kink_time(joint, t, y)
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(in) :: t, y(:)
     real(dp) :: distance, product, gap(2)
-    rough_end = huge(rough_end)
+    contact_kink_time = huge(contact_kink_time)
     if (joint%has_own_gap) then
       gap = penetration_and_rate(joint, y)
-      if (gap(2) < 0 .and. gap(1) > 0) rough_end = t - gap(1)/gap(2)
+      if (gap(2) < 0 .and. gap(1) > 0) contact_kink_time = t - gap(1)/gap(2)
       return
     end if
     associate (x => y(joint%at%position), x_rate => y(joint%at%rate), &
@@ -292,7 +292,7 @@ contains
       product = x*x_rate + across*across_rate   ! e . e' = |e| |e|'
       if (.not. product < 0) return
       distance = sqrt(x**2 + across**2)
-      if (distance > joint%bearing%clearance) rough_end = t - (distance - joint%bearing%clearance)*distance/product
+      if (distance > joint%bearing%clearance) contact_kink_time = t - (distance - joint%bearing%clearance)*distance/product
     end associate
-  end function rough_end
+  end function contact_kink_time
 end module joint_events

@@ -4,8 +4,8 @@
 !> as components, and finds its loads, their slopes and its columns. What a kind of element does not override is that of an element
 !> without film or wear, with a round pin in a round bore. A new kind is one file, and one line in `load_elements`.
 module load_element
-  use gudgeon_kinds, only: dp
-  use gudgeon_bearing, only: bearing_t
+  use kinds, only: dp
+  use bearing_size, only: bearing_t
   use state_layout, only: slice_t
   use trace_row, only: trace_row_t
   use chain_loads, only: bearing_moment
@@ -18,15 +18,15 @@ module load_element
   private
   public :: load_element_t, power_of, sliding_changes, first_kink, force_changes
   public :: of_contact, of_friction, of_film, of_asperities, n_kinds
-  public :: by_journal_speed, by_bearing_speed, n_motions, n_slopes
+  public :: by_pin_speed, by_bearing_speed, n_motions, n_slopes
 
   !> Kinds of load whose powers are told apart: normal force of a contact or of elastic walls, friction of a contact, film, and
   !> asperities with their friction.
   integer, parameter :: of_contact = 1, of_friction = 2, of_film = 3, of_asperities = 4, n_kinds = 4
 
-  !> Columns of slopes: derivatives with respect to e_x, e_y, their rates, the angular speeds of journal and bearing, and the states
+  !> Columns of slopes: derivatives with respect to e_x, e_y, their rates, the angular speeds of pin and bearing, and the states
   !> of the element, which begin after these `n_motions`.
-  integer, parameter :: by_journal_speed = 5, by_bearing_speed = 6, n_motions = 6, n_slopes = n_motions + most_element_states
+  integer, parameter :: by_pin_speed = 5, by_bearing_speed = 6, n_motions = 6, n_slopes = n_motions + most_element_states
 
   !> Events of an element, in this order, up to the last one that it has: set-valued friction changes, |e| passes the first or the
   !> second of its kinks, the contact loses its force or the force acts again.
@@ -34,7 +34,7 @@ module load_element
 
   type, abstract :: load_element_t
     type(bearing_t) :: bearing
-    real(dp) :: pin_radius = 0              !! of the journal [m]
+    real(dp) :: pin_radius = 0              !! of the pin [m]
     class(film_law_t), allocatable :: film                !! not allocated: the element has no film
     class(contact_geometry_t), allocatable :: walls       !! elasticity of the walls under the film; not allocated: they are rigid
     logical :: is_unbounded = .false.       !! the film has a force without bound at |e| = c, which the state must not reach
@@ -71,7 +71,7 @@ module load_element
     procedure, non_overridable :: n_events
     procedure(find_loads), deferred :: find_loads
     procedure(find_slopes), deferred :: find_slopes
-    procedure(put_columns), deferred :: put_columns
+    procedure(add_columns), deferred :: add_columns
     procedure :: find_gap => round_gap
     procedure :: normal_force => no_force
     procedure :: find_share => no_loss
@@ -93,7 +93,7 @@ module load_element
       logical, intent(in) :: makes_tables
     end subroutine prepare
 
-    !> Loads on the journal, force and moment of all kinds, and rates of the element's states. Loads of kinds that the element does
+    !> Loads on the pin, force and moment of all kinds, and rates of the element's states. Loads of kinds that the element does
     !> not have are left as they are, and `sticks` as .false.
     pure subroutine find_loads(self, y, joint)
       import :: load_element_t, joint_evaluation_t, dp
@@ -102,7 +102,7 @@ module load_element
       type(joint_evaluation_t), intent(inout) :: joint
     end subroutine find_loads
 
-    !> Derivatives of force and moment on the journal (rows F_x, F_y, moment) and of the rates of the states, for implicit
+    !> Derivatives of force and moment on the pin (rows F_x, F_y, moment) and of the rates of the states, for implicit
     !> integration. Not defined for surfaces that stick.
     pure subroutine find_slopes(self, joint, of_loads, of_rates)
       import :: load_element_t, joint_evaluation_t, dp, most_element_states, n_slopes
@@ -111,13 +111,13 @@ module load_element
       real(dp), intent(out) :: of_loads(3, n_slopes), of_rates(most_element_states, n_slopes)
     end subroutine find_slopes
 
-    !> Put the columns of the element into a row.
-    pure subroutine put_columns(self, joint, row)
+    !> Add the columns of the element to a row.
+    pure subroutine add_columns(self, joint, row)
       import :: load_element_t, joint_evaluation_t, trace_row_t
       class(load_element_t), intent(in) :: self
       type(joint_evaluation_t), intent(in) :: joint   !! with the loads of the element that acts
       type(trace_row_t), intent(inout) :: row
-    end subroutine put_columns
+    end subroutine add_columns
   end interface
 
 contains
@@ -149,7 +149,7 @@ contains
     type(joint_evaluation_t), intent(inout) :: joint
   end subroutine round_gap
 
-  !> Normal force of the contact as it follows from the position and velocity of the journal alone [N].
+  !> Normal force of the contact as it follows from the position and velocity of the pin alone [N].
   pure real(dp) function no_force(self, joint)
     class(load_element_t), intent(in) :: self
     type(joint_evaluation_t), intent(in) :: joint
@@ -196,7 +196,7 @@ contains
     real(dp), intent(in) :: depth(:)
   end subroutine stays_round
 
-  !> Moment of the shear of the film on the journal [N m] as far as the case includes it: that of all loads without friction.
+  !> Moment of the shear of the film on the pin [N m] as far as the case includes it: that of all loads without friction.
   pure real(dp) function film_moment(self, joint)
     class(load_element_t), intent(in) :: self
     type(joint_evaluation_t), intent(in) :: joint
@@ -218,12 +218,12 @@ contains
     powers(self%friction_kind) = powers(self%friction_kind) + joint%friction_force*joint%sliding_speed
   end function powers
 
-  !> Power of a force and a moment between journal and bearing on the bodies [W].
+  !> Power of a force and a moment between pin and bearing on the bodies [W].
   pure real(dp) function power_of(joint, force, rate, moment)
     type(joint_evaluation_t), intent(in) :: joint
-    real(dp), intent(in) :: force(2), moment   !! on the journal [N], [N m]
+    real(dp), intent(in) :: force(2), moment   !! on the pin [N], [N m]
     real(dp), intent(in) :: rate(2)            !! velocity with which the force moves [m/s]
-    power_of = dot_product(force, rate) + moment*joint%journal_speed &
+    power_of = dot_product(force, rate) + moment*joint%pin_angular_speed &
       + bearing_moment(joint%eccentricity, force, moment)*joint%bearing_speed
   end function power_of
 end module load_element

@@ -1,6 +1,6 @@
 !> The load elements of a joint. A new kind needs a `use` line and a line in `add_elements`.
 module load_elements
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use joint_case, only: joint_case_t
   use load_element, only: load_element_t
   use clearance_joint, only: clearance_joint_t, phase_film, phase_contact

@@ -1,12 +1,12 @@
 !> Load element: an oil film between smooth, rigid surfaces that do not touch.
 module oil_film
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use trace_row, only: trace_row_t
   use film_law, only: film_law_t, film_motion_t
   use joint_case, only: joint_case_t
   use joint_evaluation, only: joint_evaluation_t, most_element_states
-  use load_element, only: load_element_t, n_slopes, by_journal_speed, by_bearing_speed
-  use film_figures, only: put_film_force, put_film_figures
+  use load_element, only: load_element_t, n_slopes, by_pin_speed, by_bearing_speed
+  use film_figures, only: add_film_force, add_film_figures
   implicit none
   private
   public :: oil_film_t, film_motion_of, add_bearing_speed, unit_drag
@@ -16,7 +16,7 @@ module oil_film
     procedure :: prepare => prepare_film_alone
     procedure :: find_loads
     procedure :: find_slopes
-    procedure :: put_columns
+    procedure :: add_columns
     procedure :: see_film
   end type oil_film_t
 
@@ -44,8 +44,8 @@ contains
     type(joint_evaluation_t), intent(in) :: joint
     seen%eccentricity = joint%eccentricity
     seen%eccentricity_rate = joint%eccentricity_rate
-    seen%pin_speed = joint%journal_speed + joint%bearing_speed
-    seen%turning_speed = joint%journal_speed - joint%bearing_speed
+    seen%pin_speed = joint%pin_angular_speed + joint%bearing_speed
+    seen%turning_speed = joint%pin_angular_speed - joint%bearing_speed
     if (.not. film%needs_ideal_motion) return
     seen%ideal_pin_speed = joint%ideal_speed
     seen%ideal_pin_acceleration = joint%ideal_acceleration
@@ -58,17 +58,17 @@ contains
     real(dp), intent(out) :: of_loads(3, n_slopes), of_rates(most_element_states, n_slopes)
     of_loads = 0
     of_rates = 0
-    call self%film%force_derivatives(film_motion_of(self%film, joint), of_loads(:, :by_journal_speed))
+    call self%film%force_derivatives(film_motion_of(self%film, joint), of_loads(:, :by_pin_speed))
     call add_bearing_speed(self%film, film_motion_of(self%film, joint), of_loads)
   end subroutine find_slopes
 
   !> Add the derivatives with respect to the angular speed of the bearing to those of a film law: it entrains the film as that of
-  !> the journal does, and shears it the other way.
+  !> the pin does, and shears it the other way.
   pure subroutine add_bearing_speed(film, seen, of_loads)
     class(film_law_t), intent(in) :: film
     type(film_motion_t), intent(in) :: seen
     real(dp), intent(inout) :: of_loads(3, n_slopes)
-    of_loads(:, by_bearing_speed) = of_loads(:, by_journal_speed)
+    of_loads(:, by_bearing_speed) = of_loads(:, by_pin_speed)
     if (film%film_moment) of_loads(3, by_bearing_speed) = of_loads(3, by_bearing_speed) - 2*unit_drag(film, seen)
   end subroutine add_bearing_speed
 
@@ -82,13 +82,13 @@ contains
     unit_drag = film%drag_moment(turning, [0.0_dp, 0.0_dp])
   end function unit_drag
 
-  pure subroutine put_columns(self, joint, row)
+  pure subroutine add_columns(self, joint, row)
     class(oil_film_t), intent(in) :: self
     type(joint_evaluation_t), intent(in) :: joint
     type(trace_row_t), intent(inout) :: row
-    call put_film_force(joint, row)
-    call put_film_figures(self, joint, row)
-  end subroutine put_columns
+    call add_film_force(joint, row)
+    call add_film_figures(self, joint, row)
+  end subroutine add_columns
 
   pure subroutine see_film(self, joint, seen, rate, share, thickening)
     class(oil_film_t), intent(in) :: self

@@ -8,8 +8,8 @@
 !>
 !> and its penetration into the wall of the bore is d_i = +-(y_i) - R_p - c; -d_i is its gap.
 module piston_guide
-  use gudgeon_kinds, only: dp
-  use gudgeon_bearing, only: bearing_t, crossing_speed
+  use kinds, only: dp
+  use bearing_size, only: bearing_t, crossing_speed
   use state_layout, only: layout_t, coordinates_t
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, tilting_t
@@ -57,15 +57,15 @@ module piston_guide
   contains
     procedure :: prepare
     procedure :: claim
-    procedure :: put_start
+    procedure :: set_start
     procedure :: declare
     procedure :: read_state
     procedure :: place_corners
-    procedure :: look
+    procedure :: find_contact_state
     procedure :: admits
     procedure :: slide
     procedure :: friction_on_guide
-    procedure :: put_rates
+    procedure :: set_rates
     procedure :: own_speed
   end type piston_guide_t
 
@@ -103,14 +103,14 @@ contains
       crossing_speed(self%clearance, span))
   end function own_speed
 
-  !> Put the initial offset and tilt into the state vector.
-  pure subroutine put_start(self, y)
+  !> Set the initial offset and tilt in the state vector.
+  pure subroutine set_start(self, y)
     class(piston_guide_t), intent(in) :: self
     real(dp), intent(inout) :: y(:)
     if (.not. self%is_loose) return
     y([self%offset%position, self%tilt%position]) = self%start
     y([self%offset%rate, self%tilt%rate]) = self%start_rate
-  end subroutine put_start
+  end subroutine set_start
 
   !> Declare the state of a piston with clearance in its bore. In a bore of another clearance it keeps its ratio to the clearance.
   subroutine declare(self, list, y)
@@ -135,7 +135,7 @@ contains
     self%touches = touches > 0
     if (abs(clearance - self%clearance) > 0) then
       y([self%offset%position, self%tilt%position]) = self%clearance/clearance*y([self%offset%position, self%tilt%position])
-      self%touches = .false.   ! `take_up` of the scene finds them
+      self%touches = .false.   ! `complete_state` of the scene finds them
     end if
   end subroutine declare
 
@@ -171,7 +171,7 @@ contains
   end subroutine place_corners
 
   !> Penetrations of the corners, their rates and normal forces: all that follows from the state without the motion of the bodies.
-  pure subroutine look(self, y, corners)
+  pure subroutine find_contact_state(self, y, corners)
     class(piston_guide_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
     type(corner_t), intent(inout) :: corners(n_corners)
@@ -182,7 +182,7 @@ contains
     do i = 1, n_corners
       corners(i)%normal_force = normal_force(self, i, corners(i))
     end do
-  end subroutine look
+  end subroutine find_contact_state
 
   !> Normal force of a corner [N]; 0 without contact.
   pure real(dp) function normal_force(guide, i, corner)
@@ -251,7 +251,7 @@ contains
   end subroutine friction_on_guide
 
   !> Rates of the guide's states.
-  pure subroutine put_rates(self, tilting, offset_acceleration, tilt_acceleration, dydt)
+  pure subroutine set_rates(self, tilting, offset_acceleration, tilt_acceleration, dydt)
     class(piston_guide_t), intent(in) :: self
     type(tilting_t), intent(in) :: tilting
     real(dp), intent(in) :: offset_acceleration, tilt_acceleration   !! [m/s^2], [rad/s^2]
@@ -261,5 +261,5 @@ contains
     dydt(self%offset%rate) = offset_acceleration
     dydt(self%tilt%position) = tilting%tilt_rate
     dydt(self%tilt%rate) = tilt_acceleration
-  end subroutine put_rates
+  end subroutine set_rates
 end module piston_guide

@@ -1,6 +1,6 @@
 !> Load element: a film between rough surfaces in parallel with the contact of their asperities, at every eccentricity.
 module rough_film
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use trace_row, only: trace_row_t
   use asperities, only: asperities_t
   use film_law, only: film_motion_t
@@ -9,8 +9,8 @@ module rough_film
   use joint_case, only: joint_case_t
   use joint_evaluation, only: joint_evaluation_t, most_element_states, find_polar
   use load_element, only: n_slopes, n_motions, of_asperities
-  use film_figures, only: put_film_force, put_film_figures
-  use dry_contact, only: put_friction_columns
+  use film_figures, only: add_film_force, add_film_figures
+  use dry_contact, only: add_friction_columns
   use oil_film, only: oil_film_t, film_motion_of
   implicit none
   private
@@ -22,7 +22,7 @@ module rough_film
     procedure :: prepare
     procedure :: find_loads
     procedure :: find_slopes
-    procedure :: put_columns
+    procedure :: add_columns
     procedure :: see_film
     procedure :: spread
   end type rough_film_t
@@ -67,16 +67,16 @@ contains
     call mixed_derivatives(self%film, self%asperities, self%pin_radius, film_motion_of(self%film, joint), of_loads(:, :n_motions))
   end subroutine find_slopes
 
-  pure subroutine put_columns(self, joint, row)
+  pure subroutine add_columns(self, joint, row)
     class(rough_film_t), intent(in) :: self
     type(joint_evaluation_t), intent(in) :: joint
     type(trace_row_t), intent(inout) :: row
-    call put_film_force(joint, row)
-    call row%put('asperity_force[N]', joint%normal_force, &
+    call add_film_force(joint, row)
+    call row%add('asperity_force[N]', joint%normal_force, &
       'contact force of the asperities along the line of centres, positive where it presses')
-    call put_friction_columns(joint, row)
-    call put_film_figures(self, joint, row)
-  end subroutine put_columns
+    call add_friction_columns(joint, row)
+    call add_film_figures(self, joint, row)
+  end subroutine add_columns
 
   pure subroutine see_film(self, joint, seen, rate, share, thickening)
     class(rough_film_t), intent(in) :: self

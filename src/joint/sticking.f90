@@ -1,9 +1,9 @@
 !> Friction forces of surfaces that stick.
 module sticking
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use chain_motion, only: motion_t, accelerations_t, piston_pin
   use chain_loads, only: loads_t, unloaded
-  use gudgeon_chain, only: chain_t
+  use mechanism_chain, only: chain_t
   use clearance_joint, only: clearance_joint_t, most_joints
   use joint_evaluation, only: joint_evaluation_t, sliding_acceleration
   implicit none

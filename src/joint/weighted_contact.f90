@@ -1,14 +1,14 @@
 !> Load element: contact and film that share the load over a range of penetrations. It acts with and without contact.
 module weighted_contact
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use trace_row, only: trace_row_t
   use friction_law, only: most_friction_states
   use film_law, only: film_motion_t
   use film_transition, only: film_transition_t
   use joint_case, only: joint_case_t
   use joint_evaluation, only: joint_evaluation_t, most_element_states
-  use load_element, only: n_slopes, by_journal_speed
-  use film_figures, only: put_film_force, put_film_figures
+  use load_element, only: n_slopes, by_pin_speed
+  use film_figures, only: add_film_force, add_film_figures
   use dry_contact, only: dry_contact_t
   use oil_film, only: film_motion_of, add_bearing_speed
   implicit none
@@ -22,7 +22,7 @@ module weighted_contact
     procedure :: find_loads
     procedure :: normal_force
     procedure :: find_slopes
-    procedure :: put_columns
+    procedure :: add_columns
     procedure :: see_film
   end type weighted_contact_t
 
@@ -101,7 +101,7 @@ contains
     of_film = 0
     of_rates = 0
     call self%transition%film_derivatives(self%film, film_motion_of(self%film, joint), self%is_beyond(held), &
-      of_film(:, :by_journal_speed))
+      of_film(:, :by_pin_speed))
     call add_bearing_speed(self%film, held_motion(self, joint), of_film)
     of_loads = of_film
     if (.not. joint%touches) return
@@ -122,16 +122,16 @@ contains
     end associate
   end subroutine find_slopes
 
-  pure subroutine put_columns(self, joint, row)
+  pure subroutine add_columns(self, joint, row)
     class(weighted_contact_t), intent(in) :: self
     type(joint_evaluation_t), intent(in) :: joint
     type(trace_row_t), intent(inout) :: row
-    call self%dry_contact_t%put_columns(joint, row)
-    call put_film_force(joint, row)
-    call row%put('contact_weight[-]', contact_weight(self, joint), &
+    call self%dry_contact_t%add_columns(joint, row)
+    call add_film_force(joint, row)
+    call row%add('contact_weight[-]', contact_weight(self, joint), &
       'share of the contact in the load of a weighted transition: 0 film alone, 1 contact alone')
-    call put_film_figures(self, joint, row)
-  end subroutine put_columns
+    call add_film_figures(self, joint, row)
+  end subroutine add_columns
 
   pure subroutine see_film(self, joint, seen, rate, share, thickening)
     class(weighted_contact_t), intent(in) :: self

@@ -1,6 +1,6 @@
 !> Load element: dry contact in a bore whose worn shape acts, on a foundation of springs.
 module worn_contact
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use worn_bore, only: worn_bore_t, touching_cells_t
   use contact_arc, only: contact_arc_t
   use joint_case, only: joint_case_t
@@ -131,7 +131,7 @@ contains
     end if
     if (.not. present(arc)) return
     call self%bore%cells(joint%eccentricity, touching)
-    call arc%make_room(touching%n)
+    call arc%allocate_cells(touching%n)
     arc%ends(:, :arc%n) = touching%ends(:, :arc%n) - atan2(elastic(2), elastic(1))
     arc%loads(:arc%n) = touching%loads(:arc%n)
   end subroutine spread

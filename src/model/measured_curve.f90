@@ -1,8 +1,8 @@
 !> A measured curve, given in a case by the name of a file with two columns of numbers. A model declares it as a parameter; the code
 !> that reads cases sets the numbers.
 module measured_curve
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: parameter_list_t
   implicit none
   private
   public :: measured_curve_t

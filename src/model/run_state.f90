@@ -4,7 +4,7 @@
 !> list that sets gives them to its parts. Numbers of the motion must all be there. Totals are what a run counts: time, energies,
 !> contacts, wear, and extremes. A run that goes on needs them all; a run that begins anew with this motion leaves them at 0.
 module run_state
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: run_state_t, state_number_t

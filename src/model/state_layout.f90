@@ -6,7 +6,7 @@
 !> the first time they are counted, and after `count_again` the same claims give the final indices. Quadratures are last, so that
 !> more of them may be claimed later.
 module state_layout
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: layout_t, coordinates_t, slice_t

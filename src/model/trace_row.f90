@@ -3,7 +3,7 @@
 !> The same calls are used in two passes. Before a run they collect names and meanings of the columns of a scene; for every row they
 !> pass the values. Values that are expensive are computed only if the trace has a column for them (`wants`).
 module trace_row
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: trace_row_t, column_list_t, name_length, most_columns
@@ -30,8 +30,8 @@ module trace_row
     character(len=meaning_length), allocatable :: meanings(:)   !! while names are collected
     logical, allocatable :: on_request(:)       !! while names are collected: columns that are not standard
   contains
-    procedure, non_overridable :: put
-    procedure, non_overridable :: put_on_request
+    procedure, non_overridable :: add
+    procedure, non_overridable :: add_on_request
     procedure, non_overridable :: skip
     procedure, non_overridable :: wants
     procedure, non_overridable :: collect_names
@@ -62,8 +62,8 @@ contains
     end do
   end subroutine choose
 
-  !> Put the next column.
-  pure subroutine put(self, name, value, says)
+  !> Add the next column.
+  pure subroutine add(self, name, value, says)
     class(trace_row_t), intent(inout) :: self
     character(len=*), intent(in) :: name    !! with its unit: normal_force[N]
     real(dp), intent(in) :: value
@@ -75,16 +75,16 @@ contains
     else
       self%values(self%n) = value
     end if
-  end subroutine put
+  end subroutine add
 
-  !> Put the next column, which a trace has only if the case names it.
-  pure subroutine put_on_request(self, name, value, says)
+  !> Add the next column, which a trace has only if the case names it.
+  pure subroutine add_on_request(self, name, value, says)
     class(trace_row_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
     real(dp), intent(in) :: value
-    call self%put(name, value, says)
+    call self%add(name, value, says)
     if (self%is_naming) self%on_request(self%n) = .true.
-  end subroutine put_on_request
+  end subroutine add_on_request
 
   !> Skip the next `count` columns, none of which is in the trace. Must not be called while names are collected.
   pure subroutine skip(self, count)

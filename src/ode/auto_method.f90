@@ -5,7 +5,7 @@
 !> in this mode are compared with those that Adams would need, which are proportional to the rate of the fastest mode. If Radau uses
 !> more, Adams continues, and the number of steps required for the next change is increased.
 module auto_method
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t
   use ode_method, only: step_statistics_t, step_done, limit_stability, with_adams, with_radau
   use adams, only: adams_t
@@ -14,8 +14,8 @@ module auto_method
   private
   public :: auto_t
 
-  integer, parameter :: first_patience = 40    !! excess of steps limited by stability over other steps after which Radau takes over
-  integer, parameter :: most_patience = 2560   !! largest such excess after repeated changes back to Adams: a motion whose start
+  integer, parameter :: first_excess = 40    !! excess of steps limited by stability over other steps after which Radau takes over
+  integer, parameter :: largest_excess = 2560   !! largest such excess after repeated changes back to Adams: a motion whose start
                                                !! Adams follows at less cost may be stiff later
   real(dp), parameter :: adams_price = 1.3_dp  !! evaluations of Adams limited by stability, per 1/rate of the fastest mode
   real(dp), parameter :: step_overhead = 5     !! cost of Jacobian and linear algebra of a Radau step, in evaluations
@@ -29,7 +29,7 @@ module auto_method
     logical, allocatable :: stiff_in(:)   !! the last phase of this mode ended with Radau, (0:highest mode)
     integer :: mode = 0                   !! mode of the present phase
     integer :: excess = 0                 !! excess of Adams steps limited by stability over other steps
-    integer, allocatable :: patience(:)   !! number of such steps required, for each mode
+    integer, allocatable :: required_excess(:)   !! number of such steps required, for each mode
     real(dp), allocatable :: loss(:)      !! evaluations by Radau minus those that Adams would have needed, for each mode
   contains
     procedure :: start
@@ -76,9 +76,9 @@ contains
   pure subroutine forget_modes(self, highest)
     class(auto_t), intent(inout) :: self
     integer, intent(in) :: highest
-    if (allocated(self%stiff_in)) deallocate (self%stiff_in, self%patience, self%loss, self%time_with)
+    if (allocated(self%stiff_in)) deallocate (self%stiff_in, self%required_excess, self%loss, self%time_with)
     allocate (self%stiff_in(0:highest), source=.false.)
-    allocate (self%patience(0:highest), source=first_patience)
+    allocate (self%required_excess(0:highest), source=first_excess)
     allocate (self%loss(0:highest), source=0.0_dp)
     allocate (self%time_with(2, 0:highest), source=0.0_dp)
   end subroutine forget_modes
@@ -97,7 +97,7 @@ contains
     self%excess = 0
     if (stiff) then
       call self%radau%start(problem, t, y, first, status)
-      call take_solution(self)
+      call copy_solution(self)
     else
       call self%adams_t%start(problem, t, y, first, status)
     end if
@@ -112,9 +112,9 @@ contains
     status = step_done
     associate (mode => self%mode)
       if (self%stiff .and. self%loss(mode) > most_loss(self)) then
-        self%patience(mode) = min(4*self%patience(mode), most_patience)
+        self%required_excess(mode) = min(4*self%required_excess(mode), largest_excess)
         call change_over(self, problem, .false., status)
-      else if (.not. self%stiff .and. self%excess >= self%patience(mode)) then
+      else if (.not. self%stiff .and. self%excess >= self%required_excess(mode)) then
         self%loss(mode) = 0
         call change_over(self, problem, .true., status)
       end if
@@ -123,7 +123,7 @@ contains
         evaluations_before = self%radau%statistics%evaluations
         call self%radau%step(problem, status)
         if (status /= step_done) return
-        call take_solution(self)
+        call copy_solution(self)
         self%loss(mode) = self%loss(mode) + self%radau%statistics%evaluations - evaluations_before + step_overhead &
           - adams_price*self%radau%fastest_rate()*(self%t - self%t_old)
         return
@@ -165,7 +165,7 @@ contains
   end subroutine count_change
 
   !> Copy Radau's solution at both ends of its last step.
-  pure subroutine take_solution(self)
+  pure subroutine copy_solution(self)
     class(auto_t), intent(inout) :: self
     self%t = self%radau%t
     self%t_old = self%radau%t_old
@@ -174,7 +174,7 @@ contains
     self%order = self%radau%order
     self%statistics%accepted = self%radau%statistics%accepted
     self%statistics%evaluations = self%radau%statistics%evaluations
-  end subroutine take_solution
+  end subroutine copy_solution
 
   pure subroutine interpolate(self, t, y)
     class(auto_t), intent(inout) :: self
@@ -222,7 +222,7 @@ contains
     integer, intent(out) :: status
     if (self%stiff) then
       call self%radau%withdraw(problem, longest, status)
-      call take_solution(self)
+      call copy_solution(self)
     else
       call self%adams_t%withdraw(problem, longest, status)
     end if

@@ -1,6 +1,6 @@
 !> Interface of all integration methods, with their settings, statistics and status codes.
 module ode_method
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t
   implicit none
   private
@@ -74,7 +74,7 @@ module ode_method
     real(dp) :: t_old = 0                 !! beginning of the last accepted step
     real(dp) :: t = 0                     !! its end
     integer :: order = 0                  !! order of the last accepted step
-    real(dp) :: rough_time = huge(1.0_dp) !! expected time at which f loses its smoothness, see `rough_time` of the problem
+    real(dp) :: next_kink_time = huge(1.0_dp) !! expected time at which f loses its smoothness, see `next_kink_time` of the problem
     real(dp), allocatable :: y_old(:)     !! state at t_old, (n)
     real(dp), allocatable :: y(:)         !! state at t, (n)
     integer :: limit_done = 0             !! reason why the last accepted step was not longer, 0: unknown

@@ -4,7 +4,7 @@
 !> that an integrator may call with trial states (`derivatives`, `events`, `judge_step`) are pure: a rejected step does not change
 !> the problem.
 module ode_problem
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: ode_problem_t, difference_jacobian
@@ -41,19 +41,19 @@ module ode_problem
     procedure :: judge_step => admit_every_step
     procedure :: handle_event => stop_at_event
     procedure :: lands_on_step_end => never_on_step_end
-    procedure :: rough_time => never_rough
+    procedure :: next_kink_time => no_kink
   end type ode_problem_t
 
   abstract interface
-    !> Right-hand side f(t, y). `inside` is false if the model is not defined at y; dydt must not be used then. The arrays have
+    !> Right-hand side f(t, y). `in_domain` is false if the model is not defined at y; dydt must not be used then. The arrays have
     !> explicit shapes, which avoids passing and checking strides in every call.
-    pure subroutine derivatives(self, t, y, dydt, inside)
+    pure subroutine derivatives(self, t, y, dydt, in_domain)
       import :: ode_problem_t, dp
       class(ode_problem_t), intent(in) :: self
       real(dp), intent(in) :: t
       real(dp), intent(in) :: y(self%n)
       real(dp), intent(out) :: dydt(self%n)
-      logical, intent(out) :: inside
+      logical, intent(out) :: in_domain
     end subroutine derivatives
   end interface
 
@@ -73,26 +73,26 @@ contains
     real(dp), intent(in) :: t, y(:)
     real(dp), intent(out) :: a_p(:, :), a_v(:, :)
     real(dp) :: f(self%n), moved(self%n), state(self%n), step
-    logical :: inside
+    logical :: in_domain
     integer :: i, m, k
 
     m = size(a_p, 2)
     k = size(a_v, 1)
     a_p = 0
     a_v = 0
-    call self%derivatives(t, y, f, inside)
-    if (.not. inside) return
+    call self%derivatives(t, y, f, in_domain)
+    if (.not. in_domain) return
     do i = 1, m + k
       step = sqrt(epsilon(1.0_dp))*max(abs(y(i)), 1e-5_dp)
       state = y
       state(i) = y(i) + step
-      call self%derivatives(t, state, moved, inside)
-      if (.not. inside) then
+      call self%derivatives(t, state, moved, in_domain)
+      if (.not. in_domain) then
         step = -step
         state(i) = y(i) + step
-        call self%derivatives(t, state, moved, inside)
+        call self%derivatives(t, state, moved, in_domain)
       end if
-      if (.not. inside) cycle
+      if (.not. in_domain) cycle
       moved(m + 1:m + k) = (moved(m + 1:m + k) - f(m + 1:m + k))/step
       if (i <= m) then
         a_p(:, i) = moved(m + 1:m + k)
@@ -150,11 +150,11 @@ contains
 
   !> Predicted time, from the tangent at (t, y), of an event at which f varies as a non-integer power of the remaining time: steps
   !> are shortened before it. The default is never: the largest number.
-  pure real(dp) function never_rough(self, t, y)
+  pure real(dp) function no_kink(self, t, y)
     class(ode_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
     associate (unused_self => self, unused_t => t, unused_y => y)
     end associate
-    never_rough = huge(never_rough)
-  end function never_rough
+    no_kink = huge(no_kink)
+  end function no_kink
 end module ode_problem

@@ -1,6 +1,6 @@
 !> Searches the largest value of a smooth quantity between two instants, with few evaluations.
 module peak_search
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: sample_t, peak_search_t, may_peak
@@ -14,7 +14,7 @@ module peak_search
     real(dp) :: t = 0, value = 0, slope = 0   !! slope: derivative with respect to time
   end type sample_t
 
-  !> A search for a maximum. The caller evaluates the quantity at the time given by `next_time` and passes the value to `take`,
+  !> A search for a maximum. The caller evaluates the quantity at the time given by `next_time` and passes the value to `add_value`,
   !> until the search is done. The first time is the maximum of the cubic through values and slopes at both ends; then follow maxima
   !> of parabolas through the three best points, or golden sections where these fail (Brent 1973, ch. 5).
   type :: peak_search_t
@@ -28,7 +28,7 @@ module peak_search
   contains
     procedure :: begin
     procedure :: next_time
-    procedure :: take
+    procedure :: add_value
   end type peak_search_t
 
 contains
@@ -139,7 +139,7 @@ contains
   end subroutine find_parabola
 
   !> Pass the value of the quantity at t, between the ends.
-  pure subroutine take(self, t, value)
+  pure subroutine add_value(self, t, value)
     class(peak_search_t), intent(inout) :: self
     real(dp), intent(in) :: t, value
     type(sample_t) :: bound
@@ -170,7 +170,7 @@ contains
     self%t(rank) = t
     self%value(rank) = value
     self%has_top = self%has_top .or. rank == 1
-  end subroutine take
+  end subroutine add_value
 
   !> Position between 0 and 1 of the maximum of the cubic through two samples, which rises at the left one and falls at the right
   !> one.

@@ -1,7 +1,7 @@
 !> Weighted norms over the n components of a state, as squares where only comparisons are needed, since a square root takes as long
 !> as a dozen multiplications.
 module step_norms
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: norm, square_of_sum

@@ -1,10 +1,10 @@
 !> A grid of equally spaced crank angles, and the instants at which the crank passes them. A crank that turns back passes some of
 !> them again.
 module angle_grid
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   use ode_method, only: ode_method_t
-  use gudgeon_scene, only: scene_t
+  use scene_problem, only: scene_t
   use crank_passage, only: find_passage
   implicit none
   private
@@ -31,17 +31,17 @@ contains
     angle = self%origin + two_pi*(k/self%per_revolution)
   end function angle
 
-  !> Start the grid at the initial crank angle. `is_there` is true if that is an angle of the grid, up to the rounding of degrees.
-  pure subroutine begin(self, crank_angle, is_there)
+  !> Start the grid at the initial crank angle. `is_on_grid` is true if that is an angle of the grid, up to the rounding of degrees.
+  pure subroutine begin(self, crank_angle, is_on_grid)
     class(angle_grid_t), intent(inout) :: self
     real(dp), intent(in) :: crank_angle   !! [rad]
-    logical, intent(out) :: is_there
+    logical, intent(out) :: is_on_grid
     real(dp) :: place
     place = (crank_angle - self%origin)/two_pi*self%per_revolution
     self%last = anint(place)
-    is_there = abs(crank_angle - angle(self, self%last)) <= 4*epsilon(1.0_dp)*max(1.0_dp, abs(crank_angle), abs(self%origin))
+    is_on_grid = abs(crank_angle - angle(self, self%last)) <= 4*epsilon(1.0_dp)*max(1.0_dp, abs(crank_angle), abs(self%origin))
     self%side = 0
-    if (.not. is_there) self%side = sign(1.0_dp, crank_angle - angle(self, self%last))
+    if (.not. is_on_grid) self%side = sign(1.0_dp, crank_angle - angle(self, self%last))
   end subroutine begin
 
   !> Find the next time between t_from and t_to at which the crank is at an angle of the grid. Both times must lie inside the last
@@ -88,15 +88,15 @@ contains
   end subroutine find_target
 
   !> Whether the crank is at the next angle of the grid, within `rounding`, and the value of that angle.
-  pure subroutine is_due(self, crank_angle, rounding, is_there, grid_angle)
+  pure subroutine is_due(self, crank_angle, rounding, is_on_grid, grid_angle)
     class(angle_grid_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle   !! [rad]
     real(dp), intent(in) :: rounding      !! [rad]
-    logical, intent(out) :: is_there
+    logical, intent(out) :: is_on_grid
     real(dp), intent(out) :: grid_angle   !! [rad]
     real(dp) :: nearest_one
     nearest_one = anint((crank_angle - self%origin)/two_pi*self%per_revolution)
     grid_angle = angle(self, nearest_one)
-    is_there = abs(nearest_one - self%last) > 0 .and. abs(crank_angle - grid_angle) <= rounding
+    is_on_grid = abs(nearest_one - self%last) > 0 .and. abs(crank_angle - grid_angle) <= rounding
   end subroutine is_due
 end module angle_grid

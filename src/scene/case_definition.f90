@@ -6,9 +6,9 @@
 !> visitor. The list is in the submodule `case_groups`, so that a change of a law does not require the modules that use a case to be
 !> compiled again.
 module case_definition
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use run_state, only: run_state_t
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  use model_parameters, only: has_parameters_t, parameter_list_t
   use run_length, only: run_length_t
   use chain_motion, only: n_pins
   use joint_places, only: places, n_places, in_order, name_prefix

@@ -1,6 +1,6 @@
 !> The groups of a case: every group with its keys and laws, in the order of the template.
 submodule (case_definition) case_groups
-  use gudgeon_parameters, only: law_t
+  use model_parameters, only: law_t
   use contact_laws, only: offer_contact_laws, new_power_geometry
   use friction_laws, only: offer_speed_laws
   use joint_case, only: visit_joint, drop_laws, select_contact, select_friction
@@ -44,7 +44,7 @@ contains
       'Gas pressure on the piston, of an engine or a compressor. Without this group there is none', .true.)
     call list%choice('cycle', 'four_stroke', 'working cycle; compressor: without combustion')
     call offer_gas_cycles(list)
-    if (list%sets) call take_gas(list%chosen, case%combustion)
+    if (list%sets) call select_gas(list%chosen, case%combustion)
     call list%group('cylinder_pressure', 'Measured gas pressure on the piston, from a table', .true., instead_of='combustion')
     if (list%sets .and. allocated(case%measured)) measured = case%measured   ! its table has been read
     call measured%parameters(list)
@@ -59,8 +59,8 @@ contains
     call case%output%parameters(list)
   end procedure visit_case
 
-  !> Take the working cycle that a case names, if it names one.
-  subroutine take_gas(chosen, law)
+  !> Select the working cycle that a case names, if it names one.
+  subroutine select_gas(chosen, law)
     class(law_t), allocatable, intent(in) :: chosen
     class(gas_law_t), allocatable, intent(out) :: law
     if (.not. allocated(chosen)) return
@@ -68,7 +68,7 @@ contains
     class is (gas_law_t)
       allocate (law, source=chosen)
     end select
-  end subroutine take_gas
+  end subroutine select_gas
 
   subroutine visit_guide(guide, list)
     type(guide_case_t), allocatable, intent(inout) :: guide

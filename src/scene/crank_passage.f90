@@ -1,9 +1,9 @@
 !> Finds the instants at which the crank passes an angle or turns back, on the interpolant of the last step of a method.
 module crank_passage
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_method, only: ode_method_t
-  use gudgeon_roots, only: bracket_t, next_abscissa, narrow
-  use gudgeon_scene, only: scene_t
+  use root_search, only: bracket_t, next_abscissa, narrow
+  use scene_problem, only: scene_t
   implicit none
   private
   public :: find_passage, find_turning

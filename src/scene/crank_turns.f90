@@ -2,14 +2,14 @@
 !>
 !> The crank must not stop or turn back before that. The sense of the turns is that of the starting speed. If the crank starts from
 !> rest, it is the sense in which it has first moved by one degree (or by half of the wanted angle, if that is less). A crank that
-!> creeps without stopping is stopped by `turn_patience_t`, which limits the time for one turn.
+!> creeps without stopping is stopped by `turn_limit_t`, which limits the time for one turn.
 module crank_turns
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi, degree
+  use kinds, only: dp
+  use constants, only: two_pi, degree
   use ode_problem, only: event_continue, event_stop
   implicit none
   private
-  public :: crank_turns_t, new_crank_turns, wear_cycle_t, n_turn_events, all_made, turned_back, turn_patience_t
+  public :: crank_turns_t, new_crank_turns, wear_cycle_t, n_turn_events, all_made, turned_back, turn_limit_t
 
   integer, parameter :: n_turn_events = 2  !! event functions: the crank angle still to go, and the crank speed against the sense of
                                            !! the turns
@@ -30,7 +30,7 @@ module crank_turns
   end type crank_turns_t
 
   !> Limit of the time that the crank may take for one turn.
-  type :: turn_patience_t
+  type :: turn_limit_t
     real(dp) :: longest = huge(1.0_dp)   !! [s]
     logical :: is_over = .false.         !! the limit has been exceeded: the run is to end
     integer, private :: made = 0         !! largest number of whole turns made so far
@@ -39,7 +39,7 @@ module crank_turns
     procedure :: begin
     procedure :: follow
     procedure :: limit_end
-  end type turn_patience_t
+  end type turn_limit_t
 
   !> Turns of the crank in either sense after which something is due again.
   type :: wear_cycle_t
@@ -123,7 +123,7 @@ contains
 
   !> Begin at time t, `turns` turns away from the start.
   pure subroutine begin(self, t, turns)
-    class(turn_patience_t), intent(inout) :: self
+    class(turn_limit_t), intent(inout) :: self
     real(dp), intent(in) :: t       !! [s]
     real(dp), intent(in) :: turns   !! >= 0
     self%made = floor(turns)
@@ -132,7 +132,7 @@ contains
 
   !> Report that the crank is `turns` turns away from its start at time t.
   pure subroutine follow(self, t, turns)
-    class(turn_patience_t), intent(inout) :: self
+    class(turn_limit_t), intent(inout) :: self
     real(dp), intent(in) :: t       !! [s]
     real(dp), intent(in) :: turns   !! >= 0
     if (turns < self%made + 1) return
@@ -142,7 +142,7 @@ contains
 
   !> Move t_end to the instant at which the time for the next turn is over, if that is earlier.
   pure subroutine limit_end(self, t_end)
-    class(turn_patience_t), intent(inout) :: self
+    class(turn_limit_t), intent(inout) :: self
     real(dp), intent(inout) :: t_end   !! [s]
     self%is_over = t_end - self%since > self%longest
     if (self%is_over) t_end = self%since + self%longest

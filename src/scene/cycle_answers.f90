@@ -3,11 +3,10 @@
 !> The cycle is the period of the motion if one was found, else that of the gas, else one revolution. It ends where the run last
 !> completed a revolution. Work is that on the bodies, so losses are negative.
 module cycle_answers
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi, degree
-  use joint_places, only: name_prefix
+  use kinds, only: dp
+  use constants, only: two_pi, degree
   use load_element, only: of_contact, of_friction, of_film, of_asperities
-  use gudgeon_scene, only: scene_t, by_gas, by_drive, by_damping, by_guide, by_elastic
+  use scene_problem, only: scene_t, by_gas, by_drive, by_damping, by_guide, by_elastic
   use cycle_statistics, only: cycle_t
   use cycle_watch, only: cycle_watch_t
   use period_watch, only: period_watch_t
@@ -25,8 +24,8 @@ module cycle_answers
 
   !> An answer of one run.
   type :: answer_t
-    character(len=40) :: name = ''    !! with the place of the joint
-    character(len=14) :: unit = ''
+    integer :: quantity = 0           !! index in `cycle_quantities`
+    integer :: place = 0              !! of the joint; 0: of the machine
     real(dp) :: value = 0
     character(len=8) :: text = ''     !! instead of the value, of a quantity without unit
   end type answer_t
@@ -101,7 +100,7 @@ contains
     if (allocated(scene%gas)) gas_revolutions = scene%gas%revolutions
     revolutions = gas_revolutions
     if (periods%period > 0) revolutions = periods%period
-    if (cycles%ended < revolutions .or. revolutions > longest_period) return
+    if (cycles%followed < revolutions .or. revolutions > longest_period) return
     cycle = cycles%last_cycle(revolutions)
     displacement = 0
     if (allocated(scene%gas)) displacement = scene%gas%cylinder%displacement*revolutions/gas_revolutions
@@ -115,21 +114,24 @@ contains
     end do
     call add_machine()
     do i = 1, size(scene%parts)
-      call add(q_first_work - 1 + findloc(parts, scene%parts(i)%what, 1), cycle%work(i), prefix_of(scene%parts(i)%joint))
+      call add(q_first_work - 1 + findloc(parts, scene%parts(i)%what, 1), cycle%work(i), scene%parts(i)%joint)
     end do
     call add(q_energy, cycle%energy_change)
     call add(q_rest, cycle%energy_change - sum(cycle%work(:size(scene%parts))))
 
   contains
 
-    subroutine add(quantity, value, prefix)
+    subroutine add(quantity, value, joint)
       integer, intent(in) :: quantity
       real(dp), intent(in) :: value
-      character(len=*), intent(in), optional :: prefix
-      type(quantity_t) :: it
-      it = cycle_quantities(quantity)
-      if (present(prefix)) it%name = prefix//it%name
-      answers = [answers, answer_t(it%name, it%unit, value)]
+      integer, intent(in), optional :: joint   !! 0 or absent: not of a joint
+      type(answer_t) :: answer
+      answer%quantity = quantity
+      answer%value = value
+      if (present(joint)) then
+        if (joint > 0) answer%place = scene%joints(joint)%place
+      end if
+      answers = [answers, answer]
     end subroutine add
 
     subroutine add_change(change)
@@ -139,14 +141,6 @@ contains
       answers(size(answers))%text = 'unknown'
       if (change >= 0) answers(size(answers))%text = merge('yes', 'no ', change <= periods%tolerance)
     end subroutine add_change
-
-    !> Name of the place of a joint as a prefix; none for what is not in a joint.
-    function prefix_of(joint) result(prefix)
-      integer, intent(in) :: joint
-      character(len=:), allocatable :: prefix
-      prefix = ''
-      if (joint > 0) prefix = name_prefix(scene%joints(joint)%place)
-    end function prefix_of
 
     !> Work of one kind in a joint, or of another part [J].
     pure real(dp) function work_of(what, joint) result(work)
@@ -165,27 +159,25 @@ contains
 
     subroutine add_joint(i)
       integer, intent(in) :: i
-      character(len=:), allocatable :: prefix
       real(dp) :: film, friction
       associate (joint => scene%joints(i), pin => cycle%pin(scene%joints(i)%place))
-        prefix = prefix_of(i)
-        call add(q_film, pin%min_film_thickness, prefix)
-        call add(q_film_angle, degrees(pin%thinnest_angle), prefix)
-        call add(q_ratio, 1 - pin%min_film_thickness/joint%bearing%clearance, prefix)
-        call add(q_force, pin%max_force, prefix)
-        call add(q_share, pin%contact_time/cycle%duration, prefix)
+        call add(q_film, pin%min_film_thickness, i)
+        call add(q_film_angle, degrees(pin%thinnest_angle), i)
+        call add(q_ratio, 1 - pin%min_film_thickness/joint%bearing%clearance, i)
+        call add(q_force, pin%max_force, i)
+        call add(q_share, pin%contact_time/cycle%duration, i)
         film = work_of(of_film, i)
         friction = work_of(of_friction, i) + work_of(of_asperities, i)
-        if (joint%has_kind(of_film)) call add(q_film_power, -film/cycle%duration, prefix)
+        if (joint%has_kind(of_film)) call add(q_film_power, -film/cycle%duration, i)
         if (joint%has_kind(of_friction) .or. joint%has_kind(of_asperities)) &
-          call add(q_friction_power, -friction/cycle%duration, prefix)
-        if (displacement > 0) call add(q_joint_fmep, -(film + friction)/displacement, prefix)
+          call add(q_friction_power, -friction/cycle%duration, i)
+        if (displacement > 0) call add(q_joint_fmep, -(film + friction)/displacement, i)
         if (.not. (joint%reports_film .and. joint%has_kind(of_film))) return
         if (pin%max_film_pressure > 0) then
-          call add(q_pressure, pin%max_film_pressure, prefix)
-          call add(q_pressure_angle, degrees(pin%pressure_angle), prefix)
+          call add(q_pressure, pin%max_film_pressure, i)
+          call add(q_pressure_angle, degrees(pin%pressure_angle), i)
         end if
-        if (pin%film_volume > 0) call add(q_flow, pin%film_volume/cycle%duration, prefix)
+        if (pin%film_volume > 0) call add(q_flow, pin%film_volume/cycle%duration, i)
       end associate
     end subroutine add_joint
 

@@ -1,6 +1,6 @@
 !> Results of each revolution of the crank, and statistics over all revolutions.
 module cycle_statistics
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use joint_places, only: n_places
   implicit none
   private

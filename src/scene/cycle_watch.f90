@@ -1,17 +1,14 @@
-!> Divides a run into the revolutions of its crank: assigns accepted points to revolutions, and finds on the interpolant of the
-!> method the instants at which a revolution ends or the crank passes a given angle.
-!>
-!> Revolution k ends when the crank has turned by 2 pi k from its start, in the sense of its starting speed (from rest: of its
-!> torque). If the crank swings back, it is still in the revolution that it has reached.
+!> Results of the revolutions of the crank, and samples at the instants at which it passes a given angle.
 module cycle_watch
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   use ode_method, only: ode_method_t
   use joint_places, only: n_places
-  use gudgeon_scene, only: scene_t, evaluation_t, phase_contact
+  use scene_problem, only: scene_t, evaluation_t, phase_contact
   use crank_passage, only: find_passage
+  use revolutions, only: revolutions_t
   use step_peaks, only: n_peaks, of_pin_force, of_penetration
-  use gudgeon_columns, only: column_list_t, row_values
+  use trace_columns, only: column_list_t, row_values
   use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt, most_parts
   use run_length, only: longest_period
   use machine_record, only: machine_record_t
@@ -39,45 +36,52 @@ module cycle_watch
     real(dp), private :: works(most_parts) = 0, energy = 0   !! at the start of the revolution [J]
     type(cycle_t), private :: present
     integer :: ended = 0                  !! number of revolutions that have ended
+    integer :: followed = 0               !! number of those that have results: a run that goes on begins inside one
     integer, private :: passed = 0                 !! number of times that the crank has passed the strobe angle
     real(dp), private :: start_angle = 0, strobe_offset = 0, initial_energy = 0
     real(dp), private :: t = 0                     !! time of the last point [s]
     real(dp), private :: cycle_start = 0           !! time at which the present revolution began [s]
     real(dp), private :: force_integral(n_places) = 0, loss = 0   !! at the start of the revolution
     logical, private :: has_strobe = .false.
-    real(dp), allocatable :: y(:)                  !! state at the end of the present revolution, from `find_end`
+    logical, private :: is_whole = .true.          !! the present revolution has been followed from its beginning
+    real(dp), allocatable, private :: y(:)         !! work space for a state
   contains
     procedure :: begin
     procedure :: count_from
-    procedure :: find_end
     procedure :: end_cycle
-    procedure :: take_strobes
+    procedure :: record_strobes
     procedure :: lower_to_peaks
-    procedure :: take_peaks
-    procedure :: take_film
+    procedure :: record_peaks
+    procedure :: record_film
     procedure :: search_machine
     procedure :: last_cycle
-    procedure :: take_point
-    procedure :: take_impact
-    procedure :: take_skirt
+    procedure :: film_change
+    procedure :: record_point
+    procedure :: count_impact
+    procedure :: record_skirt
     procedure :: finish
   end type cycle_watch_t
 
 contains
 
   !> Begin a run at (t, y), where the scene has been evaluated if that is inside the model.
-  subroutine begin(self, scene, t, y, now, inside, initial_energy)
+  subroutine begin(self, scene, t, y, now, in_domain, initial_energy, crank)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(in) :: now
-    logical, intent(in) :: inside
+    logical, intent(in) :: in_domain
     real(dp), intent(in) :: initial_energy   !! [J]
-    if (inside) call self%machine%begin(scene, t, now)
+    type(revolutions_t), intent(in) :: crank   !! its revolutions so far
+    if (in_domain) call self%machine%begin(scene, t, now)
     self%statistics = cycle_statistics_t()
     self%present = cycle_t()
     self%uncounted = self%settle
-    self%ended = 0
+    self%ended = crank%ended
+    self%followed = 0
+    self%direction = crank%direction
+    self%start_angle = crank%start_angle
+    self%is_whole = abs(scene%crank_angle(t, y) - crank%angle(crank%ended)) <= rounding
     self%passed = 0
     self%strobes = 0
     self%t = t
@@ -87,10 +91,7 @@ contains
     self%works = 0
     if (allocated(scene%parts)) self%works(:size(scene%parts)) = scene%works(t, y)
     self%energy = 0
-    if (inside) self%energy = scene%chain%energy(now%motion)
-    self%direction = sign(1.0_dp, scene%chain%drive%torque)
-    if (abs(scene%start_speed) > 0) self%direction = sign(1.0_dp, scene%start_speed)
-    self%start_angle = scene%crank_angle(t, y)
+    if (in_domain) self%energy = scene%chain%energy(now%motion)
     self%initial_energy = initial_energy
     self%strobe_offset = two_pi - modulo(-self%direction*(self%strobe_angle - self%start_angle), two_pi)
     self%has_strobe = .false.
@@ -110,25 +111,8 @@ contains
     self%strobes = 0
   end subroutine count_from
 
-  !> Find out whether the present revolution ends before (t_to, y_to), and when. The solution must be final up to there, inside the
-  !> last step of the method. A step may contain several ends of revolutions: handle the points before this end, end the revolution,
-  !> and call again.
-  subroutine find_end(self, method, scene, t_to, y_to, t_end, ends)
-    class(cycle_watch_t), intent(inout) :: self
-    class(ode_method_t), intent(inout) :: method
-    type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t_to, y_to(:)
-    real(dp), intent(out) :: t_end   !! the state at this time is left in self%y
-    logical, intent(out) :: ends
-    real(dp) :: travel
-    travel = travel_at(self, scene, t_to, y_to)
-    ends = travel >= next_end(self)
-    t_end = t_to
-    if (ends) t_end = passage(self, method, scene, next_end(self), t_to)
-  end subroutine find_end
-
   !> Sample the columns at the strobe angle, if the crank has passed it before (t_to, y_to), perhaps several times.
-  subroutine take_strobes(self, method, scene, t_to, y_to)
+  subroutine record_strobes(self, method, scene, t_to, y_to)
     class(cycle_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
@@ -140,7 +124,7 @@ contains
       t = passage(self, method, scene, next_strobe(self), t_to)
       call strobe(self, scene, t, self%y)
     end do
-  end subroutine take_strobes
+  end subroutine record_strobes
 
   !> Lower the values above which peaks are searched from those of the run to those of the present revolution, if that is counted.
   pure subroutine lower_to_peaks(self, pin, known)
@@ -155,7 +139,7 @@ contains
   end subroutine lower_to_peaks
 
   !> Account for the values of one evaluation of a film in the present revolution.
-  pure subroutine take_film(self, pin, pressure, angle, volume)
+  pure subroutine record_film(self, pin, pressure, angle, volume)
     class(cycle_watch_t), intent(inout) :: self
     integer, intent(in) :: pin
     real(dp), intent(in) :: pressure   !! largest in the film [Pa]
@@ -168,7 +152,7 @@ contains
         c%pressure_angle = angle
       end if
     end associate
-  end subroutine take_film
+  end subroutine record_film
 
   !> Search the last step, up to t, where the scene is evaluated, for the largest pressure of the gas and for the extremes of the
   !> crank speed in the present revolution.
@@ -181,20 +165,39 @@ contains
     call self%machine%search(method, scene, t, now, self%present)
   end subroutine search_machine
 
-  !> The last revolutions together, as one cycle; all must have ended.
-  pure type(cycle_t) function last_cycle(self, revolutions) result(cycle)
+  !> The last revolutions together, as one cycle, or those up to `earlier` revolutions before; all must have been followed.
+  pure type(cycle_t) function last_cycle(self, revolutions, earlier) result(cycle)
     class(cycle_watch_t), intent(in) :: self
     integer, intent(in) :: revolutions
+    integer, intent(in), optional :: earlier
     type(cycle_statistics_t) :: sum
-    integer :: k
-    do k = self%ended - revolutions + 1, self%ended
+    integer :: k, last
+    last = self%ended
+    if (present(earlier)) last = last - earlier
+    do k = last - revolutions + 1, last
       call sum%add(self%recent(mod(k, longest_period)))
     end do
     cycle = sum%total
   end function last_cycle
 
+  !> Change of the smallest film thickness of a pin from the last cycle but one to the last, relative to the former [-]; 0 before
+  !> the end of the third cycle, since the first one begins anywhere, and where the surfaces touch.
+  pure real(dp) function film_change(self, pin, revolutions)
+    class(cycle_watch_t), intent(in) :: self
+    integer, intent(in) :: pin           !! index in `places`
+    integer, intent(in) :: revolutions   !! in a cycle
+    type(cycle_t) :: last, before
+    film_change = 0
+    if (self%followed < 3*revolutions .or. 2*revolutions > longest_period) return
+    last = self%last_cycle(revolutions)
+    before = self%last_cycle(revolutions, revolutions)
+    associate (now => last%pin(pin)%min_film_thickness, then => before%pin(pin)%min_film_thickness)
+      if (now > 0 .and. then > 0) film_change = (now - then)/then
+    end associate
+  end function film_change
+
   !> Account for values of the quantities with peaks, at a pin in the present revolution.
-  pure subroutine take_peaks(self, pin, is_touching, values, thinnest_angle)
+  pure subroutine record_peaks(self, pin, is_touching, values, thinnest_angle)
     class(cycle_watch_t), intent(inout) :: self
     integer, intent(in) :: pin
     logical, intent(in) :: is_touching
@@ -206,10 +209,10 @@ contains
       c%min_film_thickness = min(c%min_film_thickness, -values(of_penetration))
       if (is_touching) c%max_penetration = max(c%max_penetration, values(of_penetration))
     end associate
-  end subroutine take_peaks
+  end subroutine record_peaks
 
   !> Account for an accepted point at time t in the present revolution.
-  pure subroutine take_point(self, scene, t)
+  pure subroutine record_point(self, scene, t)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
@@ -224,39 +227,30 @@ contains
       if (any(scene%guide%touches)) self%present%pin(skirt)%contact_time = self%present%pin(skirt)%contact_time + (t - self%t)
     end if
     self%t = t
-  end subroutine take_point
+  end subroutine record_point
 
   !> Count a contact that begins at a pin or at a corner of the skirt.
-  pure subroutine take_impact(self, pin)
+  pure subroutine count_impact(self, pin)
     class(cycle_watch_t), intent(inout) :: self
     integer, intent(in) :: pin
     self%present%pin(pin)%impacts = self%present%pin(pin)%impacts + 1
-  end subroutine take_impact
+  end subroutine count_impact
 
   !> Account for the largest penetration and force of the corners of the skirt in the present revolution.
-  pure subroutine take_skirt(self, penetration, force)
+  pure subroutine record_skirt(self, penetration, force)
     class(cycle_watch_t), intent(inout) :: self
     real(dp), intent(in) :: penetration, force   !! [m], [N]
     self%present%pin(skirt)%max_penetration = penetration
     self%present%pin(skirt)%max_force = force
-  end subroutine take_skirt
+  end subroutine record_skirt
 
-  !> End the run at (t, y). A revolution that is complete except for rounding is ended too.
+  !> End the run at (t, y): the crank may be at the strobe angle but for rounding.
   subroutine finish(self, scene, t, y)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
-    type(evaluation_t) :: now
-    logical :: inside
-    real(dp) :: travel
-    travel = travel_at(self, scene, t, y)
-    if (abs(travel - next_end(self)) <= rounding*(1 + self%ended)) then
-      self%y = y
-      call scene%evaluate(t, y, now, inside)
-      call self%end_cycle(scene, t, now)
-    end if
     if (.not. self%has_strobe) return
-    if (abs(travel - next_strobe(self)) <= rounding*(1 + self%passed)) call strobe(self, scene, t, y)
+    if (abs(travel_at(self, scene, t, y) - next_strobe(self)) <= rounding*(1 + self%passed)) call strobe(self, scene, t, y)
   end subroutine finish
 
   !> Angle turned through since the start, in the sense of the revolutions [rad].
@@ -266,12 +260,6 @@ contains
     real(dp), intent(in) :: t, y(:)
     travel_at = self%direction*(scene%crank_angle(t, y) - self%start_angle)
   end function travel_at
-
-  !> Angle of travel at which the present revolution ends [rad].
-  pure real(dp) function next_end(self)
-    class(cycle_watch_t), intent(in) :: self
-    next_end = two_pi*(self%ended + 1)
-  end function next_end
 
   !> Angle of travel at which the crank passes the strobe angle next [rad].
   pure real(dp) function next_strobe(self)
@@ -291,19 +279,19 @@ contains
       passage, self%y)
   end function passage
 
-  !> End the present revolution at time t, with the state in self%y, where the scene has been evaluated.
-  subroutine end_cycle(self, scene, t, now)
+  !> End the present revolution at (t, y), where the scene has been evaluated.
+  subroutine end_cycle(self, scene, t, y, now)
     class(cycle_watch_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t
+    real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(in) :: now
     real(dp) :: force_integral(n_places), loss, works(most_parts), energy
-    force_integral = scene%force_integrals(self%y)
-    loss = scene%joint_loss(t, self%y)
+    force_integral = scene%force_integrals(y)
+    loss = scene%joint_loss(t, y)
     energy = scene%chain%energy(now%motion)
     works = 0
-    if (allocated(scene%parts)) works(:size(scene%parts)) = scene%works(t, self%y)
-    call self%take_point(scene, t)
+    if (allocated(scene%parts)) works(:size(scene%parts)) = scene%works(t, y)
+    call self%record_point(scene, t)
     self%present%duration = t - self%cycle_start
     self%present%pin(:n_places)%force_integral = force_integral - self%force_integral
     self%present%dissipated_energy = loss - self%loss
@@ -312,7 +300,8 @@ contains
     self%present%energy_change = energy - self%energy
     self%ended = self%ended + 1
     self%recent(mod(self%ended, longest_period)) = self%present
-    if (self%ended > self%uncounted) then
+    if (self%is_whole) self%followed = self%followed + 1
+    if (self%is_whole .and. self%ended > self%uncounted) then
       call self%statistics%add(self%present)
       if (self%keeps_cycles) then
         associate (n => self%statistics%cycles)
@@ -321,6 +310,7 @@ contains
         end associate
       end if
     end if
+    self%is_whole = .true.
     self%present = cycle_t()
     self%cycle_start = t
     self%force_integral = force_integral
@@ -335,14 +325,14 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
-    logical :: inside
+    logical :: in_domain
     self%passed = self%passed + 1
     if (self%passed <= self%uncounted) return
     if (self%most_strobes > 0 .and. self%strobes >= self%most_strobes) return
     self%strobes = self%strobes + 1
     if (self%strobes > size(self%strobe_values, 2)) self%strobe_values = reshape(self%strobe_values, &
       [size(self%strobe_values, 1), 2*self%strobes], pad=[0.0_dp])   ! more room
-    call scene%evaluate(t, y, now, inside)
+    call scene%evaluate(t, y, now, in_domain)
     call row_values(self%strobe_list, scene, t, now, scene%work(y), self%initial_energy, self%strobe_values(:, self%strobes))
   end subroutine strobe
 end module cycle_watch

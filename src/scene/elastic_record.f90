@@ -3,10 +3,10 @@
 !> All of them follow from the state alone. Peaks inside a step are therefore searched on the interpolant of the method, without
 !> evaluations of the scene.
 module elastic_record
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_method, only: ode_method_t
   use chain_motion, only: motion_t
-  use gudgeon_scene, only: scene_t, evaluation_t
+  use scene_problem, only: scene_t, evaluation_t
   use peak_search, only: sample_t, peak_search_t, may_peak
   use run_figures, only: elastic_figures_t
   implicit none
@@ -17,7 +17,7 @@ module elastic_record
   integer, parameter :: of_deflection = 1, of_stretch = 2, of_energy = 3, of_twist = 4, n_peaks = 4
 
   type :: elastic_record_t
-    logical :: is_there = .false.      !! the scene has elastic members
+    logical :: is_present = .false.      !! the scene has elastic members
     real(dp), private :: t = 0         !! end of the last interval that was searched [s]
     real(dp), private :: last(n_peaks) = 0   !! the quantities at that time
     real(dp), private :: rate(n_peaks) = 0   !! and their rates
@@ -25,7 +25,7 @@ module elastic_record
     procedure, non_overridable :: prepare
     procedure, non_overridable :: begin
     procedure, non_overridable :: search
-    procedure, non_overridable :: take_values
+    procedure, non_overridable :: record_values
   end type elastic_record_t
 
 contains
@@ -35,8 +35,8 @@ contains
     class(elastic_record_t), intent(out) :: self
     type(scene_t), intent(in) :: scene
     type(elastic_figures_t), intent(inout) :: figures
-    self%is_there = allocated(scene%chain%elastic)
-    if (.not. self%is_there) return
+    self%is_present = allocated(scene%chain%elastic)
+    if (.not. self%is_present) return
     if (scene%chain%has_elastic_rod()) then
       figures%bending_frequency = scene%chain%elastic%rod%bending_frequency()
       figures%axial_frequency = scene%chain%elastic%rod%axial_frequency(scene%chain%bodies%piston%mass)
@@ -50,7 +50,7 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
-    if (.not. self%is_there) return
+    if (.not. self%is_present) return
     self%t = t
     call find_values(scene, now%motion, self%last, self%rate)
   end subroutine begin
@@ -65,7 +65,7 @@ contains
     type(evaluation_t), intent(in) :: now
     type(elastic_figures_t), intent(inout) :: figures
     real(dp) :: values(n_peaks), rates(n_peaks)
-    if (.not. self%is_there) return
+    if (.not. self%is_present) return
     call find_values(scene, now%motion, values, rates)
     if (t > self%t) then
       call search_both(of_deflection, figures%mid_deflection)
@@ -119,25 +119,25 @@ contains
       motion%crank_angle = scene%crank_angle(t, y)
       motion%crank_speed = scene%crank_speed(t, y)
       call find_values(scene, motion, values, rates)
-      call peak%take(t, sign_of_peak*values(quantity))
+      call peak%add_value(t, sign_of_peak*values(quantity))
     end do
     largest = max(largest, peak%value(1))
   end subroutine search_between
 
   !> Account for the values of one evaluation.
-  pure subroutine take_values(self, scene, now, figures)
+  pure subroutine record_values(self, scene, now, figures)
     class(elastic_record_t), intent(in) :: self
     type(scene_t), intent(in) :: scene
     type(evaluation_t), intent(in) :: now
     type(elastic_figures_t), intent(inout) :: figures
     real(dp) :: values(n_peaks), rates(n_peaks)
-    if (.not. self%is_there) return
+    if (.not. self%is_present) return
     call find_values(scene, now%motion, values, rates)
     figures%mid_deflection = max(figures%mid_deflection, abs(values(of_deflection)))
     figures%stretch = max(figures%stretch, abs(values(of_stretch)))
     figures%strain_energy = max(figures%strain_energy, values(of_energy))
     figures%twist = max(figures%twist, abs(values(of_twist)))
-  end subroutine take_values
+  end subroutine record_values
 
   !> The quantities and their rates in one motion, of which crank, shapes and flywheel are read; 0 for a member that is not elastic.
   pure subroutine find_values(scene, motion, values, rates)

@@ -1,11 +1,11 @@
 !> Pressure fields of the films at chosen times of a run. During the run only the motions at these times are stored; the pressures
 !> are computed when it has ended.
 module film_snapshots
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use film_law, only: film_motion_t
   use ode_method, only: ode_method_t
-  use gudgeon_scene, only: scene_t, evaluation_t, phase_film
-  use inside_step, only: look_inside
+  use scene_problem, only: scene_t, evaluation_t, phase_film
+  use inside_step, only: evaluate_inside
   implicit none
   private
   public :: film_snapshots_t, film_field_t
@@ -29,7 +29,7 @@ module film_snapshots
                                                   !! speeds
   contains
     procedure :: prepare
-    procedure :: take
+    procedure :: record
     procedure :: fields
   end type film_snapshots_t
 
@@ -45,7 +45,7 @@ contains
   end subroutine prepare
 
   !> Store the motions at the requested times in the last step of the method, up to t_to.
-  subroutine take(self, method, scene, t_to, evaluations)
+  subroutine record(self, method, scene, t_to, evaluations)
     class(film_snapshots_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
@@ -54,12 +54,12 @@ contains
     type(evaluation_t) :: now
     type(film_motion_t) :: seen
     real(dp) :: y(scene%n), rate(2), share, thickening
-    logical :: inside
+    logical :: in_domain
     integer :: i
     do while (self%next <= size(self%times))
       if (self%times(self%next) > t_to) exit
-      call look_inside(scene, method, self%times(self%next), y, now, inside, evaluations)
-      do i = 1, merge(scene%n_joints, 0, inside)
+      call evaluate_inside(scene, method, self%times(self%next), y, now, in_domain, evaluations)
+      do i = 1, merge(scene%n_joints, 0, in_domain)
         if (scene%joints(i)%acting(phase_film) == 0) cycle
         associate (element => scene%joints(i)%slots(scene%joints(i)%acting(phase_film))%element)
           if (.not. element%film%gives_pressure()) cycle
@@ -71,7 +71,7 @@ contains
       end do
       self%next = self%next + 1
     end do
-  end subroutine take
+  end subroutine record
 
   !> The pressure fields at the requested times that the run has reached.
   function fields(self, scene) result(all)

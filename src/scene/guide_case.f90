@@ -1,7 +1,7 @@
 !> The parameters of the piston's guide in a case.
 module guide_case
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: has_parameters_t, parameter_list_t
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
   use piston_guide, only: piston_guide_t

@@ -3,12 +3,12 @@
 !> Penetrations and forces follow from the position and speed of the piston alone. Peaks inside a step are therefore searched on the
 !> interpolant of the method, without evaluations of the scene.
 module guide_record
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_method, only: ode_method_t
   use run_state, only: run_state_t
   use joint_places, only: n_places
   use piston_guide, only: corner_t, n_corners, corner_names
-  use gudgeon_scene, only: scene_t, evaluation_t, event_contact_begins
+  use scene_problem, only: scene_t, evaluation_t, event_contact_begins
   use peak_search, only: sample_t, peak_search_t, may_peak
   use trace_sink, only: trace_event_t
   use run_figures, only: run_figures_t
@@ -21,7 +21,7 @@ module guide_record
   real(dp), parameter :: short = 1e-4_dp      !! fraction of an interval over which the slope of a force is taken
 
   type :: guide_record_t
-    logical :: is_there = .false.      !! the scene has a piston with clearance in its bore
+    logical :: is_present = .false.      !! the scene has a piston with clearance in its bore
     type(trace_event_t), private :: contact(n_corners)   !! present or last contact of each corner
     real(dp), private :: t = 0         !! end of the last interval that was searched [s]
     real(dp), private :: last(n_peaks, n_corners) = 0    !! penetrations and forces at that time
@@ -35,9 +35,9 @@ module guide_record
     procedure, non_overridable :: begin_revolution
     procedure, non_overridable :: end_revolution
     procedure, non_overridable :: search
-    procedure, non_overridable :: take_values
-    procedure, non_overridable :: take_time
-    procedure, non_overridable :: take_contact
+    procedure, non_overridable :: record_values
+    procedure, non_overridable :: add_time
+    procedure, non_overridable :: record_contact
   end type guide_record_t
 
 contains
@@ -47,7 +47,7 @@ contains
     class(guide_record_t), intent(out) :: self
     type(scene_t), intent(in) :: scene
     integer :: i
-    if (allocated(scene%guide)) self%is_there = scene%guide%is_loose
+    if (allocated(scene%guide)) self%is_present = scene%guide%is_loose
     do i = 1, n_corners
       self%contact(i)%pin = n_places + i
     end do
@@ -59,7 +59,7 @@ contains
     type(run_state_t), intent(inout) :: list
     type(run_figures_t), intent(inout) :: figures
     integer :: i
-    do i = 1, merge(n_corners, 0, self%is_there)
+    do i = 1, merge(n_corners, 0, self%is_present)
       call figures%corner(i)%declare(corner_names(i)//'_', list, has_gap=.false., has_contacts=.true., has_film=.false.)
       call self%contact(i)%declare(list)
     end do
@@ -70,7 +70,7 @@ contains
     class(guide_record_t), intent(inout) :: self
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
-    if (.not. self%is_there) return
+    if (.not. self%is_present) return
     self%t = t
     self%last(of_depth, :) = now%guide%corner%depth
     self%last(of_force, :) = now%guide%corner%normal_force
@@ -88,7 +88,7 @@ contains
   pure subroutine end_revolution(self, cycles)
     class(guide_record_t), intent(inout) :: self
     type(cycle_watch_t), intent(inout) :: cycles
-    if (self%is_there) call cycles%take_skirt(self%highest(of_depth), self%highest(of_force))
+    if (self%is_present) call cycles%record_skirt(self%highest(of_depth), self%highest(of_force))
   end subroutine end_revolution
 
   !> Search the peaks of the corners that touch, between the end of the last interval and t, where the scene is evaluated. Both must
@@ -102,7 +102,7 @@ contains
     type(run_figures_t), intent(inout) :: figures
     real(dp) :: largest(n_peaks)
     integer :: i
-    if (.not. self%is_there) return
+    if (.not. self%is_present) return
     do i = 1, n_corners
       if (.not. (scene%guide%touches(i) .and. t > self%t)) cycle
       largest = 0
@@ -114,9 +114,9 @@ contains
           sample_t(t, corner%normal_force, slope_at(t, -1)), min(self%contact(i)%max_normal_force, &
           self%highest(of_force)), largest(of_force))
       end associate
-      call put_values(self, i, largest, figures)
+      call add_values(self, i, largest, figures)
     end do
-    call self%take_values(scene, now, figures)
+    call self%record_values(scene, now, figures)
     call self%stand_at(t, now)
 
   contains
@@ -150,7 +150,7 @@ contains
     do
       call peak%next_time(t, is_done)
       if (is_done) exit
-      call peak%take(t, value_at(method, scene, corner, quantity, t))
+      call peak%add_value(t, value_at(method, scene, corner, quantity, t))
     end do
     largest = max(largest, peak%value(1))
   end subroutine search_between
@@ -164,26 +164,26 @@ contains
     type(corner_t) :: corners(n_corners)
     real(dp) :: y(scene%n)
     call method%interpolate(t, y)
-    call scene%guide%look(y, corners)
+    call scene%guide%find_contact_state(y, corners)
     value = merge(corners(corner)%depth, corners(corner)%normal_force, quantity == of_depth)
   end function value_at
 
   !> Account for the penetrations and forces of one evaluation.
-  subroutine take_values(self, scene, now, figures)
+  subroutine record_values(self, scene, now, figures)
     class(guide_record_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     type(evaluation_t), intent(in) :: now
     type(run_figures_t), intent(inout) :: figures
     integer :: i
-    if (.not. self%is_there) return
+    if (.not. self%is_present) return
     do i = 1, n_corners
       if (scene%guide%touches(i)) &
-        call put_values(self, i, [now%guide%corner(i)%depth, now%guide%corner(i)%normal_force], figures)
+        call add_values(self, i, [now%guide%corner(i)%depth, now%guide%corner(i)%normal_force], figures)
     end do
-  end subroutine take_values
+  end subroutine record_values
 
   !> Account for values of one corner, for its contact and for the run.
-  pure subroutine put_values(self, i, values, figures)
+  pure subroutine add_values(self, i, values, figures)
     type(guide_record_t), intent(inout) :: self
     integer, intent(in) :: i
     real(dp), intent(in) :: values(n_peaks)
@@ -195,20 +195,20 @@ contains
       f%max_force = max(f%max_force, values(of_force))
     end associate
     self%highest = max(self%highest, values)
-  end subroutine put_values
+  end subroutine add_values
 
   !> Account for the time [s] that has passed since the last point.
-  pure subroutine take_time(self, scene, passed, figures)
+  pure subroutine add_time(self, scene, passed, figures)
     class(guide_record_t), intent(in) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: passed
     type(run_figures_t), intent(inout) :: figures
-    if (.not. self%is_there) return
+    if (.not. self%is_present) return
     where (scene%guide%touches) figures%corner%contact_time = figures%corner%contact_time + passed
-  end subroutine take_time
+  end subroutine add_time
 
   !> A contact of corner i begins or ends at time t; `now` is evaluated before that event. `event` is its entry in the trace.
-  subroutine take_contact(self, i, kind, t, now, figures, event)
+  subroutine record_contact(self, i, kind, t, now, figures, event)
     class(guide_record_t), intent(inout) :: self
     integer, intent(in) :: i, kind
     real(dp), intent(in) :: t
@@ -218,5 +218,5 @@ contains
     if (kind == event_contact_begins) figures%corner(i)%contacts = figures%corner(i)%contacts + 1
     call self%contact(i)%change(kind, kind == event_contact_begins, t, now%motion%crank_angle, now%guide%corner(i)%depth_rate)
     event = self%contact(i)
-  end subroutine take_contact
+  end subroutine record_contact
 end module guide_record

@@ -1,25 +1,25 @@
 !> Evaluates a scene inside the last step of its integration, for output.
 module inside_step
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_method, only: ode_method_t
-  use gudgeon_scene, only: scene_t, evaluation_t
+  use scene_problem, only: scene_t, evaluation_t
   implicit none
   private
-  public :: look_inside
+  public :: evaluate_inside
 
 contains
 
   !> State at a time inside the last step, and the evaluation of the scene there. Where the method can improve its interpolant, the
   !> forces are otherwise less accurate than at the ends of steps, in a stiff film by orders of magnitude. It is improved again
   !> while it changes by more than a tenth of a tolerance: after a jump of the load's rate of change, the first improvement takes
-  !> off no more than four fifths of an error of several tolerances. `inside` is false if a model is not defined there.
-  subroutine look_inside(scene, method, t, y, now, inside, evaluations)
+  !> off no more than four fifths of an error of several tolerances. `in_domain` is false if a model is not defined there.
+  subroutine evaluate_inside(scene, method, t, y, now, in_domain, evaluations)
     type(scene_t), intent(in) :: scene
     class(ode_method_t), intent(inout) :: method
     real(dp), intent(in) :: t
     real(dp), intent(out) :: y(scene%n)
     type(evaluation_t), intent(out) :: now
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     integer, intent(inout) :: evaluations   !! number of evaluations, to which those made here are added
     integer, parameter :: most_passes = 5
     real(dp), parameter :: small = 0.1_dp   !! [tolerances]
@@ -30,10 +30,10 @@ contains
     better = y
     last_change = huge(last_change)
     do pass = 1, merge(most_passes, 0, method%may_improve(t))
-      call scene%derivatives(t, better, rates, inside)
+      call scene%derivatives(t, better, rates, in_domain)
       evaluations = evaluations + 1
-      if (.not. inside) better = y
-      if (.not. inside) exit
+      if (.not. in_domain) better = y
+      if (.not. in_domain) exit
       next = better
       call method%improve(t, rates, next, change)
       if (.not. change < last_change) exit
@@ -41,13 +41,13 @@ contains
       if (.not. change > small) exit
       last_change = change
     end do
-    call scene%evaluate(t, better, now, inside)
+    call scene%evaluate(t, better, now, in_domain)
     evaluations = evaluations + 1
-    if (inside) then
+    if (in_domain) then
       y = better
     else if (any(abs(better - y) > 0)) then
-      call scene%evaluate(t, y, now, inside)
+      call scene%evaluate(t, y, now, in_domain)
       evaluations = evaluations + 1
     end if
-  end subroutine look_inside
+  end subroutine evaluate_inside
 end module inside_step

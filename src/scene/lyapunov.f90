@@ -17,16 +17,16 @@
 !> shrinks by more than a factor of about 1e3 in a quarter of a revolution, it is lost in the errors of the integration: exponents
 !> below -30 are upper bounds.
 module lyapunov
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: two_pi
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use ode_method, only: ode_method_t
   use ode_problem, only: ode_problem_t
-  use gudgeon_methods, only: new_method
-  use gudgeon_solver, only: integrate, silent_observer_t, integration_interrupted, integration_done, &
+  use ode_methods, only: new_method
+  use ode_solver, only: integrate, silent_observer_t, integration_interrupted, integration_done, &
     integration_stopped
-  use gudgeon_scene, only: scene_t
+  use scene_problem, only: scene_t
   use scene_builder, only: settings_for
   use crank_passage, only: find_passage
   use stop_reason, only: reason, place
@@ -38,7 +38,7 @@ module lyapunov
   integer, parameter :: per_revolution = 4             !! measurements in one revolution
   real(dp), parameter :: tolerance = 1e-11_dp          !! relative, of all scenes
   real(dp), parameter :: smallest_growth = 1e-12_dp    !! smallest growth factor that is resolved
-  real(dp), parameter :: patience = 100  !! longest time for one revolution, relative to its time at the crank speed at which it
+  real(dp), parameter :: longest_revolution = 100  !! longest time for one, relative to its time at the crank speed at which it
                                          !! begins
 
   !> Result of the measurement.
@@ -57,12 +57,12 @@ module lyapunov
     real(dp) :: t = 0                        !! [s]
     real(dp), allocatable :: y(:)
     real(dp) :: target = 0, direction = 1    !! crank angle to which it runs [rad], and the sense of rotation
-    logical :: is_there = .false.
+    logical :: has_arrived = .false.
     character(len=:), allocatable :: reason  !! why it has not reached that angle
     type(scene_t), allocatable :: kept       !! the scene at that angle, before an event at the end of the last step
   contains
     procedure :: run_to
-    procedure :: step_taken
+    procedure :: step_accepted
   end type companion_t
 
   !> A measurement under way.
@@ -142,16 +142,16 @@ contains
     real(dp) :: angle
     integer :: d
     do d = 1, size(differences%state, 2)
-      call put_beside(one, other(d), differences%at, first_size*differences%state(:, d), first_size*differences%impact_speed(:, d))
+      call set_beside(one, other(d), differences%at, first_size*differences%state(:, d), first_size*differences%impact_speed(:, d))
     end do
     angle = one%scene%crank_angle(one%t, one%y) + one%direction*two_pi/per_revolution
     call one%run_to(angle)
-    if (.not. one%is_there) reason = one%reason
+    if (.not. one%has_arrived) reason = one%reason
     do d = 1, size(differences%state, 2)
       if (allocated(reason)) exit
       call other(d)%run_to(angle)
-      if (.not. other(d)%is_there) reason = other(d)%reason
-      if (other(d)%is_there) call differences%take(d, one%scene, one%y, other(d)%scene, other(d)%y)
+      if (.not. other(d)%has_arrived) reason = other(d)%reason
+      if (other(d)%has_arrived) call differences%measure(d, one%scene, one%y, other(d)%scene, other(d)%y)
     end do
   end subroutine follow
 
@@ -161,23 +161,23 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(companion_t), intent(inout) :: companion
-    type(case_t) :: close
+    type(case_t) :: tight
     type(error_t), allocatable :: ignored
-    close = case
-    close%integrator%relative_tolerance = tolerance
-    close%integrator%absolute_tolerance = 0
+    tight = case
+    tight%integrator%relative_tolerance = tolerance
+    tight%integrator%absolute_tolerance = 0
     allocate (companion%scene, source=scene)
     companion%scene%enters_at_step_end = .false.   ! contacts are entered at the root of the event function
     if (allocated(companion%scene%turns)) companion%scene%turns%wanted = 1e30_dp   ! never reached
     call new_method('auto', companion%method, ignored)
-    companion%method%settings = settings_for(close, companion%scene)
+    companion%method%settings = settings_for(tight, companion%scene)
     companion%t = t
     companion%y = y
     companion%direction = sign(1.0_dp, companion%scene%crank_speed(t, y))
   end subroutine prepare
 
   !> Set another scene to the first one; its state differs by a difference, and the impact speeds of its contacts as given.
-  subroutine put_beside(one, other, at, difference, impact_speed)
+  subroutine set_beside(one, other, at, difference, impact_speed)
     type(companion_t), intent(inout) :: one, other
     integer, intent(in) :: at(:)
     real(dp), intent(in) :: difference(:), impact_speed(:)   !! of the state, of the speeds [m/s]
@@ -189,9 +189,9 @@ contains
     do i = 1, one%scene%n_joints
       other%scene%joints(i)%impact_speed = max(0.0_dp, one%scene%joints(i)%impact_speed + impact_speed(i))
     end do
-  end subroutine put_beside
+  end subroutine set_beside
 
-  !> Run until the crank is at an angle; `is_there` is false if it does not reach it.
+  !> Run until the crank is at an angle; `has_arrived` is false if it does not reach it.
   subroutine run_to(self, angle)
     class(companion_t), intent(inout) :: self
     real(dp), intent(in) :: angle   !! [rad]
@@ -201,15 +201,15 @@ contains
     real(dp) :: t
     integer :: status
     self%target = angle
-    self%is_there = .false.
+    self%has_arrived = .false.
     self%wants_to_stop = .false.
     call move_alloc(self%scene, scene)
     call move_alloc(self%method, method)
     t = self%t
     y = self%y
-    call integrate(scene, method, t, y, self%t + patience*two_pi/scene%speed_scale(), 0, self, status)
-    if (status /= integration_interrupted) self%is_there = .false.
-    if (.not. self%is_there) then
+    call integrate(scene, method, t, y, self%t + longest_revolution*two_pi/scene%speed_scale(), 0, self, status)
+    if (status /= integration_interrupted) self%has_arrived = .false.
+    if (.not. self%has_arrived) then
       self%reason = 'the crank stops, turns back or takes too long for a quarter of a revolution'
       if (all(status /= [integration_done, integration_stopped])) self%reason = reason(status, scene, method%settings, t, y)
       self%reason = self%reason//' at '//place(scene, t, y)
@@ -219,7 +219,7 @@ contains
     if (allocated(self%kept)) call move_alloc(self%kept, self%scene)
   end subroutine run_to
 
-  subroutine step_taken(self, method, problem, t_to)
+  subroutine step_accepted(self, method, problem, t_to)
     class(companion_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
@@ -230,10 +230,10 @@ contains
       call method%interpolate(t_to, y)
       if (self%direction*(problem%crank_angle(t_to, y) - self%target) < 0) return
       call find_passage(method, problem, self%target, self%direction, method%t_old, t_to, 0.0_dp, self%t, self%y)
-      self%is_there = .true.
+      self%has_arrived = .true.
       self%wants_to_stop = .true.
       if (allocated(self%kept)) deallocate (self%kept)
       allocate (self%kept, source=problem)
     end select
-  end subroutine step_taken
+  end subroutine step_accepted
 end module lyapunov

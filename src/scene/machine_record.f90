@@ -1,8 +1,8 @@
 !> Follows the pressure of the gas and the speed of the crank: their extremes in each revolution, searched inside the steps.
 module machine_record
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_method, only: ode_method_t
-  use gudgeon_scene, only: scene_t, evaluation_t
+  use scene_problem, only: scene_t, evaluation_t
   use peak_search, only: sample_t, peak_search_t, may_peak
   use cycle_statistics, only: cycle_t
   implicit none
@@ -93,7 +93,7 @@ contains
       do
         call peak%next_time(time, is_done)
         if (is_done) exit
-        call peak%take(time, value_at(quantity, time))
+        call peak%add_value(time, value_at(quantity, time))
       end do
     end subroutine climb
 

@@ -8,11 +8,9 @@
 !> approaches its limit slowly would be accepted too early. Differences below a hundredth of the tolerance are not tested for this,
 !> since they are errors of the integration. Periods are multiples of the period of the gas.
 module period_watch
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
-  use ode_method, only: ode_method_t
-  use gudgeon_scene, only: scene_t
-  use crank_passage, only: find_passage
+  use kinds, only: dp
+  use constants, only: two_pi
+  use scene_problem, only: scene_t
   use run_length, only: longest_period
   implicit none
   private
@@ -38,11 +36,9 @@ module period_watch
     integer :: window_after = -1           !! number of revolutions made when the window began; -1: it has not begun
     real(dp) :: window_start = huge(1.0_dp)   !! [s]
     real(dp) :: t = 0                      !! time at which the crank completed the last revolution [s]
-    real(dp), allocatable :: y(:)          !! state at that time
     integer, private :: forcing = 1        !! period of the excitation [revolutions]
     integer, private :: made = 0           !! number of complete revolutions
     integer, private :: earlier = 0        !! number of revolutions before the beginning
-    real(dp), private :: start_angle = 0, direction = 1
     integer, allocatable, private :: at(:)       !! indices of the components that are compared
     real(dp), allocatable, private :: smallest_range(:)
     real(dp), allocatable, private :: turning(:)  !! 1 for an angle that grows with the crank angle, which is subtracted from it;
@@ -52,8 +48,8 @@ module period_watch
     real(dp), private :: times(0:depth - 1) = 0
   contains
     procedure :: begin
-    procedure :: take_point
-    procedure :: follow
+    procedure :: record_point
+    procedure :: end_revolution
     procedure :: change
   end type period_watch_t
 
@@ -73,18 +69,14 @@ contains
     self%smallest_range = least_range*scales(self%at)
     self%turning = merge(1.0_dp, 0.0_dp, growing(self%at))
     if (allocated(scene%gas)) self%forcing = scene%gas%revolutions
-    self%start_angle = scene%crank_angle(t, y)
-    self%earlier = int(abs(self%start_angle - scene%start_angle)/two_pi)
-    self%direction = sign(1.0_dp, scene%chain%drive%torque)
-    if (abs(scene%start_speed) > 0) self%direction = sign(1.0_dp, scene%start_speed)
+    self%earlier = int(abs(scene%crank_angle(t, y) - scene%start_angle)/two_pi)
     allocate (self%states(size(self%at), 0:depth - 1), source=0.0_dp)
     allocate (self%low(size(self%at), 0:depth - 1), source=huge(1.0_dp))
     allocate (self%high(size(self%at), 0:depth - 1), source=-huge(1.0_dp))
-    allocate (self%y(scene%n), source=0.0_dp)
   end subroutine begin
 
   !> Account for an accepted point of the present revolution.
-  pure subroutine take_point(self, y, crank_angle)
+  pure subroutine record_point(self, y, crank_angle)
     class(period_watch_t), intent(inout) :: self
     real(dp), intent(in) :: y(:)
     real(dp), intent(in) :: crank_angle   !! [rad]
@@ -96,37 +88,20 @@ contains
       self%low(i, place) = min(self%low(i, place), value)
       self%high(i, place) = max(self%high(i, place), value)
     end do
-  end subroutine take_point
+  end subroutine record_point
 
-  !> End the revolutions that are complete before t_to, up to which the solution is final, inside the last step. Decide whether the
-  !> run is to end (`has_ended`), or the window of the output to begin (`window_start`).
-  subroutine follow(self, method, scene, t_to)
+  !> Account for the end of a revolution at (t, y). Decide whether the run is to end there (`has_ended`), or the window of the
+  !> output to begin (`window_start`).
+  subroutine end_revolution(self, t, y, crank_angle)
     class(period_watch_t), intent(inout) :: self
-    class(ode_method_t), intent(inout) :: method
-    type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t_to
-    real(dp) :: target
-    do while (.not. self%has_ended)
-      target = self%start_angle + self%direction*two_pi*(self%made + 1)
-      if (t_to < method%t) then
-        call method%interpolate(t_to, self%y)
-        if (self%direction*(scene%crank_angle(t_to, self%y) - target) < 0) exit
-      else
-        if (self%direction*(scene%crank_angle(t_to, method%y) - target) < 0) exit
-      end if
-      call find_passage(method, scene, target, self%direction, method%t_old, t_to, 0.0_dp, self%t, self%y)
-      call close_revolution(self)
-    end do
-  end subroutine follow
-
-  !> Account for a complete revolution, which ends at (t, y).
-  subroutine close_revolution(self)
-    class(period_watch_t), intent(inout) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(in) :: crank_angle   !! [rad]
     integer :: next
     self%made = self%made + 1
+    self%t = t
     associate (now => mod(self%made, depth))
-      self%states(:, now) = self%y(self%at) - self%turning*(self%start_angle + self%direction*two_pi*self%made)
-      self%times(now) = self%t
+      self%states(:, now) = y(self%at) - self%turning*crank_angle
+      self%times(now) = t
       next = mod(self%made + 1, depth)
       self%low(:, next) = self%states(:, now)
       self%high(:, next) = self%states(:, now)
@@ -143,7 +118,7 @@ contains
       self%window_after = self%made
       self%window_start = self%t
     end if
-  end subroutine close_revolution
+  end subroutine end_revolution
 
   !> Largest difference of the state from that p revolutions earlier, at the ends of the last p revolutions, over the range of each
   !> component in these; negative if fewer than 2 p revolutions are complete.

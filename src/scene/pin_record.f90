@@ -1,19 +1,18 @@
 !> Records what happens at one pin: its contacts, and the peaks of its force, penetration, film thickness and normal force.
 module pin_record
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_method, only: ode_method_t
   use run_state, only: run_state_t
   use joint_places, only: name_prefix
-  use gudgeon_scene, only: scene_t, evaluation_t, phase_contact, event_contact_begins
+  use scene_problem, only: scene_t, evaluation_t, phase_contact, event_contact_begins
   use joint_events, only: may_touch
-  use inside_step, only: look_inside
+  use inside_step, only: evaluate_inside
   use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks
   use cycle_watch, only: cycle_watch_t
   use wear_record, only: wear_record_t
   use trace_sink, only: trace_event_t
   use film_figures, only: film_figures_t
   use run_figures, only: run_figures_t
-  use settling, only: settling_t
   implicit none
   private
   public :: pin_record_t
@@ -22,7 +21,6 @@ module pin_record
     real(dp) :: validity_limit = huge(1.0_dp)  !! largest impact speed for which the contact law is valid [m/s]
     real(dp) :: deepest = huge(1.0_dp)         !! largest penetration for which the contact geometry is valid [m]
     type(trace_event_t), private :: contact    !! present or last contact
-    type(settling_t) :: settling               !! of its film
     logical, private :: reports_film = .false.
     real(dp), private :: film_time = 0         !! time up to which the results of its film have been integrated [s]
     type(wear_record_t), allocatable :: wear   !! not allocated: wear is not counted
@@ -31,8 +29,8 @@ module pin_record
     procedure, non_overridable :: declare
     procedure, non_overridable :: count_from
     procedure, non_overridable :: search
-    procedure, non_overridable :: take_values
-    procedure, non_overridable :: take_contact
+    procedure, non_overridable :: record_values
+    procedure, non_overridable :: record_contact
     procedure, non_overridable :: is_touching
   end type pin_record_t
 
@@ -48,7 +46,6 @@ contains
     self%contact%pin = pin
     if (self%joint == 0) return
     self%reports_film = scene%joints(self%joint)%reports_film
-    if (allocated(scene%gas)) self%settling%revolutions = scene%gas%revolutions
     if (allocated(scene%joints(self%joint)%wear)) then
       allocate (self%wear)
       call self%wear%prepare(self%joint, scene)
@@ -118,8 +115,8 @@ contains
     call self%search_interval(method, scene, t, now, known, largest)
     figures%evaluations = figures%evaluations + (self%evaluations - before)
     figures%peak_evaluations = figures%peak_evaluations + (self%evaluations - before)
-    call put_values(self, touches, largest, figures)
-    if (present(cycles)) call cycles%take_peaks(self%pin, touches, largest, angle_at(self%thinnest_time))
+    call add_values(self, touches, largest, figures)
+    if (present(cycles)) call cycles%record_peaks(self%pin, touches, largest, angle_at(self%thinnest_time))
     if (self%reports_film) call sum_film(self, method, scene, t, now, figures, cycles)
     if (.not. (allocated(self%wear) .and. is_end)) return
     before = self%wear%evaluations
@@ -152,45 +149,45 @@ contains
     type(evaluation_t) :: halfway
     type(film_figures_t) :: film
     real(dp) :: y(size(method%y)), span
-    logical :: inside
+    logical :: in_domain
     integer :: i
     span = t - self%film_time
     associate (f => figures%pin(self%pin), joint => scene%joints(self%joint), k => self%joint)
       do i = 1, merge(3, 0, span > 0)
-        call look_inside(scene, method, self%film_time + place(i)*span, y, halfway, inside, figures%evaluations)
-        if (.not. inside) cycle
+        call evaluate_inside(scene, method, self%film_time + place(i)*span, y, halfway, in_domain, figures%evaluations)
+        if (.not. in_domain) cycle
         film = joint%film_figures(halfway%joint(k))
         f%film_energy_lost = f%film_energy_lost + weight(i)*span*film%power
         f%neglected_shear_loss = f%neglected_shear_loss + weight(i)*span*film%neglected_power
         f%film_volume = f%film_volume + weight(i)*span*film%side_flow
         f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
-        if (present(cycles)) call cycles%take_film(self%pin, film%max_pressure, halfway%motion%crank_angle, &
+        if (present(cycles)) call cycles%record_film(self%pin, film%max_pressure, halfway%motion%crank_angle, &
           weight(i)*span*film%side_flow)
       end do
       film = joint%film_figures(now%joint(k))
       f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
-      if (present(cycles)) call cycles%take_film(self%pin, film%max_pressure, now%motion%crank_angle, 0.0_dp)
+      if (present(cycles)) call cycles%record_film(self%pin, film%max_pressure, now%motion%crank_angle, 0.0_dp)
     end associate
     self%film_time = t
   end subroutine sum_film
 
   !> Account for the values of one evaluation, for the run, for the present contact and, if it is given, for the present revolution.
-  subroutine take_values(self, scene, now, figures, cycles)
+  subroutine record_values(self, scene, now, figures, cycles)
     class(pin_record_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     type(evaluation_t), intent(in) :: now
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
     type(film_figures_t) :: film
-    call put_values(self, self%is_touching(scene), self%values(scene, now), figures)
-    if (present(cycles)) call cycles%take_peaks(self%pin, self%is_touching(scene), self%values(scene, now), &
+    call add_values(self, self%is_touching(scene), self%values(scene, now), figures)
+    if (present(cycles)) call cycles%record_peaks(self%pin, self%is_touching(scene), self%values(scene, now), &
       now%motion%crank_angle)
     if (.not. self%reports_film) return
     film = scene%joints(self%joint)%film_figures(now%joint(self%joint))
     figures%pin(self%pin)%max_film_pressure = max(figures%pin(self%pin)%max_film_pressure, film%max_pressure)
-  end subroutine take_values
+  end subroutine record_values
 
-  subroutine put_values(self, touches, values, figures)
+  subroutine add_values(self, touches, values, figures)
     class(pin_record_t), intent(inout) :: self
     logical, intent(in) :: touches
     real(dp), intent(in) :: values(n_peaks)
@@ -206,10 +203,10 @@ contains
         contact%max_normal_force = max(contact%max_normal_force, values(of_normal_force))
       end if
     end associate
-  end subroutine put_values
+  end subroutine add_values
 
   !> A contact begins or ends at time t; `now` is evaluated before that event. `event` is its entry in the trace.
-  subroutine take_contact(self, kind, t, now, figures, event, cycles)
+  subroutine record_contact(self, kind, t, now, figures, event, cycles)
     class(pin_record_t), intent(inout) :: self
     integer, intent(in) :: kind
     real(dp), intent(in) :: t
@@ -221,12 +218,12 @@ contains
     associate (f => figures%pin(self%pin), relative => now%joint(self%joint))
       if (kind == event_contact_begins) then
         f%contacts = f%contacts + 1
-        if (present(cycles)) call cycles%take_impact(self%pin)
+        if (present(cycles)) call cycles%count_impact(self%pin)
         f%max_entry_penetration = max(f%max_entry_penetration, relative%penetration)
         if (relative%penetration_rate > self%validity_limit) f%impacts_beyond_validity = f%impacts_beyond_validity + 1
       end if
       call self%contact%change(kind, kind == event_contact_begins, t, now%motion%crank_angle, relative%penetration_rate)
       event = self%contact
     end associate
-  end subroutine take_contact
+  end subroutine record_contact
 end module pin_record

@@ -1,6 +1,6 @@
 !> The results of a run that are single numbers, most of them for its summary.
 module run_figures
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use run_state, only: run_state_t
   use joint_places, only: n_places
   use piston_guide, only: n_corners
@@ -19,7 +19,7 @@ module run_figures
     real(dp) :: max_entry_penetration = 0     !! penetration at the first accepted point of a contact [m]
     real(dp) :: max_force = 0                 !! magnitude of the force of the joint on the pin [N]
     real(dp) :: min_film_thickness = huge(1.0_dp)  !! c - |e| [m]
-    real(dp) :: film_change = 0               !! of the smallest film thickness from cycle to cycle at the end, see `settling` [-]
+    real(dp) :: film_change = 0               !! of the smallest film thickness from cycle to cycle at the end [-]
     real(dp) :: film_energy_lost = 0  !! energy that the film takes from the bodies, if results of the film are requested [J]
     real(dp) :: neglected_shear_loss = 0  !! energy that shear which does not act would take [J]
     real(dp) :: film_volume = 0               !! volume of oil that has left the film at its ends [m^3]

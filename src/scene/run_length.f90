@@ -1,8 +1,8 @@
 !> Parameters of the end of a run: at the end given to the integrator, or when the motion is periodic. Also the analysis of the
 !> motion that the run has reached.
 module run_length
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: has_parameters_t, parameter_list_t
   implicit none
   private
   public :: run_length_t, longest_period

@@ -1,12 +1,12 @@
 !> Where a run begins: at t = 0 with the values of its case, or with the state that another run has reached.
 module run_start
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_case_file
   use run_state, only: run_state_t
   use case_definition, only: case_t
-  use gudgeon_scene, only: scene_t
+  use scene_problem, only: scene_t
   use scene_builder, only: build_scene, latest_end
-  use gudgeon_recorder, only: recorder_t
+  use run_recorder, only: recorder_t
   implicit none
   private
   public :: find_start, try_start
@@ -45,7 +45,7 @@ contains
     if (allocated(from%fault)) then
       call fail(error, from%file//': '//from%fault, status_case_file)
     else
-      call scene%take_up(t, y)
+      call scene%complete_state(t, y)
     end if
   end subroutine find_start
 

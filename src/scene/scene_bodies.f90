@@ -1,6 +1,6 @@
 !> Parts of a scene other than rigid bodies and an ideal guide: elastic members, a guide with friction, a piston with clearance in
 !> its bore.
-submodule (gudgeon_scene) scene_bodies
+submodule (scene_problem) scene_bodies
   use chain_loads, only: unloaded
   use ideal_chain, only: ideal_motion
   use loose_piston, only: place_piston, move_centre
@@ -10,14 +10,14 @@ contains
 
   module procedure find_general_accelerations
     logical :: solvable
-    call move_bodies(self, joints, t, y, now, inside)
-    if (.not. inside) return
+    call move_bodies(self, joints, t, y, now, in_domain)
+    if (.not. in_domain) return
     call self%find_loads(self%n_joints, joints, y, now)
     call load_guide(self, now)
     call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment, solvable)
     if (solvable) call add_guide_friction(self, joints, now, solvable)
-    inside = solvable
-    if (.not. inside) return
+    in_domain = solvable
+    if (.not. in_domain) return
     if (self%may_stick) call hold_surfaces(self%chain, joints, now%motion, now%joint, now%loads, now%accelerations, &
       now%crank_moment, now%power)
     call add_power(self, now)
@@ -25,27 +25,27 @@ contains
 
   module procedure move_bodies
     call self%read_crank(t, y, now%motion)
-    call self%place_journals(self%n_joints, joints, y, now, inside)
-    if (inside) call place_more_bodies(self, t, y, now, inside)
-    if (inside) call self%chain%move_rod(now%motion, inside)
+    call self%place_pins(self%n_joints, joints, y, now, in_domain)
+    if (in_domain) call place_more_bodies(self, t, y, now, in_domain)
+    if (in_domain) call self%chain%move_rod(now%motion, in_domain)
   end procedure move_bodies
 
-  !> Set the position of a piston with clearance in its bore, of the shapes of the rod and of the flywheel. `inside` is false if
+  !> Set the position of a piston with clearance in its bore, of the shapes of the rod and of the flywheel. `in_domain` is false if
   !> they are not admissible.
-  pure subroutine place_more_bodies(self, t, y, now, inside)
+  pure subroutine place_more_bodies(self, t, y, now, in_domain)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     type(evaluation_t), intent(inout) :: now
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     if (.not. self%chain%is_loose(crank_pin)) then   ! not every closed form reads it
       now%motion%crank_pin = 0
       now%motion%crank_pin_rate = 0
     end if
-    inside = .true.
+    in_domain = .true.
     if (self%chain%bodies%piston%is_loose) then
       call self%guide%read_state(y, now%motion%tilting)
-      inside = self%guide%admits(now%motion%tilting)
-      if (inside) call place_piston(self%chain%bodies%piston, now%motion)
+      in_domain = self%guide%admits(now%motion%tilting)
+      if (in_domain) call place_piston(self%chain%bodies%piston, now%motion)
     end if
     if (allocated(self%chain%elastic)) call self%chain%elastic%read_state(t, y, now%motion)
   end subroutine place_more_bodies
@@ -70,20 +70,20 @@ contains
   end subroutine load_guide
 
   !> Add the friction of an ideal guide that depends on the accelerations, which it changes itself. The accelerations without it
-  !> and without the friction of sticking surfaces must be known. `inside` is false if it would jam the piston.
+  !> and without the friction of sticking surfaces must be known. `in_domain` is false if it would jam the piston.
   !>
   !> F = mu |N|, where N = N_0 + N_1 F depends on the accelerations, and everything is linear in these: N_0 is the
   !> normal force without F, N_1 follows from a trial force, and N = N_0/(1 - mu N_1 sign N_0). If |mu N_1| < 1 this is the only
   !> solution; otherwise the piston would jam.
-  pure subroutine add_guide_friction(self, joints, now, inside)
+  pure subroutine add_guide_friction(self, joints, now, in_domain)
     class(scene_t), intent(in) :: self
     type(clearance_joint_t), intent(in) :: joints(:)
     type(evaluation_t), intent(inout) :: now
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     type(loads_t) :: unit
     type(accelerations_t) :: change
     real(dp) :: ratio, rest, normal, probe, slope, moment
-    inside = .true.
+    in_domain = .true.
     if (.not. allocated(self%guide)) return
     if (self%guide%is_loose .or. normal_is_known(self)) return
     call self%guide%friction_on_guide(now%motion%piston_velocity, ratio, rest)
@@ -95,8 +95,8 @@ contains
     if (self%may_stick) normal = normal_with(self, joints, now, 0.0_dp, change, moment)
     probe = max(abs(normal), 1.0_dp)
     slope = (normal_with(self, joints, now, probe, change, moment) - normal)/probe
-    inside = abs(ratio*slope) < 1
-    if (inside) call add_friction(self, ratio*abs(normal/(1 - ratio*slope*sign(1.0_dp, normal))), change, moment, now)
+    in_domain = abs(ratio*slope) < 1
+    if (in_domain) call add_friction(self, ratio*abs(normal/(1 - ratio*slope*sign(1.0_dp, normal))), change, moment, now)
   end subroutine add_guide_friction
 
   !> Whether the force between an ideal guide and the piston does not depend on the accelerations: if the piston pin has clearance

@@ -1,8 +1,8 @@
 !> Builds the scene of a case.
 module scene_builder
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi, degree
-  use gudgeon_errors, only: error_t
+  use kinds, only: dp
+  use constants, only: two_pi, degree
+  use error_handling, only: error_t
   use case_definition, only: case_t
   use ode_method, only: ode_settings_t
   use chain_motion, only: body_piston
@@ -11,7 +11,7 @@ module scene_builder
   use joint_events, only: may_touch, may_pass_static
   use load_elements, only: add_elements
   use clearance_joint, only: clearance_joint_t
-  use gudgeon_scene, only: scene_t
+  use scene_problem, only: scene_t
   use monotone_cubic, only: new_monotone_cubic
   use crank_turns, only: new_crank_turns
   implicit none
@@ -38,7 +38,7 @@ module scene_builder
   real(dp), parameter :: rounding_share = 1e-14_dp
 
   real(dp), parameter :: first_angle = 0.1_dp   !! largest turn of the crank in the first step [rad]
-  real(dp), parameter :: most_patience = 100   !! allows for a crank that slows down
+  real(dp), parameter :: slow_down_factor = 100   !! allows for a crank that slows down
   real(dp), parameter :: longest_chatter = 1e-8_dp   !! [s]; needed where the crank hardly turns and gives no time scale
 
 contains
@@ -196,7 +196,7 @@ contains
     type(clearance_joint_t), intent(out) :: joint
     joint%start_eccentricity = case%initial%eccentricity(:, place)
     joint%start_rate = case%initial%eccentricity_rate(:, place)
-    call joint%put_at(place)
+    call joint%set_place(place)
     associate (wanted => case%joints(place))
       joint%bearing = wanted%bearing(case%mechanism%rod_length)
       joint%pin_radius = joint%bearing%pin_radius()
@@ -218,21 +218,21 @@ contains
   end function simulated_time
 
   !> Latest end of the run [s]. If it is to end after a number of turns of a free crank, this is end_time or, if that is not given,
-  !> `most_patience` times the duration of these turns at the starting speed.
+  !> `slow_down_factor` times the duration of these turns at the starting speed.
   pure real(dp) function latest_end(case)
     type(case_t), intent(in) :: case
     latest_end = simulated_time(case)
     if (case%drive%kind == 'constant_speed') return
     if (case%run%is_until_periodic()) then
-      latest_end = most_patience*latest_end
+      latest_end = slow_down_factor*latest_end
     else if (case%integrator%crank_revolutions > 0) then
-      latest_end = most_patience*latest_end
+      latest_end = slow_down_factor*latest_end
       if (case%integrator%end_time > 0) latest_end = case%integrator%end_time
     end if
   end function latest_end
 
   !> Longest time for one turn of a free crank that is to make a number of turns [s]; after it the crank counts as having stopped.
-  !> It is the duration of `most_patience` turns at the starting speed. There is no such limit if end_time is given with
+  !> It is the duration of `slow_down_factor` turns at the starting speed. There is no such limit if end_time is given with
   !> crank_revolutions.
   pure real(dp) function longest_turn(case)
     type(case_t), intent(in) :: case
@@ -241,7 +241,7 @@ contains
     if (.not. case%run%is_until_periodic()) then
       if (.not. case%integrator%crank_revolutions > 0 .or. case%integrator%end_time > 0) return
     end if
-    longest_turn = most_patience*two_pi/abs(case%initial%crank_speed)
+    longest_turn = slow_down_factor*two_pi/abs(case%initial%crank_speed)
   end function longest_turn
 
   !> Time between samples [s].

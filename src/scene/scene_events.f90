@@ -1,13 +1,13 @@
 !> The events of a scene. Each event belongs to a joint, to the gas, to the guide or to the turns of the crank.
-submodule (gudgeon_scene) scene_events
+submodule (scene_problem) scene_events
   use ode_problem, only: step_admitted, event_continue
   use joint_events, only: contact_changes, find_joint_events, find_joint_force_events, has_force_events, &
-    pass_joint_event, choose_sliding, may_touch, static_speed, judge_entry, judge_reversal, rough_end, may_lose_force, &
+    pass_joint_event, choose_sliding, may_touch, static_speed, judge_entry, judge_reversal, contact_kink_time, may_lose_force, &
     find_lost_force
   use elastic_film, only: wall_load, wall_deflection
   use joint_evaluation, only: outward_acceleration
   use guide_events, only: n_guide_events, corner_events, corner_force_events, corner_share, change_contact, &
-    begin_corner_contact, contact_is_rough, rough_corner_end, inward_acceleration
+    begin_corner_contact, contact_has_kink, corner_kink_time, inward_acceleration
   use piston_guide, only: corner_t, n_corners
   use crank_turns, only: n_turn_events
   implicit none
@@ -86,10 +86,10 @@ contains
     real(dp), intent(in) :: t, y(:)
     real(dp), intent(inout) :: g(:), g_rate(:)   !! those of all events
     type(evaluation_t) :: now
-    logical :: inside
+    logical :: in_domain
     integer :: i, k
-    call scene%evaluate(t, y, now, inside)
-    if (.not. inside) return
+    call scene%evaluate(t, y, now, in_domain)
+    if (.not. in_domain) return
     k = 0
     do i = 1, scene%n_joints
       associate (joint => scene%joints(i), n => scene%joints(i)%n_events)
@@ -124,7 +124,7 @@ contains
       else if (i == of_guide .and. event > n_corners) then
         self%guide%force_is_lost(event - n_corners) = .not. self%guide%force_is_lost(event - n_corners)
       else if (i == of_guide) then
-        if (contact_is_rough(self%guide) .and. .not. self%guide%touches(event)) self%entry_time = t
+        if (contact_has_kink(self%guide) .and. .not. self%guide%touches(event)) self%entry_time = t
         call change_contact(self%guide, event, y)
       else if (event > contact_changes) then
         call pass_joint_event(self%joints(i), event, slides)
@@ -163,13 +163,13 @@ contains
     real(dp), intent(in) :: t, y(:)
     logical, intent(in) :: may_slide
     type(evaluation_t) :: now
-    logical :: inside, was_sliding
+    logical :: in_domain, was_sliding
     associate (element => scene%joints(i)%slots(scene%joints(i)%acting(phase_contact))%element)
       if (.not. element%may_stick) return
       was_sliding = element%sliding /= 0
       element%sliding = 0
-      call scene%evaluate(t, y, now, inside)
-      if (inside) call choose_sliding(element, now%joint(i), was_sliding, may_slide)
+      call scene%evaluate(t, y, now, in_domain)
+      if (in_domain) call choose_sliding(element, now%joint(i), was_sliding, may_slide)
     end associate
   end subroutine find_sliding_direction
 
@@ -190,7 +190,7 @@ contains
     type(evaluation_t) :: now
     real(dp) :: part
     integer :: i, judged
-    logical :: inside
+    logical :: in_domain
     verdict = step_admitted
     fraction = 1
     do i = 1, merge(self%n_joints, 0, self%enters_at_step_end)
@@ -199,8 +199,8 @@ contains
       fraction = min(fraction, part)
     end do
     if (verdict /= step_admitted .or. .not. any(static_speed(self%joints) > 0)) return
-    call move_bodies(self, self%joints, t, y, now, inside)
-    do i = 1, merge(self%n_joints, 0, inside)
+    call move_bodies(self, self%joints, t, y, now, in_domain)
+    do i = 1, merge(self%n_joints, 0, in_domain)
       if (.not. static_speed(self%joints(i)) > 0) cycle
       call judge_reversal(self%joints(i), now%motion, y_old, now%joint(i), judged, part)
       verdict = max(verdict, judged)
@@ -213,14 +213,14 @@ contains
       self%reported_event(index) == event_contact_begins
   end procedure lands_on_step_end
 
-  module procedure rough_time
+  module procedure next_kink_time
     integer :: i
-    rough_time = huge(rough_time)
+    next_kink_time = huge(next_kink_time)
     do i = 1, self%n_joints
-      if (self%joints(i)%phase == phase_contact) rough_time = min(rough_time, rough_end(self%joints(i), t, y))
+      if (self%joints(i)%phase == phase_contact) next_kink_time = min(next_kink_time, contact_kink_time(self%joints(i), t, y))
     end do
-    if (allocated(self%guide)) rough_time = min(rough_time, rough_corner_end(self%guide, t, y))
-  end procedure rough_time
+    if (allocated(self%guide)) next_kink_time = min(next_kink_time, corner_kink_time(self%guide, t, y))
+  end procedure next_kink_time
 
   module procedure prepare_start
     real(dp) :: y(self%n), contact(2)
@@ -249,13 +249,13 @@ contains
     end do
   end procedure prepare_start
 
-  module procedure take_up
+  module procedure complete_state
     if (allocated(self%guide)) then
       if (self%guide%is_loose .and. .not. any(self%guide%touches)) call prepare_corners(self, y)
     end if
     call find_lost_forces(self, t, y)
     self%mode = mode_of(self)
-  end procedure take_up
+  end procedure complete_state
 
   !> Find the contacts that have no force at the start, since their pins or corners move out too fast.
   subroutine find_lost_forces(scene, t, y)
@@ -263,13 +263,13 @@ contains
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
     real(dp) :: share, share_rate
-    logical :: inside, has_corners
+    logical :: in_domain, has_corners
     integer :: i
     has_corners = .false.
     if (allocated(scene%guide)) has_corners = n_guide_events(scene%guide) > n_corners
     if (.not. (has_corners .or. any(may_lose_force(scene%joints)))) return
-    call scene%evaluate(t, y, now, inside)
-    if (.not. inside) return
+    call scene%evaluate(t, y, now, in_domain)
+    if (.not. in_domain) return
     do i = 1, scene%n_joints
       if (may_lose_force(scene%joints(i))) call &
         find_lost_force(scene%joints(i), now%joint(i), scene%joints(i)%relative_rates(now%accelerations))
@@ -337,13 +337,13 @@ contains
     real(dp), intent(in) :: y(:)
     type(evaluation_t) :: now
     real(dp) :: contact(2)
-    logical :: inside
+    logical :: in_domain
     associate (joint => scene%joints(i))
       contact = penetration_and_rate(joint, y)
       motion_outward = contact(2)
       if (abs(motion_outward) > rounding*norm2(y(joint%at%rate:joint%at%rate + 1))) return
-      call scene%evaluate(0.0_dp, y, now, inside)
-      if (inside) motion_outward = &
+      call scene%evaluate(0.0_dp, y, now, in_domain)
+      if (in_domain) motion_outward = &
         outward_acceleration(now%joint(i), joint%relative_rates(now%accelerations))
     end associate
   end function motion_outward
@@ -356,18 +356,18 @@ contains
     type(corner_t) :: corner(n_corners)
     type(evaluation_t) :: now
     real(dp) :: onwards
-    logical :: inside
+    logical :: in_domain
     integer :: i
     scene%guide%touches = .false.
     if (.not. scene%guide%is_loose) return
-    call scene%guide%look(y, corner)
-    call scene%evaluate(0.0_dp, y, now, inside)
+    call scene%guide%find_contact_state(y, corner)
+    call scene%evaluate(0.0_dp, y, now, in_domain)
     do i = 1, n_corners
       if (corner(i)%depth < 0) cycle
       onwards = corner(i)%depth_rate
-      if (inside .and. .not. abs(onwards) > 0) onwards = inward_acceleration(i, corner(i), now%motion, now%accelerations)
+      if (in_domain .and. .not. abs(onwards) > 0) onwards = inward_acceleration(i, corner(i), now%motion, now%accelerations)
       if (corner(i)%depth > 0 .or. onwards >= 0) call begin_corner_contact(scene%guide, i, corner(i)%depth_rate)
-      if (.not. corner(i)%depth > 0 .and. corner(i)%depth_rate > 0 .and. contact_is_rough(scene%guide)) scene%entry_time = 0
+      if (.not. corner(i)%depth > 0 .and. corner(i)%depth_rate > 0 .and. contact_has_kink(scene%guide)) scene%entry_time = 0
     end do
   end subroutine prepare_corners
 
@@ -379,7 +379,7 @@ contains
     real(dp), parameter :: closest = 0.9_dp  !! largest eccentricity of the film over the clearance
     real(dp) :: at_rest(2), by_load(2, 2), load(2), along(2), d(2)
     integer :: i, k
-    logical :: inside
+    logical :: in_domain
     do i = 1, scene%n_joints
       if (scene%joints(i)%acting(phase_film) == 0) cycle
       associate (element => scene%joints(i)%slots(scene%joints(i)%acting(phase_film))%element, start => &
@@ -387,16 +387,16 @@ contains
         if (.not. allocated(element%walls)) cycle
         along = 0
         element%start = start
-        call pin_acceleration(scene, i, at_rest, inside)
+        call pin_acceleration(scene, i, at_rest, in_domain)
         do k = 1, 2
           d = 0
           d(k) = trial
           element%start = start - d
-          if (inside) call pin_acceleration(scene, i, along, inside)
+          if (in_domain) call pin_acceleration(scene, i, along, in_domain)
           by_load(:, k) = (along - at_rest)/norm2(wall_load(element%walls, d))
         end do
         element%start = start
-        if (.not. inside) cycle
+        if (.not. in_domain) cycle
         load = -[by_load(2, 2)*at_rest(1) - by_load(1, 2)*at_rest(2), by_load(1, 1)*at_rest(2) - by_load(2, 1)*at_rest(1)] &
           /(by_load(1, 1)*by_load(2, 2) - by_load(1, 2)*by_load(2, 1))
         d = wall_deflection(element%walls, load)
@@ -410,15 +410,15 @@ contains
   end subroutine load_walls
 
   !> Acceleration of a pin in its bearing at t = 0 [m/s^2].
-  subroutine pin_acceleration(scene, i, acceleration, inside)
+  subroutine pin_acceleration(scene, i, acceleration, in_domain)
     class(scene_t), intent(inout) :: scene
     integer, intent(in) :: i
     real(dp), intent(out) :: acceleration(2)
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     type(evaluation_t) :: now
     scene%joints(i)%phase = scene%joints(i)%phase_apart()
-    call scene%evaluate(0.0_dp, scene%initial_state(), now, inside)
+    call scene%evaluate(0.0_dp, scene%initial_state(), now, in_domain)
     acceleration = 0
-    if (inside) acceleration = now%accelerations%pin(:, scene%joints(i)%site%pin)
+    if (in_domain) acceleration = now%accelerations%pin(:, scene%joints(i)%site%pin)
   end subroutine pin_acceleration
 end submodule scene_events

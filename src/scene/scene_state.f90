@@ -1,6 +1,6 @@
 !> The state of a scene as named numbers, from which another run may start.
-submodule (gudgeon_scene) scene_state
-  use gudgeon_constants, only: two_pi
+submodule (scene_problem) scene_state
+  use constants, only: two_pi
   use crank_turns, only: new_crank_turns
   implicit none
 

@@ -1,8 +1,8 @@
 !> Derivatives of the accelerations of a scene with respect to its state, for implicit integration.
-submodule (gudgeon_scene) scene_tangent
+submodule (scene_problem) scene_tangent
   use ode_problem, only: difference_jacobian
   use chain_bodies, only: drive_t
-  use load_element, only: n_motions, by_journal_speed
+  use load_element, only: n_motions, by_pin_speed
   use clearance_joint, only: most_joint_states, n_joint_slopes
   use crank_rod_tangent, only: rod_slopes, acceleration_slopes
   implicit none
@@ -36,12 +36,12 @@ contains
     if (allocated(self%chain%varying)) drive%damping = drive%damping - self%chain%varying%torque_slope(now%motion%crank_speed)
     call rod_slopes(self%chain%bodies, now%motion, rod_angle, rod_speed)
     call acceleration_slopes(self%chain%bodies, drive, now%loads, now%motion, now%accelerations, by_motion, by_loads)
-    call follow_state(3, matmul(by_loads, of_loads(:, :by_journal_speed)), by_motion, rod_angle, rod_speed, slope(:3, :6))
+    call follow_state(3, matmul(by_loads, of_loads(:, :by_pin_speed)), by_motion, rod_angle, rod_speed, slope(:3, :6))
     if (allocated(self%gas)) &
       slope(2, 1) = slope(2, 1) + self%chain%bodies%per_piston_mass*self%gas%force_slope(now%motion%crank_angle)
     if (n > 0) then
       slope(:3, 7:6 + n) = matmul(by_loads, of_loads(:, n_motions + 1:n_motions + n))
-      call follow_state(n, of_rates(:, :by_journal_speed), by_nothing, rod_angle, rod_speed, slope(4:3 + n, :6))
+      call follow_state(n, of_rates(:, :by_pin_speed), by_nothing, rod_angle, rod_speed, slope(4:3 + n, :6))
       slope(4:3 + n, 7:6 + n) = of_rates(:n, n_motions + 1:n_motions + n)
     end if
     skip = merge(0, 1, self%chain%drive%free_crank)   ! a prescribed crank angle is not an unknown
@@ -58,7 +58,7 @@ contains
     real(dp) :: by_rod_speed
     integer :: i
     do i = 1, n
-      by_rod_speed = by_motion(i, 4) - by_joint(i, 5)   ! the journal turns with -A'
+      by_rod_speed = by_motion(i, 4) - by_joint(i, 5)   ! the pin turns with -A'
       total(i, 1) = by_motion(i, 1) + by_motion(i, 2)*rod_angle(1) + by_rod_speed*rod_speed(1)
       total(i, 2) = by_joint(i, 1)
       total(i, 3) = by_joint(i, 2) + by_motion(i, 2)*rod_angle(2) + by_rod_speed*rod_speed(2)

@@ -1,5 +1,5 @@
 !> The parts of the work on the bodies: gas, drive, damping, guide, elastic members, and the kinds of load in each joint.
-submodule (gudgeon_scene) scene_works
+submodule (scene_problem) scene_works
   use load_element, only: n_kinds, of_film
   implicit none
 
@@ -25,7 +25,7 @@ contains
       call claim_quadrature(self, self%parts(i))
     end do
     self%has_more_rates = .true.
-    call self%take_layout()
+    call self%set_layout()
 
   contains
 
@@ -63,7 +63,7 @@ contains
     part%at = one%first
   end subroutine claim_quadrature
 
-  module procedure put_work_rates
+  module procedure set_work_rates
     real(dp) :: rates(n_kinds)
     integer :: i, joint
     joint = 0
@@ -79,7 +79,7 @@ contains
         end if
       end associate
     end do
-  end procedure put_work_rates
+  end procedure set_work_rates
 
   !> Power of what is not a load in a joint [W].
   pure real(dp) function power_by(scene, what, now) result(power)

@@ -1,7 +1,7 @@
 !> Differences of neighbouring scenes from a first one, in one or two directions, for the largest Lyapunov exponent.
 module state_differences
-  use gudgeon_kinds, only: dp
-  use gudgeon_scene, only: scene_t
+  use kinds, only: dp
+  use scene_problem, only: scene_t
   use clearance_joint, only: most_joints
   implicit none
   private
@@ -22,7 +22,7 @@ module state_differences
     real(dp), allocatable :: before(:, :)             !! `state` at the beginning of the period
     real(dp) :: made(most_directions, most_directions) = 0   !! by the period from `before`: `state` times this matrix
   contains
-    procedure :: take
+    procedure :: measure
     procedure :: straighten
     procedure :: begin_period
     procedure :: choose_one
@@ -60,7 +60,7 @@ contains
 
   !> Measure the difference of a scene from the first one, relative to `first_size`. The impact speed of a contact that has come to
   !> stay is a constant of the motion: its difference, which would never shrink, is left out.
-  subroutine take(self, direction, scene, y, other_scene, other_y)
+  subroutine measure(self, direction, scene, y, other_scene, other_y)
     class(differences_t), intent(inout) :: self
     integer, intent(in) :: direction
     type(scene_t), intent(in) :: scene, other_scene
@@ -77,7 +77,7 @@ contains
       if (other_scene%joints(i)%phase /= scene%joints(i)%phase .or. self%lasts(i) >= self%most_lasts) cycle
       self%impact_speed(i, direction) = (other_scene%joints(i)%impact_speed - scene%joints(i)%impact_speed)/first_size
     end do
-  end subroutine take
+  end subroutine measure
 
   !> Make the differences orthogonal and of the size 1 (Gram and Schmidt). The differences before are those after times `factors`. A
   !> difference of size 0 is replaced by its initial direction.

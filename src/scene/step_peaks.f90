@@ -5,12 +5,12 @@
 !> three points show that it only rises or only falls, its slopes at both ends are computed, and the peak is searched if it rises
 !> and then falls.
 module step_peaks
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_method, only: ode_method_t
   use chain_loads, only: force_size
   use joint_evaluation, only: joint_evaluation_t
-  use gudgeon_scene, only: scene_t, evaluation_t, phase_free, phase_contact
-  use inside_step, only: look_inside
+  use scene_problem, only: scene_t, evaluation_t, phase_free, phase_contact
+  use inside_step, only: evaluate_inside
   use peak_search, only: sample_t, peak_search_t, may_peak
   implicit none
   private
@@ -152,19 +152,19 @@ contains
     type(evaluation_t) :: now
     type(joint_evaluation_t) :: motion
     real(dp) :: normal_force
-    logical :: inside
+    logical :: in_domain
 
     if (self%joint > 0) then
       associate (joint => scene%joints(self%joint))
-        call joint%look(method%y_old, motion, normal_force)
+        call joint%find_contact_state(method%y_old, motion, normal_force)
         call stand_at(self, method%t_old, [normal_force, motion%penetration, normal_force], motion%penetration_rate)
         if (joint%phase == phase_free) return
         if (joint%phase == phase_contact .and. normal_force <= next_to_none*later_force) return
       end associate
     end if
     self%evaluations = self%evaluations + 1
-    call scene%evaluate(method%t_old, method%y_old, now, inside)
-    if (inside) call stand_at(self, method%t_old, self%values(scene, now), rate_of(self, now))
+    call scene%evaluate(method%t_old, method%y_old, now, in_domain)
+    if (in_domain) call stand_at(self, method%t_old, self%values(scene, now), rate_of(self, now))
   end subroutine meet_beginning
 
   !> Whether a force whose slopes are not known may exceed the known maximum inside the interval that ends at t. It cannot if it is
@@ -248,7 +248,7 @@ contains
     do
       call peak%next_time(t, is_done)
       if (is_done) exit
-      call peak%take(t, value_inside(self, method, scene, quantity, t))
+      call peak%add_value(t, value_inside(self, method, scene, quantity, t))
     end do
     if (quantity == of_penetration .and. peak%value(1) > largest) self%thinnest_time = peak%t(1)
     largest = max(largest, peak%value(1))
@@ -264,14 +264,14 @@ contains
     type(evaluation_t) :: now
     type(joint_evaluation_t) :: motion
     real(dp) :: normal_force, y(size(method%y))
-    logical :: inside
+    logical :: in_domain
     if (quantity == of_pin_force) then
-      call look_inside(scene, method, t, y, now, inside, self%evaluations)
+      call evaluate_inside(scene, method, t, y, now, in_domain, self%evaluations)
       value = no_peak
-      if (inside) value = force_size(scene%pin_force(now, self%pin))
+      if (in_domain) value = force_size(scene%pin_force(now, self%pin))
     else
       call method%interpolate(t, y)
-      call scene%joints(self%joint)%look(y, motion, normal_force)
+      call scene%joints(self%joint)%find_contact_state(y, motion, normal_force)
       value = merge(motion%penetration, normal_force, quantity == of_penetration)
     end if
   end function value_inside

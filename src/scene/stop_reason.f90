@@ -1,11 +1,11 @@
 !> Describes in words why and where a run ended early.
 module stop_reason
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: degree
+  use kinds, only: dp
+  use constants, only: degree
   use number_text, only: short_text
   use ode_method, only: ode_settings_t, step_too_small, tolerance_too_small, start_outside, left_domain
-  use gudgeon_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached
-  use gudgeon_scene, only: scene_t, evaluation_t, phase_free
+  use ode_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached
+  use scene_problem, only: scene_t, evaluation_t, phase_free
   use joint_places, only: in_order
   implicit none
   private
@@ -14,7 +14,7 @@ module stop_reason
 
   character(len=*), parameter :: interrupted_text = 'interrupted'
 
-  !> Status codes in addition to those of `gudgeon_solver` and `ode_method`.
+  !> Status codes in addition to those of `ode_solver` and `ode_method`.
   integer, parameter :: revolution_budget_spent = 21
   integer, parameter :: crank_turned_back = 22         !! or stopped, before the turns that end the run were complete
   integer, parameter :: turns_not_made = 23            !! not complete at the latest end of the run
@@ -143,11 +143,11 @@ contains
     type(ode_settings_t), intent(in) :: settings
     real(dp), intent(in) :: t, y(:)
     real(dp) :: rates(size(y)), weight, step
-    logical :: inside
+    logical :: in_domain
     integer :: i
     change_in_rounding = 0
-    call scene%derivatives(t, y, rates, inside)
-    if (.not. inside) return
+    call scene%derivatives(t, y, rates, in_domain)
+    if (.not. in_domain) return
     step = 4*epsilon(t)*max(abs(t), 1e-9_dp*settings%span)
     do i = 1, size(y)
       weight = settings%relative(i)*abs(y(i)) + settings%absolute(i)
@@ -163,9 +163,9 @@ contains
     character(len=*), parameter :: phase_names(0:2) = [character(len=13) :: 'free flight', 'film', 'contact']
     integer, parameter :: digits = 9
     type(evaluation_t) :: now
-    logical :: inside
+    logical :: in_domain
     integer :: i
-    call scene%evaluate(t, y, now, inside)
+    call scene%evaluate(t, y, now, in_domain)
     text = 't = '//short_text(t, digits)//' s, crank angle '//short_text(now%motion%crank_angle/degree, digits)//' deg, phase '
     if (scene%n_joints == 0) text = text//trim(phase_names(phase_free))
     do i = 1, scene%n_joints

@@ -1,6 +1,6 @@
 !> Receiver of the results of a run. The code that writes files and tests extend it by what they need of the results.
 module trace_sink
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use run_state, only: run_state_t
   use joint_places, only: piston_pin, places, n_places
   use piston_guide, only: corner_names, n_corners
@@ -26,11 +26,11 @@ module trace_sink
     procedure :: declare
   end type trace_event_t
 
-  !> Takes rows and events in the order of time. This type itself ignores them.
+  !> Accepts rows and events in the order of time. This type itself ignores them.
   type :: trace_sink_t
   contains
-    procedure :: take_row
-    procedure :: take_event
+    procedure :: accept_row
+    procedure :: accept_event
   end type trace_sink_t
 
 contains
@@ -65,18 +65,18 @@ contains
     call list%add(pre//'contact_max_normal_force', self%max_normal_force, 'N', 'largest normal force in it')
   end subroutine declare
 
-  !> Take one row of the trace, with values in the order of its columns.
-  subroutine take_row(self, values)
+  !> Accept one row of the trace, with values in the order of its columns.
+  subroutine accept_row(self, values)
     class(trace_sink_t), intent(inout) :: self
     real(dp), intent(in), contiguous :: values(:)
     associate (unused_self => self, unused_values => values)
     end associate
-  end subroutine take_row
+  end subroutine accept_row
 
-  subroutine take_event(self, event)
+  subroutine accept_event(self, event)
     class(trace_sink_t), intent(inout) :: self
     type(trace_event_t), intent(in) :: event
     associate (unused_self => self, unused_event => event)
     end associate
-  end subroutine take_event
+  end subroutine accept_event
 end module trace_sink

@@ -1,13 +1,13 @@
 !> Counts the wear of pin and bore of a joint during a run. The motion does not depend on it.
 module wear_record
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: pi
+  use kinds, only: dp
+  use constants, only: pi
   use run_state, only: run_state_t
   use ode_method, only: ode_method_t
   use archard_wear, only: worn_surface_t, of_pin, of_bore
   use contact_arc, only: contact_arc_t
   use clearance_joint, only: clearance_joint_t, phase_contact
-  use gudgeon_scene, only: scene_t, evaluation_t
+  use scene_problem, only: scene_t, evaluation_t
   implicit none
   private
   public :: wear_record_t, wear_profile_t
@@ -172,7 +172,7 @@ contains
       done = 0
       part = 1
       do while (done < 1)
-        call take_samples(self, method, scene, self%time + done*span, part*span, samples)
+        call evaluate_nodes(self, method, scene, self%time + done*span, part*span, samples)
         sums = 0.5_dp*part*span*[dot_product(weights, samples%load), dot_product(gauss, samples%load)]
         is_rough = sums(1) > 0 .and. part > shortest
         turn = sweep(samples)
@@ -220,7 +220,7 @@ contains
   end function widest_turn
 
   !> Evaluate the scene at the nodes of an interval.
-  subroutine take_samples(self, method, scene, t, span, samples)
+  subroutine evaluate_nodes(self, method, scene, t, span, samples)
     type(wear_record_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
@@ -228,17 +228,17 @@ contains
     type(samples_t), intent(inout) :: samples
     real(dp), parameter :: negligible = 1e-200_dp   !! [W]; avoids divisions of rounding
     real(dp) :: y(scene%n), time
-    logical :: inside
+    logical :: in_domain
     integer :: i, k
     k = self%joint
     do i = 1, n_nodes
       time = t + 0.5_dp*(1 + nodes(i))*span
       call method%interpolate(time, y)
-      call scene%evaluate(time, y, samples%now(i), inside)
+      call scene%evaluate(time, y, samples%now(i), in_domain)
       samples%load(i) = 0
       samples%angle(i, :) = 0
       if (i > 1) samples%angle(i, :) = samples%angle(i - 1, :)
-      if (.not. inside) cycle
+      if (.not. in_domain) cycle
       associate (now => samples%now(i), before => samples%angle(i, :))
         samples%load(i) = scene%joints(k)%sliding_load(now%joint(k))
         if (samples%load(i) < negligible) samples%load(i) = 0
@@ -247,7 +247,7 @@ contains
       end associate
     end do
     self%evaluations = self%evaluations + n_nodes
-  end subroutine take_samples
+  end subroutine evaluate_nodes
 
   !> Angles by which pin and bore of a joint have turned, from x to y [rad].
   pure function turned(scene, joint, now) result(angles)
@@ -256,7 +256,7 @@ contains
     type(evaluation_t), intent(in) :: now
     real(dp) :: angles(2)
     associate (site => scene%joints(joint)%site)
-      angles(of_pin) = scene%chain%body_angle(now%motion, site%journal)
+      angles(of_pin) = scene%chain%body_angle(now%motion, site%pin_body)
       angles(of_bore) = 0
       if (scene%joints(joint)%bearing_turns) angles(of_bore) = scene%chain%body_angle(now%motion, site%bearing)
     end associate

@@ -1,8 +1,8 @@
 !> The base case of a study with the values of one run. Everything is read and checked once; a run only converts its own values.
 module study_case
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use error_handling, only: error_t, fail, status_case_file
   use case_definition, only: case_t
-  use gudgeon_parameters, only: integer_kind, word_kind
+  use model_parameters, only: integer_kind, word_kind
   use case_schema, only: find_group
   use case_values, only: case_values_t
   use case_file, only: complete_case
@@ -26,14 +26,14 @@ module study_case
     logical, private :: varies_words = .false.       !! a parameter is a word, which may name a law with keys of its own
   contains
     procedure :: prepare
-    procedure :: put
+    procedure :: set_values
     procedure :: convert
     procedure :: check
   end type study_case_t
 
 contains
 
-  !> Take the values of a base case, which must be valid by itself, and find the keys of the parameters. `at` names the place of the
+  !> Read the values of a base case, which must be valid by itself, and find the keys of the parameters. `at` names the place of the
   !> keys in messages. A key of a model that the base case does not have adds the model.
   subroutine prepare(self, values, path, keys, at, error)
     class(study_case_t), intent(inout) :: self
@@ -79,7 +79,7 @@ contains
   end subroutine prepare
 
   !> Set the values of a run, without checking ranges. Error: see `convert`.
-  subroutine put(self, texts, error)
+  subroutine set_values(self, texts, error)
     class(study_case_t), intent(inout) :: self
     character(len=*), intent(in) :: texts(:)
     type(error_t), allocatable, intent(out) :: error
@@ -90,10 +90,10 @@ contains
       if (allocated(error)) return
     end do
     call load_case(self%values, self%case, self%groups)
-  end subroutine put
+  end subroutine set_values
 
-  !> Convert the value of parameter i, which `put` sets in the case. Error: a text that is not a value of its key; the message does
-  !> not name the key.
+  !> Convert the value of parameter i, which `set_values` sets in the case. Error: a text that is not a value of its key; the
+  !> message does not name the key.
   subroutine convert(self, i, text, error)
     class(study_case_t), intent(inout) :: self
     integer, intent(in) :: i

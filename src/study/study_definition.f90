@@ -1,7 +1,7 @@
 !> The data of a parameter study: a base case, the parameters that are varied, and the results that are wanted.
 module study_definition
-  use gudgeon_kinds, only: dp
-  use gudgeon_parameters, only: has_parameters_t, parameter_list_t
+  use kinds, only: dp
+  use model_parameters, only: has_parameters_t, parameter_list_t
   use case_schema, only: schema_t, key_table_t
   implicit none
   private
@@ -58,7 +58,7 @@ contains
     call schema%group('parameter', &
       'One key that is varied. Give one group for each key; the runs are a grid, in which the last one changes fastest', .true.)
     call parameter%parameters(schema)
-    call schema%take(table)
+    call schema%get_table(table)
   end subroutine study_schema_of
 
   subroutine parameters_of_study(self, list)

@@ -2,8 +2,8 @@
 !> every row of the results can be repeated as a single run.
 module study_design
   use, intrinsic :: iso_fortran_env, only: int64
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text
   use number_text, only: number_writer_t, longest_number
   use study_definition, only: study_t, parameter_t
@@ -103,14 +103,14 @@ contains
         if (size(axis%list) > 0) then
           values(i) = axis%list(level + 1)%text
         else
-          call put_number(self%numbers, axis, self%is_whole(i), real(level, dp)/max(1, axis%levels() - 1), values(i))
+          call write_number(self%numbers, axis, self%is_whole(i), real(level, dp)/max(1, axis%levels() - 1), values(i))
         end if
       end associate
     end do
   end subroutine get_values
 
   !> The number at a relative position in a range.
-  pure subroutine put_number(numbers, p, is_whole, fraction, text)
+  pure subroutine write_number(numbers, p, is_whole, fraction, text)
     type(number_writer_t), intent(in) :: numbers
     type(parameter_t), intent(in) :: p
     logical, intent(in) :: is_whole
@@ -130,5 +130,5 @@ contains
     else
       call numbers%append(text, used, number)
     end if
-  end subroutine put_number
+  end subroutine write_number
 end module study_design

@@ -1,10 +1,10 @@
 !> Reads study files and checks their values. Errors have the form of those of case files.
 module study_file
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: printable, case_name, lowercase, path_beside
   use value_reader, only: convert_list
   use text_file, only: read_text_file
-  use gudgeon_posix, only: absolute_path
+  use posix_files, only: absolute_path
   use namelist_reader, only: namelist_t, read_namelist
   use case_values, only: case_values_t
   use case_schema, only: key_t, key_table_t, case_schema_of, find_group, find_key, is_group_of_cases, text_kind
@@ -41,16 +41,16 @@ contains
     type(study_t), intent(inout) :: study
     type(error_t), allocatable, intent(out) :: error
     type(case_values_t), allocatable :: groups(:)
-    call take_groups(study%file, list, groups, error)
+    call read_groups(study%file, list, groups, error)
     if (allocated(error)) return
-    call take_study(groups(1), study)
+    call set_study(groups(1), study)
     call check_study(groups(1), study, size(groups) - 1, error)
     if (allocated(error)) return
-    call take_parameters(groups(2:), study, error)
+    call set_parameters(groups(2:), study, error)
   end subroutine fill_study
 
   !> The values of each group of the file: first those of &study, then those of each &parameter.
-  subroutine take_groups(path, list, groups, error)
+  subroutine read_groups(path, list, groups, error)
     character(len=*), intent(in) :: path
     type(namelist_t), intent(inout) :: list
     type(case_values_t), allocatable, intent(out) :: groups(:)
@@ -93,7 +93,7 @@ contains
       end select
       call problems%add_error(error, '', list%groups(i)%line)
     end do
-    if (.not. (groups(1)%is_present(1) .or. problems%blames(''))) &
+    if (.not. (groups(1)%is_present(1) .or. problems%concerns(''))) &
       call problems%add(list%file//': &study: this group is required', 'study', behind_file)
     do i = 1, size(list%entries)
       associate (entry => list%entries(i))
@@ -111,7 +111,7 @@ contains
       call problems%absorb(groups(i)%problems)
     end do
     call problems%report(error)
-  end subroutine take_groups
+  end subroutine read_groups
 
   !> Replace the numbers with units in an entry of &parameter by numbers in the unit of the key that it varies.
   subroutine take_units(list, number, error)
@@ -151,7 +151,7 @@ contains
   end function key_of_case
 
   !> Set the values of &study.
-  subroutine take_study(values, study)
+  subroutine set_study(values, study)
     type(case_values_t), intent(inout) :: values
     type(study_t), intent(inout) :: study
     call load_model(values, 'study', study)
@@ -177,7 +177,7 @@ contains
       changed%values(place)%text = title
       resolved_with = resolved_text(changed)
     end function resolved_with
-  end subroutine take_study
+  end subroutine set_study
 
   !> Check that the values of &study fit together and fit the number of parameters.
   subroutine check_study(values, study, n_parameters, error)
@@ -200,7 +200,7 @@ contains
   end subroutine check_study
 
   !> Set the values of all &parameter groups.
-  subroutine take_parameters(groups, study, error)
+  subroutine set_parameters(groups, study, error)
     type(case_values_t), intent(inout) :: groups(:)
     type(study_t), intent(inout) :: study
     type(error_t), allocatable, intent(out) :: error
@@ -222,7 +222,7 @@ contains
       study%identity = study%identity//resolved_text(groups(i))
     end do
     call problems%report(error)
-  end subroutine take_parameters
+  end subroutine set_parameters
 
   !> Check that a parameter has either a range or a list.
   subroutine check_parameter(values, p)

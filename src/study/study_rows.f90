@@ -1,66 +1,77 @@
 !> Rows of the results of a study: one for each run, one for each revolution, one for each strobe. The header of each file is made
 !> by the same procedure as the other rows, so that names and values of columns are defined in one place.
 module study_rows
-  use gudgeon_kinds, only: dp
-  use gudgeon_constants, only: two_pi
+  use kinds, only: dp
+  use constants, only: two_pi
   use joint_places, only: places, n_places, in_order, name_prefix
   use case_definition, only: case_t
-  use gudgeon_columns, only: column_list_t, column_name
+  use trace_columns, only: column_list_t, column_name
   use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt
   use cycle_watch, only: cycle_watch_t
-  use gudgeon_simulation, only: run_report_t
+  use simulation, only: run_report_t
   use result_notes, only: relative_residual
   use archard_wear, only: of_pin, of_bore
+  use summary_quantities, only: study_columns, unit_of
   use number_text, only: number_writer_t
   use row_text, only: row_text_t
   implicit none
   private
   public :: study_row_t, run_header, cycle_header, strobe_header
-  public :: put_run, put_cycles, put_strobes
+  public :: add_run, add_cycles, add_strobes
 
   !> One or more rows.
   type, extends(row_text_t) :: study_row_t
-    logical :: is_header = .false.       !! names of columns are put instead of values
+    logical :: is_header = .false.       !! names of columns are written instead of values
     logical :: has_strobes = .false.     !! the study has strobes
     logical :: has_place(n_places) = .false.   !! the study has columns of the pin at each place
     logical :: has_guide = .false.       !! the study has columns of the piston in its bore
     logical :: has_wear = .false.        !! the study has columns of wear
     logical :: has_motion = .false.      !! the study has columns of the period or the Lyapunov exponent
     type(number_writer_t) :: numbers
+    character(len=:), allocatable :: prefix   !! place of the joint whose columns are put
   contains
     procedure :: choose
-    procedure, private :: put_real, put_whole
-    generic :: put => put_real, put_whole
+    procedure, private :: add_named_real, add_named_whole
+    generic :: add => add_named_real, add_named_whole
   end type study_row_t
 
 contains
 
-  !> Append a number, or the name of its column; an empty field if the scene does not have the quantity.
-  pure subroutine put_real(self, name, value, is_there)
+  !> Append a number, or the name of its column with its unit; an empty field if the scene does not have the quantity.
+  pure subroutine add_named_real(self, name, value, is_known)
     class(study_row_t), intent(inout) :: self
-    character(len=*), intent(in) :: name
+    character(len=*), intent(in) :: name   !! as it is declared in `study_columns`
     real(dp), intent(in) :: value
-    logical, intent(in) :: is_there
+    logical, intent(in) :: is_known
     if (self%is_header) then
-      call self%add_text(name)
+      call self%add_text(self%prefix//with_unit(name))
     else
-      call self%add_number(self%numbers, value, is_there)
+      call self%add_number(self%numbers, value, is_known)
     end if
-  end subroutine put_real
+  end subroutine add_named_real
 
-  pure subroutine put_whole(self, name, number, is_there)
+  pure subroutine add_named_whole(self, name, number, is_known)
     class(study_row_t), intent(inout) :: self
     character(len=*), intent(in) :: name
     integer, intent(in) :: number
-    logical, intent(in) :: is_there
+    logical, intent(in) :: is_known
     if (self%is_header) then
-      call self%add_text(name)
-    else if (is_there) then
+      call self%add_text(self%prefix//with_unit(name))
+    else if (is_known) then
       call self%add_whole(number)
     else
       call self%add_text('')
     end if
-  end subroutine put_whole
+  end subroutine add_named_whole
+
+  !> The name of a column with its unit.
+  pure function with_unit(name) result(text)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: text
+    text = unit_of(study_columns, name)
+    if (text /= '') text = '['//text//']'
+    text = name//text
+  end function with_unit
 
   !> Choose the columns that not all studies have: those of strobes, and those that the base case has or a parameter may add.
   pure subroutine choose(self, keys, base, has_strobes)
@@ -93,7 +104,7 @@ contains
     type(case_t) :: no_case
     row%is_header = .true.
     call row%choose(keys, base, has_strobes)
-    call put_run(row, 0, keys, 'status', .false., 0, no_watch, no_report, no_case)
+    call add_run(row, 0, keys, 'status', .false., 0, no_watch, no_report, no_case)
     text = row%text(:row%used)
   end function run_header
 
@@ -106,7 +117,7 @@ contains
     type(case_t) :: no_case
     row%is_header = .true.
     call row%choose(keys, base, .false.)
-    call put_cycle(row, 0, 0, cycle_t(duration=1.0_dp), 1.0_dp, no_case)
+    call add_cycle(row, 0, 0, cycle_t(duration=1.0_dp), 1.0_dp, no_case)
     text = row%text(:row%used)
   end function cycle_header
 
@@ -124,7 +135,7 @@ contains
 
   !> Append the row of a run: its outcome if it began, and its statistics if it is done and has at least one revolution. The columns
   !> of all studies are followed by the number of strobes, if the study has any, and by those of further pins.
-  subroutine put_run(row, run, values, outcome, has_begun, notes, watch, report, case)
+  subroutine add_run(row, run, values, outcome, has_begun, notes, watch, report, case)
     class(study_row_t), intent(inout) :: row
     integer, intent(in) :: run
     character(len=*), intent(in) :: values(:)   !! values of the parameters; their keys in a header
@@ -142,59 +153,61 @@ contains
     s = watch%statistics
     if (.not. is_done) call s%add(cycle_t(duration=1.0_dp))   ! prevents divisions by 0
     call row%clear()
-    call row%put('run', run, .true.)
+    row%prefix = ''
+    call row%add('run', run, .true.)
     do i = 1, size(values)
       call row%add_text(values(i))
     end do
     call row%add_text(outcome)
-    call row%put('cycles[-]', s%cycles, is_done)
-    call put_motion(row, s, watch%direction, case, is_done, .true.)
-    call row%put('energy_residual[-]', relative_residual(report), has_begun)
-    call row%put('rhs_evaluations[-]', report%statistics%evaluations, has_begun)
-    call row%put('simulated_time[s]', report%figures%time, has_begun)
-    call row%put('notes[-]', notes, has_begun)
-    if (row%has_strobes) call row%put('strobes[-]', watch%strobes, is_done)
-    call put_further_joints(row, s, case, is_done, .true.)
+    call row%add('cycles', s%cycles, is_done)
+    call add_motion(row, s, watch%direction, case, is_done, .true.)
+    call row%add('energy_residual', relative_residual(report), has_begun)
+    call row%add('rhs_evaluations', report%statistics%evaluations, has_begun)
+    call row%add('simulated_time', report%figures%time, has_begun)
+    call row%add('notes', notes, has_begun)
+    if (row%has_strobes) call row%add('strobes', watch%strobes, is_done)
+    call add_further_joints(row, s, case, is_done, .true.)
     if (row%has_motion) then
-      call row%put('period_revolutions[-]', report%periods%period, is_done .and. report%periods%is_on)
-      call row%put('lyapunov_exponent[1/revolution]', report%exponent%mean, is_done .and. report%exponent%is_known)
-      call row%put('lyapunov_exponent_error[1/revolution]', report%exponent%error, is_done .and. report%exponent%is_known)
+      call row%add('period_revolutions', report%periods%period, is_done .and. report%periods%is_on)
+      call row%add('lyapunov_exponent', report%exponent%mean, is_done .and. report%exponent%is_known)
+      call row%add('lyapunov_exponent_error', report%exponent%error, is_done .and. report%exponent%is_known)
     end if
     do i = 1, n_places
-      if (row%has_wear .and. row%has_place(in_order(i))) call put_wear(row, report, in_order(i), name_prefix(in_order(i)), is_done)
+      if (row%has_wear .and. row%has_place(in_order(i))) call add_wear(row, report, in_order(i), is_done)
     end do
     call row%end_row()
-  end subroutine put_run
+  end subroutine add_run
 
   !> Append the columns of the worn surfaces of one joint: of the whole run, also of the revolutions that are not counted.
-  subroutine put_wear(row, report, pin, prefix, is_done)
+  subroutine add_wear(row, report, pin, is_done)
     class(study_row_t), intent(inout) :: row
     type(run_report_t), intent(in) :: report
-    integer, intent(in) :: pin
-    character(len=*), intent(in) :: prefix
+    integer, intent(in) :: pin   !! index in `places`
     logical, intent(in) :: is_done
     real(dp) :: volume(2), depth(2)
-    logical :: is_there
+    logical :: is_known
     integer :: i
-    is_there = .false.
+    is_known = .false.
     volume = 0
     depth = 0
     if (allocated(report%wear)) then
       do i = 1, size(report%wear)
         if (report%wear(i)%place /= pin) cycle
-        is_there = is_done
+        is_known = is_done
         volume = sum(report%wear(i)%volume, 1)
         depth = maxval(report%wear(i)%depth, 1)
       end do
     end if
-    call row%put(prefix//'worn_volume_pin[m3]', volume(of_pin), is_there)
-    call row%put(prefix//'worn_volume_bore[m3]', volume(of_bore), is_there)
-    call row%put(prefix//'max_wear_depth_pin[m]', depth(of_pin), is_there)
-    call row%put(prefix//'max_wear_depth_bore[m]', depth(of_bore), is_there)
-  end subroutine put_wear
+    row%prefix = name_prefix(pin)
+    call row%add('worn_volume_pin', volume(of_pin), is_known)
+    call row%add('worn_volume_bore', volume(of_bore), is_known)
+    call row%add('max_wear_depth_pin', depth(of_pin), is_known)
+    call row%add('max_wear_depth_bore', depth(of_bore), is_known)
+    row%prefix = ''
+  end subroutine add_wear
 
   !> Append a row for each revolution counted.
-  subroutine put_cycles(rows, run, watch, case)
+  subroutine add_cycles(rows, run, watch, case)
     class(study_row_t), intent(inout) :: rows
     integer, intent(in) :: run
     type(cycle_watch_t), intent(in) :: watch
@@ -202,12 +215,12 @@ contains
     integer :: i
     call rows%clear()
     do i = 1, watch%statistics%cycles
-      call put_cycle(rows, run, watch%uncounted + i, watch%cycles(i), watch%direction, case)
+      call add_cycle(rows, run, watch%uncounted + i, watch%cycles(i), watch%direction, case)
     end do
-  end subroutine put_cycles
+  end subroutine add_cycles
 
   !> Append the row of one revolution; `number` counts from the start of the run.
-  subroutine put_cycle(row, run, number, cycle, direction, case)
+  subroutine add_cycle(row, run, number, cycle, direction, case)
     class(study_row_t), intent(inout) :: row
     integer, intent(in) :: run, number
     type(cycle_t), intent(in) :: cycle
@@ -215,82 +228,84 @@ contains
     type(case_t), intent(in) :: case
     type(cycle_statistics_t) :: s
     call s%add(cycle)
-    call row%put('run', run, .true.)
-    call row%put('cycle', number, .true.)
-    call row%put('duration[s]', cycle%duration, .true.)
-    call put_motion(row, s, direction, case, .true., .false.)
-    call put_further_joints(row, s, case, .true., .false.)
+    row%prefix = ''
+    call row%add('run', run, .true.)
+    call row%add('cycle', number, .true.)
+    call row%add('duration', cycle%duration, .true.)
+    call add_motion(row, s, direction, case, .true., .false.)
+    call add_further_joints(row, s, case, .true., .false.)
     call row%end_row()
-  end subroutine put_cycle
+  end subroutine add_cycle
 
   !> Append the columns of the first pin and the motion that all studies have.
-  subroutine put_motion(row, s, direction, case, is_there, with_means)
+  subroutine add_motion(row, s, direction, case, is_known, with_means)
     class(study_row_t), intent(inout) :: row
     type(cycle_statistics_t), intent(in) :: s   !! of all revolutions of a run, or of one
     real(dp), intent(in) :: direction           !! sense in which the crank turns: 1 or -1
     type(case_t), intent(in) :: case
-    logical, intent(in) :: is_there, with_means   !! the revolutions were made; means over several revolutions are wanted
+    logical, intent(in) :: is_known, with_means   !! the revolutions were made; means over several revolutions are wanted
     associate (first => in_order(1))
-      call put_pin(row, s, first, is_there .and. case%joints(first)%has_clearance(), is_there, with_means)
+      call add_pin(row, s, first, is_known .and. case%joints(first)%has_clearance(), is_known, with_means)
     end associate
-    call row%put('mean_crank_speed[rad/s]', direction*two_pi*s%cycles/s%total%duration, is_there)
-    call row%put('dissipated_energy[J]', s%total%dissipated_energy/s%cycles, is_there .and. case%has_play())
-  end subroutine put_motion
+    call row%add('mean_crank_speed', direction*two_pi*s%cycles/s%total%duration, is_known)
+    call row%add('dissipated_energy', s%total%dissipated_energy/s%cycles, is_known .and. case%has_play())
+  end subroutine add_motion
 
   !> Append the columns of further pins and of the piston in its bore, if the study has them.
-  subroutine put_further_joints(row, s, case, is_there, with_means)
+  subroutine add_further_joints(row, s, case, is_known, with_means)
     class(study_row_t), intent(inout) :: row
     type(cycle_statistics_t), intent(in) :: s
     type(case_t), intent(in) :: case
-    logical, intent(in) :: is_there, with_means   !! see `put_motion`
+    logical, intent(in) :: is_known, with_means   !! see `add_motion`
     logical :: is_loose
     integer :: i
     do i = 2, n_places
-      is_loose = is_there .and. case%joints(in_order(i))%has_clearance()
-      if (row%has_place(in_order(i))) call put_pin(row, s, in_order(i), is_loose, is_loose, with_means)
+      is_loose = is_known .and. case%joints(in_order(i))%has_clearance()
+      if (row%has_place(in_order(i))) call add_pin(row, s, in_order(i), is_loose, is_loose, with_means)
     end do
     if (.not. row%has_guide) return
-    is_loose = is_there .and. case%has_loose_guide()
+    is_loose = is_known .and. case%has_loose_guide()
+    row%prefix = 'guide_'
     associate (total => s%total%pin(skirt))
-      call row%put('guide_contact_time_fraction[-]', total%contact_time/s%total%duration, is_loose)
-      call put_impacts(row, 'guide_', total%impacts, s%cycles, is_loose, with_means)
-      call row%put('guide_max_penetration[m]', total%max_penetration, is_loose)
-      call row%put('guide_max_force[N]', total%max_force, is_loose)
-      if (with_means) call row%put('guide_max_force_mean[N]', s%force_sum(skirt)/s%cycles, is_loose)
+      call row%add('contact_time_fraction', total%contact_time/s%total%duration, is_loose)
+      call add_impacts(row, total%impacts, s%cycles, is_loose, with_means)
+      call row%add('max_penetration', total%max_penetration, is_loose)
+      call row%add('max_force', total%max_force, is_loose)
+      if (with_means) call row%add('max_force_mean', s%force_sum(skirt)/s%cycles, is_loose)
     end associate
-  end subroutine put_further_joints
+    row%prefix = ''
+  end subroutine add_further_joints
 
-  subroutine put_pin(row, s, pin, has_clearance, has_force, with_means)
+  subroutine add_pin(row, s, pin, has_clearance, has_force, with_means)
     class(study_row_t), intent(inout) :: row
     type(cycle_statistics_t), intent(in) :: s
     integer, intent(in) :: pin   !! index in `places`
     logical, intent(in) :: has_clearance, has_force, with_means
-    character(len=:), allocatable :: prefix
-    prefix = name_prefix(pin)
+    row%prefix = name_prefix(pin)
     associate (total => s%total%pin(pin), duration => s%total%duration)
-      call row%put(prefix//'min_film_thickness[m]', total%min_film_thickness, has_clearance)
-      if (with_means) call row%put(prefix//'min_film_thickness_mean[m]', s%film_sum(pin)/s%cycles, has_clearance)
-      call row%put(prefix//'contact_time_fraction[-]', total%contact_time/duration, has_clearance)
-      call put_impacts(row, prefix, total%impacts, s%cycles, has_clearance, with_means)
-      call row%put(prefix//'max_penetration[m]', total%max_penetration, has_clearance)
-      call row%put(prefix//'max_pin_force[N]', total%max_force, has_force)
-      if (with_means) call row%put(prefix//'max_pin_force_mean[N]', s%force_sum(pin)/s%cycles, has_force)
-      call row%put(prefix//'mean_pin_force[N]', total%force_integral/duration, has_force)
+      call row%add('min_film_thickness', total%min_film_thickness, has_clearance)
+      if (with_means) call row%add('min_film_thickness_mean', s%film_sum(pin)/s%cycles, has_clearance)
+      call row%add('contact_time_fraction', total%contact_time/duration, has_clearance)
+      call add_impacts(row, total%impacts, s%cycles, has_clearance, with_means)
+      call row%add('max_penetration', total%max_penetration, has_clearance)
+      call row%add('max_pin_force', total%max_force, has_force)
+      if (with_means) call row%add('max_pin_force_mean', s%force_sum(pin)/s%cycles, has_force)
+      call row%add('mean_pin_force', total%force_integral/duration, has_force)
     end associate
-  end subroutine put_pin
+    row%prefix = ''
+  end subroutine add_pin
 
   !> Append the number of impacts: the mean over the revolutions, or that of one revolution.
-  subroutine put_impacts(row, prefix, impacts, cycles, is_there, as_mean)
+  subroutine add_impacts(row, impacts, cycles, is_known, as_mean)
     class(study_row_t), intent(inout) :: row
-    character(len=*), intent(in) :: prefix
     integer, intent(in) :: impacts, cycles
-    logical, intent(in) :: is_there, as_mean
-    if (as_mean) call row%put(prefix//'impacts[-]', real(impacts, dp)/cycles, is_there)
-    if (.not. as_mean) call row%put(prefix//'impacts[-]', impacts, is_there)
-  end subroutine put_impacts
+    logical, intent(in) :: is_known, as_mean
+    if (as_mean) call row%add('impacts', real(impacts, dp)/cycles, is_known)
+    if (.not. as_mean) call row%add('impacts', impacts, is_known)
+  end subroutine add_impacts
 
   !> Append a row for each strobe.
-  subroutine put_strobes(rows, run, watch)
+  subroutine add_strobes(rows, run, watch)
     class(study_row_t), intent(inout) :: rows
     integer, intent(in) :: run
     type(cycle_watch_t), intent(in) :: watch
@@ -304,5 +319,5 @@ contains
       end do
       call rows%end_row()
     end do
-  end subroutine put_strobes
+  end subroutine add_strobes
 end module study_rows

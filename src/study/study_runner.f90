@@ -4,16 +4,16 @@
 !> folder NAME.chunks, when all its runs have ended; a sweep that was stopped, or other sweeps of some of its rows, go on with the
 !> chunks that are missing. When there are all, they are joined to NAME.runs.csv in the order of the runs, and removed.
 module study_runner
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_output, status_integration
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_output, status_integration
   use text_tools, only: printable, integer_text, whole_number
   use number_text, only: short_text
   use result_file, only: result_file_t, write_text, fail_with_file
   use command_line, only: command_line_t
-  use gudgeon_progress, only: progress_t, rate_text, clock
+  use run_progress, only: progress_t, rate_text, clock
   use case_runner, only: tell_notes
   use process_pool, only: tasks_t, note_t, share, available_processors
-  use gudgeon_posix, only: make_directory, remove_folder, list_folder, longest_name, remove_file, file_length, synchronise_folder, &
+  use posix_files, only: make_directory, remove_folder, list_folder, longest_name, remove_file, file_length, synchronise_folder, &
     wait_for_input, interrupted, signal_set_t, hold_interrupts, restore_interrupts
   use text_file, only: read_whole
   use study_sweep, only: sweep_t, read_sweep, check_rows, study_checksum
@@ -48,7 +48,7 @@ module study_runner
     type(error_t), allocatable :: error
   contains
     procedure :: carry_out
-    procedure :: take_note
+    procedure :: record_note
     procedure :: lost
   end type study_tasks_t
 
@@ -76,7 +76,7 @@ contains
     if (.not. allocated(error) .and. options%check) call check_rows(tasks%sweep, line, error)
     call hold_interrupts()
     if (allocated(error) .or. options%check) return
-    call take_folder(options, tasks, error)
+    call prepare_folder(options, tasks, error)
     if (allocated(error)) return
     began = clock()
     call tasks%progress%start(tasks%sweep%study%name, shows_progress)
@@ -88,7 +88,7 @@ contains
   end subroutine run_study_file
 
   !> Make the folders, and find out which chunks are missing. Error: the results of another study with the same name are there.
-  subroutine take_folder(options, tasks, error)
+  subroutine prepare_folder(options, tasks, error)
     type(command_line_t), intent(in) :: options
     type(study_tasks_t), intent(inout) :: tasks
     type(error_t), allocatable, intent(out) :: error
@@ -124,14 +124,14 @@ contains
       if (status /= 0) call fail_with_file(tasks%folder, status, error)
     end associate
     if (.not. allocated(error)) call find_missing(tasks)
-  end subroutine take_folder
+  end subroutine prepare_folder
 
   !> Write the study with its checksum. Another sweep of its rows may do so at the same time.
   subroutine write_study(sweep, label, error)
     type(sweep_t), intent(in) :: sweep
     character(len=*), intent(in) :: label
     type(error_t), allocatable, intent(out) :: error
-    integer, parameter :: most_tries = 20, patience = 50   !! [ms]
+    integer, parameter :: most_tries = 20, timeout = 50   !! [ms]
     integer, parameter :: nothing = -1
     character(len=:), allocatable :: present
     logical :: unused
@@ -139,7 +139,7 @@ contains
     do try = 1, most_tries
       call write_text(sweep%path//'.study.nml', label//sweep%study%resolved, error)
       if (.not. allocated(error)) return
-      call wait_for_input(nothing, patience, unused)
+      call wait_for_input(nothing, timeout, unused)
       call read_whole(sweep%path//'.study.nml', present, status)
       if (index(present, label) /= 1) cycle
       deallocate (error)
@@ -163,32 +163,32 @@ contains
   subroutine find_missing(tasks)
     type(study_tasks_t), intent(inout) :: tasks
     type(chunk_t), allocatable :: found(:)
-    logical :: is_there(tasks%sweep%first:tasks%sweep%last)
+    logical :: is_found(tasks%sweep%first:tasks%sweep%last)
     character(len=:), allocatable :: table
     integer :: i, size_of, rows, failed, status, ignored
     associate (sweep => tasks%sweep)
-      is_there = .false.
+      is_found = .false.
       call read_whole(sweep%path//trim(suffixes(of_runs)), table, status)
       call count_rows(tasks, table, chunk_t(1, sweep%design%runs), rows, failed)
       if (rows == sweep%design%runs) then
-        is_there = .true.
+        is_found = .true.
       else
         call remove_file(sweep%path//trim(suffixes(of_runs)), ignored)
       end if
       call find_chunks(tasks, found)
       do i = 1, size(found)
-        is_there(max(found(i)%first, sweep%first):min(found(i)%last, sweep%last)) = .true.
+        is_found(max(found(i)%first, sweep%first):min(found(i)%last, sweep%last)) = .true.
       end do
-      tasks%began = count(is_there)
+      tasks%began = count(is_found)
       tasks%done = tasks%began
       size_of = (sweep%design%runs - 1)/most_chunks + 1
       if (sweep%study%start == 'previous') size_of = sweep%design%runs   ! one process, one run after the other
       allocate (tasks%missing(0))
       do i = sweep%first, sweep%last
-        if (is_there(i)) cycle
+        if (is_found(i)) cycle
         if (i == sweep%first .or. mod(i - 1, size_of) == 0) then
           tasks%missing = [tasks%missing, chunk_t(i, i)]
-        else if (is_there(i - 1)) then
+        else if (is_found(i - 1)) then
           tasks%missing = [tasks%missing, chunk_t(i, i)]
         else
           tasks%missing(size(tasks%missing))%last = i
@@ -259,7 +259,7 @@ contains
       do kind = 1, n_kinds
         if (self%has_kind(kind) .and. .not. allocated(error)) &
           call file(kind)%open(base_of(self, chunk)//trim(suffixes(kind)), error, whole_only=.true.)
-        if (.not. allocated(error)) call file(kind)%put(header_of(self%sweep, kind))
+        if (.not. allocated(error)) call file(kind)%append(header_of(self%sweep, kind))
       end do
       do run = chunk%first, chunk%last
         is_whole = .not. interrupted()
@@ -268,9 +268,9 @@ contains
         if (allocated(worker%output_error)) call move_alloc(worker%output_error, error)
         is_whole = .not. (worker%was_interrupted .or. allocated(error))
         if (.not. is_whole) exit
-        call file(of_cycles)%put(worker%cycle_rows%text(:worker%cycle_rows%used))
-        call file(of_strobes)%put(worker%strobe_rows%text(:worker%strobe_rows%used))
-        call file(of_runs)%put(worker%run_row%text(:worker%run_row%used))
+        call file(of_cycles)%append(worker%cycle_rows%text(:worker%cycle_rows%used))
+        call file(of_strobes)%append(worker%strobe_rows%text(:worker%strobe_rows%used))
+        call file(of_runs)%append(worker%run_row%text(:worker%run_row%used))
         if (worker%notes > 0) note%numbers(2) = note%numbers(2) + 1
       end do
       do kind = 1, n_kinds
@@ -282,7 +282,7 @@ contains
     end associate
   end subroutine carry_out
 
-  subroutine take_note(self, note)
+  subroutine record_note(self, note)
     class(study_tasks_t), intent(inout) :: self
     type(note_t), intent(in) :: note
     self%done = self%done + note%numbers(1)
@@ -290,7 +290,7 @@ contains
     if (note%text /= '' .and. .not. allocated(self%error)) call fail(self%error, trim(note%text), status_output)
     self%is_over = allocated(self%error)
     call self%progress%update_runs(self%done, self%sweep%last - self%sweep%first + 1, self%began)
-  end subroutine take_note
+  end subroutine record_note
 
   subroutine lost(self, task, signal)
     class(study_tasks_t), intent(inout) :: self
@@ -316,7 +316,7 @@ contains
       header = header_of(tasks%sweep, kind)
       call file%open(tasks%sweep%path//trim(suffixes(kind)), error, whole_only=.true.)
       if (allocated(error)) return
-      call file%put(header)
+      call file%append(header)
       do i = 1, size(found)
         path = base_of(tasks, found(i))
         call read_whole(path//trim(suffixes(kind)), text, status)
@@ -328,7 +328,7 @@ contains
           call file%abandon()
           return
         end if
-        call file%put(text(len(header) + 1:))
+        call file%append(text(len(header) + 1:))
       end do
       call file%synchronise()
       call file%close(error)

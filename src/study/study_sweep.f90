@@ -1,11 +1,11 @@
 !> A study that has been read and checked.
 module study_sweep
-  use gudgeon_kinds, only: dp
-  use gudgeon_errors, only: error_t, fail, status_command_line, status_case_file, status_integration
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_command_line, status_case_file, status_integration
   use text_tools, only: printable, integer_text, lowercase
-  use gudgeon_checksum, only: checksum_t
-  use gudgeon_version, only: program_version
-  use gudgeon_columns, only: column_list_t, choose_columns
+  use checksums, only: checksum_t
+  use version_number, only: program_version
+  use trace_columns, only: column_list_t, choose_columns
   use case_definition, only: case_t
   use case_file, only: read_case_values
   use case_text, only: resolved_text
@@ -16,7 +16,7 @@ module study_sweep
   use study_file, only: read_study
   use study_design, only: study_design_t, new_design
   use study_case, only: study_case_t
-  use gudgeon_posix, only: absolute_path
+  use posix_files, only: absolute_path
   implicit none
   private
   public :: sweep_t, read_sweep, check_rows, study_checksum
@@ -244,7 +244,7 @@ contains
       character(len=sweep%design%text_length) :: values(size(sweep%design%keys))
       type(error_t), allocatable :: problem
       call sweep%design%get_values(run, values)
-      call sweep%base%put(values, problem)
+      call sweep%base%set_values(values, problem)
       if (.not. allocated(problem)) call sweep%base%check(problem)
       if (.not. allocated(problem)) then
         if (allocated(sweep%base%case%notes)) noted = noted + 1

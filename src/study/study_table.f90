@@ -1,7 +1,7 @@
 !> A table of runs: CSV according to RFC 4180, with a header of GROUP.KEY and a row for each run. Since a table may be large and its
 !> fields of any length, fields are stored as positions in the text.
 module study_table
-  use gudgeon_errors, only: error_t, fail, status_case_file
+  use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, lowercase
   use text_file, only: read_text_file
   use row_text, only: begins_formula
@@ -98,7 +98,7 @@ contains
           message = 'the header has '//integer_text(columns)//' fields, this row more'
         else
           n = n + 1
-          call take_field(table%text, at, line, table%first(n), table%last(n), is_last, message)
+          call read_field(table%text, at, line, table%first(n), table%last(n), is_last, message)
           if (row > 0) table%longest = max(table%longest, table%last(n) - table%first(n) + 1)
         end if
       end do
@@ -147,7 +147,7 @@ contains
   end subroutine skip_empty_lines
 
   !> Find one field and the comma or end of line behind it.
-  pure subroutine take_field(text, at, line, first, last, is_last, message)
+  pure subroutine read_field(text, at, line, first, last, is_last, message)
     character(len=*), intent(in) :: text
     integer, intent(inout) :: at, line
     integer, intent(out) :: first, last
@@ -186,7 +186,7 @@ contains
     end if
     if (is_last) line = line + 1
     at = ending + 1
-  end subroutine take_field
+  end subroutine read_field
 
   !> Check that all columns have different names.
   subroutine check_header(path, table, error)

@@ -1,14 +1,14 @@
 !> The data of one process that carries out runs of a study one after the other. Everything is allocated once; a run allocates only
 !> what the simulation itself needs.
 module study_worker
-  use gudgeon_errors, only: error_t
+  use error_handling, only: error_t
   use run_state, only: run_state_t
-  use gudgeon_constants, only: degree
-  use gudgeon_columns, only: column_list_t, choose_columns
+  use constants, only: degree
+  use trace_columns, only: column_list_t, choose_columns
   use cycle_watch, only: cycle_watch_t
   use film_files, only: provide_tables
-  use gudgeon_simulation, only: run_t, run_report_t
-  use patient_run, only: go_to_end
+  use simulation, only: run_t, run_report_t
+  use whole_run, only: go_to_end
   use trace_sink, only: trace_sink_t
   use trace_files, only: trace_files_t
   use study_definition, only: study_t
@@ -16,7 +16,7 @@ module study_worker
   use study_case, only: study_case_t
   use case_notes, only: count_lines
   use result_notes, only: notes_on_results
-  use study_rows, only: study_row_t, put_run, put_cycles, put_strobes
+  use study_rows, only: study_row_t, add_run, add_cycles, add_strobes
   implicit none
   private
   public :: study_worker_t
@@ -84,7 +84,7 @@ contains
     self%was_interrupted = .false.
     has_begun = .false.
     call design%get_values(number, self%values)
-    call self%base%put(self%values, error)
+    call self%base%set_values(self%values, error)
     if (.not. allocated(error)) call self%base%check(error)
     if (.not. allocated(error)) then
       has_begun = .true.
@@ -114,10 +114,10 @@ contains
       self%notes = count_lines(notes_on_results(self%base%case, report))
       if (allocated(self%base%case%notes)) self%notes = self%notes + count_lines(self%base%case%notes)
     end if
-    call put_run(self%run_row, number, self%values, outcome, has_begun, self%notes, self%watch, report, self%base%case)
+    call add_run(self%run_row, number, self%values, outcome, has_begun, self%notes, self%watch, report, self%base%case)
     if (.not. self%is_done) return
-    if (self%watch%keeps_cycles) call put_cycles(self%cycle_rows, number, self%watch, self%base%case)
-    call put_strobes(self%strobe_rows, number, self%watch)
+    if (self%watch%keeps_cycles) call add_cycles(self%cycle_rows, number, self%watch, self%base%case)
+    call add_strobes(self%strobe_rows, number, self%watch)
   end subroutine run
 
   !> Carry out the run whose values have been set. If the user interrupts it, it is abandoned.

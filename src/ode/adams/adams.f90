@@ -10,7 +10,7 @@
 !> - while order and step size rise after a start, a step may grow as far as its error at the present order allows, up to 64 times,
 !>   instead of only twice: the published doubling needs 20 steps from the first step of order 1 to the step size of free flight;
 !> - later a step may also grow by a quarter instead of only by doubling; the order may rise at varying step size too, except while
-!>   stability limits the step, where the higher order only reduces the limit. Measured together (scripts/compare_adams.sh,
+!>   stability limits the step, where the higher order only reduces the limit. Measured together (scripts/bench/compare_adams.sh,
 !>   evaluations at 1e-6 ... 1e-12): dry contact -23 ... -36 %, film scenes -12 ... -18 %, the standard battery +13 % at 1e-3, -22 %
 !>   at 1e-12;
 !> - steps are shortened where the problem says that f is about to lose its smoothness;
@@ -20,7 +20,7 @@
 !>
 !> The error of a step is its weighted Euclidean norm, as in the published code.
 module adams
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t, step_admitted, step_too_far
   use ode_method, only: ode_method_t, highest_order, step_done, step_too_small, tolerance_too_small, left_domain, limit_start
   use adams_coefficients, only: adams_coefficients_t
@@ -138,9 +138,9 @@ module adams
     !> Shorten a step that ends near the instant at which f loses its smoothness. Error estimates of high order do not detect a
     !> branch point ahead. Measured for dry contact, whose force ends with the power 1.5 of the remaining time: limiting a step to a
     !> sixth of that time halves the rejections and costs 9 % less at equal error.
-    pure module subroutine respect_rough_time(self)
+    pure module subroutine shorten_before_kink(self)
       class(adams_t), intent(inout) :: self
-    end subroutine respect_rough_time
+    end subroutine shorten_before_kink
 
     !> Count what limited the step. It was stability if h rho is near the limit of the order although the fastest mode, with the
     !> rate rho, has decayed. rho is |f_new - f_predicted|/|y_new - y_predicted| (as in Hairer & Wanner 1996, IV.2), or 0 if the
@@ -185,7 +185,7 @@ contains
     integer :: outcome, failures
 
     call weigh(self)
-    call respect_rough_time(self)
+    call shorten_before_kink(self)
     failures = 0
     outcome = try_accepted
     if (0.5_dp**2 < 2**2*self%rounding_square .and. .not. self%settings%fixed_step > 0) then
@@ -237,13 +237,13 @@ contains
     real(dp), intent(out) :: fraction   !! fraction of the step to be tried next, if the problem refused it
     real(dp) :: squares(3), time_rate
     integer :: k, k_before, verdict
-    logical :: inside
+    logical :: in_domain
 
     fraction = 0.5_dp
     outcome = try_outside
     self%statistics%evaluations = self%statistics%evaluations + 1
-    call problem%derivatives(t_new, self%predicted, self%f_predicted, inside)
-    if (.not. inside) return
+    call problem%derivatives(t_new, self%predicted, self%f_predicted, in_domain)
+    if (.not. in_domain) return
     k = self%k
     k_before = max(k - 1, 1)
     time_rate = merge(2*x_new, 1.0_dp, self%rooted)
@@ -260,12 +260,12 @@ contains
       if (verdict /= step_admitted) return
     end if
     self%statistics%evaluations = self%statistics%evaluations + 1
-    call problem%derivatives(t_new, self%y_new, self%f_new, inside)
-    if (.not. inside) then
+    call problem%derivatives(t_new, self%y_new, self%f_new, in_domain)
+    if (.not. in_domain) then
       fraction = 0.5_dp
       return
     end if
-    call take_by_clock(self%n, time_rate, self%f_predicted, self%inverse_weight, self%f_new, errors%change)
+    call rates_by_clock(self%n, time_rate, self%f_predicted, self%inverse_weight, self%f_new, errors%change)
     outcome = try_accepted
   end subroutine attempt
 
@@ -314,7 +314,7 @@ contains
 
   !> Convert f from the derivative with respect to time to that with respect to the independent variable; `square` is the square of
   !> the norm of its change from `before`.
-  pure subroutine take_by_clock(n, time_rate, before, inverse_weight, f, square)
+  pure subroutine rates_by_clock(n, time_rate, before, inverse_weight, f, square)
     integer, intent(in) :: n
     real(dp), intent(in) :: time_rate, before(n), inverse_weight(n)
     real(dp), intent(inout) :: f(n)
@@ -326,5 +326,5 @@ contains
       f(i) = time_rate*f(i)
       square = square + ((f(i) - before(i))*inverse_weight(i))**2
     end do
-  end subroutine take_by_clock
+  end subroutine rates_by_clock
 end module adams

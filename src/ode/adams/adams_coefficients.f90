@@ -1,6 +1,6 @@
 !> Coefficients of the variable-step Adams formulas in modified divided differences (Shampine & Gordon 1975, ch. 5).
 module adams_coefficients
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_method, only: highest_order
   implicit none
   private
@@ -23,12 +23,12 @@ module adams_coefficients
     real(dp) :: g(highest_order + 1) = 0      !! g_i = integral of the i-th Newton basis polynomial over the step, divided by h
     real(dp) :: v(highest_order) = 0          !! column of the recurrence for g, kept between steps
     real(dp) :: beta_next = 1, sigma_next = 1 !! beta_k+1 and sigma_k+2, if the difference of order k is known
-    real(dp) :: psi_before = 0                !! psi_k before the step, used by `take_back`
+    real(dp) :: psi_before = 0                !! psi_k before the step, used by `undo_update`
     integer :: ns = 0                         !! number of steps with the present step size, including this one
   contains
     procedure :: reset
     procedure :: update
-    procedure :: take_back
+    procedure :: undo_update
   end type adams_coefficients_t
 
 contains
@@ -136,7 +136,7 @@ contains
   end subroutine update_g
 
   !> Undo the change of psi by a rejected step of size h at order k.
-  pure subroutine take_back(self, h, k)
+  pure subroutine undo_update(self, h, k)
     class(adams_coefficients_t), intent(inout) :: self
     real(dp), intent(in) :: h
     integer, intent(in) :: k
@@ -146,7 +146,7 @@ contains
     end do
     self%psi(k) = self%psi_before
     self%ns = 0
-  end subroutine take_back
+  end subroutine undo_update
 
   !> Newton basis polynomials integrated from t_n+1 to t_n+1 + s (-h <= s <= 0) and divided by s. With them y(t_n+1 + s) = y_n+1 + s
   !> sum_i weights(i) phi_i, i = 1..k+2. The last basis polynomial vanishes at all k+1 points t_n+1..t_n+1-k, so that its

@@ -52,7 +52,7 @@ contains
     real(dp) :: factor
 
     call restore_differences(lanes*self%blocks, self%k, self%coefficients%beta, self%coefficients%beta_next, self%phi)
-    call self%coefficients%take_back(self%h, self%k)
+    call self%coefficients%undo_update(self%h, self%k)
     self%opening = .false.
     factor = fraction
     select case (outcome)
@@ -94,14 +94,14 @@ contains
     if (k >= 3 .and. max(errors%lower, errors%lowest) <= errors%same) errors%order = k - 1
   end procedure estimate_errors
 
-  module procedure respect_rough_time
+  module procedure shorten_before_kink
     real(dp), parameter :: share = 1/6.0_dp   !! largest fraction of the remaining time in one step
     real(dp) :: way
-    if (.not. self%rough_time < huge(1.0_dp) .or. self%settings%fixed_step > 0) return
-    if (time_step(self) <= share**2*(self%rough_time - self%t)) return   ! far from that instant; decided without a square root
-    way = clock_step(self, self%rough_time - self%t)
+    if (.not. self%next_kink_time < huge(1.0_dp) .or. self%settings%fixed_step > 0) return
+    if (time_step(self) <= share**2*(self%next_kink_time - self%t)) return   ! far from that instant; decided without a square root
+    way = clock_step(self, self%next_kink_time - self%t)
     if (self%h > share*way .and. self%h < 2*way) self%h = max(share*way, 0.5_dp*self%h)
-  end procedure respect_rough_time
+  end procedure shorten_before_kink
 
   module procedure count_limit
     real(dp), parameter :: noise = 100

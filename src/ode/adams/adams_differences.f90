@@ -9,7 +9,7 @@
 !> (column k+1 was zero, and column k+2 the negative of the old difference of its order). This is postponed to the next pass over
 !> the table; until then the columns lack the difference `owed`.
 module adams_differences
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: lanes, extrapolate, restore_differences, correct, add_weighted, differences_of

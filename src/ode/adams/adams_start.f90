@@ -8,7 +8,7 @@ submodule (adams) adams_start
 contains
 
   module procedure start
-    logical :: inside
+    logical :: in_domain
 
     if (first .or. .not. allocated(self%phi)) call prepare(self, problem)
     self%t = t
@@ -24,9 +24,9 @@ contains
     self%x_old = self%x
     self%statistics%evaluations = self%statistics%evaluations + 1
     if (.not. first) self%statistics%restarts = self%statistics%restarts + 1
-    call problem%derivatives(t, self%y, self%f_new, inside)
-    status = merge(step_done, start_outside, inside)
-    if (.not. inside) return
+    call problem%derivatives(t, self%y, self%f_new, in_domain)
+    status = merge(step_done, start_outside, in_domain)
+    if (.not. in_domain) return
 
     self%k = 1
     self%k_old = 0
@@ -78,7 +78,7 @@ contains
     class(adams_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     real(dp) :: longest, h, slope, curvature, resolution
-    logical :: inside
+    logical :: in_domain
     integer :: tries
 
     longest = min(self%settings%max_step, self%settings%first_step, self%settings%span)
@@ -94,14 +94,14 @@ contains
     do tries = 1, 60
       self%predicted = self%y + h*self%f_new
       self%statistics%evaluations = self%statistics%evaluations + 1
-      call problem%derivatives(self%t + h, self%predicted, self%f_predicted, inside)
-      if (inside) exit
+      call problem%derivatives(self%t + h, self%predicted, self%f_predicted, in_domain)
+      if (in_domain) exit
       h = 0.1_dp*h
     end do
     curvature = 0
-    if (inside .and. self%rooted) then   ! with respect to x, y'' is 2 f at the start
+    if (in_domain .and. self%rooted) then   ! with respect to x, y'' is 2 f at the start
       curvature = 2*norm(self%n, self%f_predicted, self%inverse_weight)
-    else if (inside) then
+    else if (in_domain) then
       self%f_predicted = self%f_predicted - self%f_new
       curvature = norm(self%n, self%f_predicted, self%inverse_weight)/h
     end if

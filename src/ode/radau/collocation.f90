@@ -8,7 +8,7 @@
 !>
 !> If a trial state leaves the model, Newton's step is halved until it is inside.
 module collocation
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t
   use radau_coefficients, only: radau_formula_t, radau_formula, most_stages
   use small_lu, only: solve

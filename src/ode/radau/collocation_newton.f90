@@ -94,14 +94,14 @@ contains
   module procedure iterate
     real(dp) :: change, defect, last_defect, last_change, ratio, last_ratio, rest
     integer :: iteration, halvings
-    logical :: inside
+    logical :: in_domain
 
     last_change = 0
     last_ratio = 0
     self%contraction = 0
     outcome = newton_outside
-    call evaluate_stages(self, problem, inside)
-    if (.not. inside) return
+    call evaluate_stages(self, problem, in_domain)
+    if (.not. in_domain) return
     do iteration = 1, most_iterations
       self%iterations = iteration
       call newton_step(self, change, defect)
@@ -129,17 +129,17 @@ contains
         outcome = newton_converged
         return
       end if
-      call evaluate_stages(self, problem, inside)
+      call evaluate_stages(self, problem, in_domain)
       do halvings = 1, most_halvings
-        if (inside) exit
+        if (in_domain) exit
         self%dw = 0.5_dp*self%dw   ! take back half of the last step
         self%w = self%w - self%dw
         last_change = 0
         last_ratio = 0
-        call evaluate_stages(self, problem, inside)
+        call evaluate_stages(self, problem, in_domain)
       end do
       outcome = newton_outside
-      if (.not. inside) return
+      if (.not. in_domain) return
     end do
     outcome = newton_diverged
   end procedure iterate
@@ -281,15 +281,15 @@ contains
     real(dp), parameter :: most_rest = 0.03_dp
     real(dp) :: rest
     integer :: i, s
-    logical :: inside
+    logical :: in_domain
     s = self%stages()
     rest = 0
     do i = self%m + self%k + 1, self%n
       rest = rest + (self%h*(f_end(i) - self%f_stage(i, s))*self%inverse_weight(i))**2
     end do
     if (rest <= most_rest**2) return
-    call evaluate_stages(self, problem, inside)
-    if (inside) call integrate_quadratures(self)
+    call evaluate_stages(self, problem, in_domain)
+    if (in_domain) call integrate_quadratures(self)
   end procedure settle_quadratures
 
   module procedure combine
@@ -323,30 +323,30 @@ contains
 
   !> Right-hand sides at the stages of self%w. The states of all stages are computed before the first evaluation, so that
   !> evaluations do not depend on each other.
-  subroutine evaluate_stages(self, problem, inside)
+  subroutine evaluate_stages(self, problem, in_domain)
     class(collocation_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
-    logical, intent(out) :: inside
+    logical, intent(out) :: in_domain
     integer :: done
     call expand_stages(self)
     associate (formula => self%formula(self%level))
-      call evaluate(problem, self%n, formula%stages, self%t, self%h, formula%c, self%y_stage, self%f_stage, done, inside)
+      call evaluate(problem, self%n, formula%stages, self%t, self%h, formula%c, self%y_stage, self%f_stage, done, in_domain)
     end associate
     self%evaluations = self%evaluations + done
   end subroutine evaluate_stages
 
   !> Right-hand sides at the first stages, `done` in number, up to one that is not inside the model.
-  subroutine evaluate(problem, n, stages, t, h, c, y, f, done, inside)
+  subroutine evaluate(problem, n, stages, t, h, c, y, f, done, in_domain)
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: n, stages
     real(dp), intent(in) :: t, h, c(stages), y(n, stages)
     real(dp), intent(inout) :: f(n, stages)
     integer, intent(out) :: done
-    logical, intent(out) :: inside
-    inside = .true.
+    logical, intent(out) :: in_domain
+    in_domain = .true.
     do done = 1, stages
-      call problem%derivatives(t + c(done)*h, y(:, done), f(:, done), inside)
-      if (.not. inside) return
+      call problem%derivatives(t + c(done)*h, y(:, done), f(:, done), in_domain)
+      if (.not. in_domain) return
     end do
     done = stages
   end subroutine evaluate

@@ -3,7 +3,7 @@
 !>
 !> Each step is solved by `collocation`. If that does not converge, or leaves the model, the step is halved.
 module radau
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   use ode_problem, only: ode_problem_t, step_admitted, step_too_far
   use ode_method, only: ode_method_t, step_done, step_too_small, tolerance_too_small, left_domain
   use collocation, only: collocation_t, n_formulas, newton_converged, newton_diverged, newton_outside, guess_ahead
@@ -198,7 +198,7 @@ contains
     integer, intent(out) :: outcome
     real(dp), intent(out) :: fraction
     integer :: verdict, first
-    logical :: inside
+    logical :: in_domain
 
     error = 0
     fraction = 0.5_dp
@@ -222,8 +222,8 @@ contains
       return
     end if
     self%statistics%evaluations = self%statistics%evaluations + 1
-    call problem%derivatives(self%t + self%h, self%y_new, self%f_new, inside)
-    if (.not. inside) then
+    call problem%derivatives(self%t + self%h, self%y_new, self%f_new, in_domain)
+    if (.not. in_domain) then
       outcome = try_outside
       return
     end if
@@ -261,13 +261,13 @@ contains
     class(radau_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     integer, intent(inout) :: outcome
-    logical :: inside
+    logical :: in_domain
 
     self%fresh_jacobian = .false.
     self%y_try = self%y + self%stages%z_new(:, self%stages%stages())
     self%statistics%evaluations = self%statistics%evaluations + 1
-    call problem%derivatives(self%t + self%h, self%y_try, self%f_new, inside)
-    if (.not. inside) return
+    call problem%derivatives(self%t + self%h, self%y_try, self%f_new, in_domain)
+    if (.not. in_domain) return
     call problem%jacobian(self%t + self%h, self%y_try, self%stages%a_p, self%stages%a_v)
     self%statistics%jacobians = self%statistics%jacobians + 1
     call self%stages%solve_stages(problem, guess_ahead, outcome)

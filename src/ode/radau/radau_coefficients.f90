@@ -1,7 +1,7 @@
 !> The Radau IIA formulas of 3, 5 and 7 stages (orders 5, 9, 13), stiffly accurate collocation at the right Radau points.
-!> Written by scripts/radau_coefficients.py, which computes them in 60-digit arithmetic; not edited by hand.
+!> Written by scripts/bench/radau_coefficients.py, which computes them in 60-digit arithmetic; not edited by hand.
 module radau_coefficients
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: radau_formula_t, radau_formula, most_stages

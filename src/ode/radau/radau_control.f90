@@ -38,15 +38,15 @@ contains
 
   module procedure estimate_error
     real(dp), parameter :: farthest = 1e30_dp   !! largest state for which the right-hand side is evaluated, in tolerances
-    logical :: inside
+    logical :: in_domain
 
     call self%stages%filtered_error(f, self%error)
     error = scaled_norm(self, self%error)
     if (error < 1 .or. .not. may_repeat .or. .not. error < farthest) return
     self%y_try = y + self%error
     self%statistics%evaluations = self%statistics%evaluations + 1
-    call problem%derivatives(t, self%y_try, self%f_new, inside)
-    if (.not. inside) return
+    call problem%derivatives(t, self%y_try, self%f_new, in_domain)
+    if (.not. in_domain) return
     call self%stages%filtered_error(self%f_new, self%error)
     error = scaled_norm(self, self%error)
   end procedure estimate_error

@@ -5,7 +5,7 @@ submodule (radau) radau_start
 contains
 
   module procedure start
-    logical :: inside
+    logical :: in_domain
 
     if (first .or. .not. allocated(self%error)) call prepare(self, problem)
     if (first) self%statistics = step_statistics_t()
@@ -16,9 +16,9 @@ contains
     self%order = 0
     self%statistics%evaluations = self%statistics%evaluations + 1
     if (.not. first) self%statistics%restarts = self%statistics%restarts + 1
-    call problem%derivatives(t, self%y, self%f, inside)
-    status = merge(step_done, start_outside, inside)
-    if (.not. inside) return
+    call problem%derivatives(t, self%y, self%f, in_domain)
+    status = merge(step_done, start_outside, in_domain)
+    if (.not. in_domain) return
     self%stages%stages_done = 0
     self%first = .true.
     self%failed = .false.
@@ -85,7 +85,7 @@ contains
     class(radau_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     real(dp) :: longest, h, size_y, slope, curvature
-    logical :: inside
+    logical :: in_domain
     integer :: tries, order
 
     order = self%stages%stages()
@@ -97,12 +97,12 @@ contains
     do tries = 1, 60
       self%y_try = self%y + h*self%f(:size(self%y))
       self%statistics%evaluations = self%statistics%evaluations + 1
-      call problem%derivatives(self%t + h, self%y_try, self%f_new, inside)
-      if (inside) exit
+      call problem%derivatives(self%t + h, self%y_try, self%f_new, in_domain)
+      if (in_domain) exit
       h = 0.1_dp*h
     end do
     curvature = 0
-    if (inside) curvature = scaled_norm(self, self%f_new(:size(self%y)) - self%f(:size(self%y)))/h
+    if (in_domain) curvature = scaled_norm(self, self%f_new(:size(self%y)) - self%f(:size(self%y)))/h
     self%h = 100*h
     if (max(slope, curvature) > 0) self%h = min(self%h, (0.01_dp/max(slope, curvature))**(1.0_dp/(order + 1)))
     self%h = min(self%h, longest)

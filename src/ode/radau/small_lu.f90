@@ -3,7 +3,7 @@
 !> Complex numbers are stored as pairs of reals: library divisions, and products that check for NaN, would cost more than the
 !> arithmetic.
 module small_lu
-  use gudgeon_kinds, only: dp
+  use kinds, only: dp
   implicit none
   private
   public :: decompose, solve

@@ -1,1 +1,0 @@
-"""Pictures from gudgeon's results: figures, comparisons, reports."""

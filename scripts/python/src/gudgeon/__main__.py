@@ -1,0 +1,7 @@
+"""`python -m gudgeon WHAT` is `gudgeon-plot WHAT`."""
+
+import sys
+
+from gudgeon.cli import main
+
+sys.exit(main())

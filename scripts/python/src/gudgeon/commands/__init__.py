@@ -1,0 +1,64 @@
+"""The commands of gudgeon-plot, one module each: `add_arguments(parser)` and `run(options) -> int`."""
+
+import argparse
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Drawing
+
+FORMATS = ("png", "svg", "pdf")
+
+
+class Refused(Exception):
+    """A command line whose options do not fit together."""
+
+
+def number(least: float, *, itself: bool = True, whole: bool = False) -> Callable[[str], float]:
+    """A type for argparse: a finite number of at least `least`; with itself=False larger than it; with `whole` without fraction."""
+    wanted = f"must be a {'whole ' if whole else ''}number {'>=' if itself else '>'} {least:g}"
+
+    def convert(text: str) -> float:
+        try:
+            value = int(text) if whole else float(text)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value) or value < least or (value == least and not itself):
+            raise argparse.ArgumentTypeError(f"{text}: {wanted}")
+        return value
+
+    return convert
+
+
+def _folder(text: str) -> Path:
+    if Path(text).suffix[1:] in FORMATS:
+        raise argparse.ArgumentTypeError(f"{text}: give a folder, since several files are written")
+    return Path(text)
+
+
+def add_output(parser: argparse.ArgumentParser, place: str = "beside the data", several: bool = False) -> None:
+    """Add -o and --format. With `several` pictures -o is a folder; else it may also be a file."""
+    what = "folder" if several else "folder or file"
+    parser.add_argument("-o", "--out", type=_folder if several else Path, metavar="PATH", help=f"{what} for the pictures (default: {place})")
+    parser.add_argument("--format", action="append", choices=FORMATS, help="repeatable (default: png)")
+
+
+def add_results(parser: argparse.ArgumentParser) -> None:
+    """Add the folder in which results are looked for, and --no-run."""
+    parser.add_argument("--results", type=Path, metavar="DIR", help="folder of the results (default: results, or that of the given file)")
+    parser.add_argument("--no-run", action="store_true", help="do not run cases; print the command where a result is missing")
+
+
+def save(drawing: "Drawing", options: argparse.Namespace, folder: Path, stem: str) -> list[Path]:
+    """Write a drawing as -o and --format say, by default into `folder` as `stem`; prints and returns the paths."""
+    from gudgeon.plots import style
+
+    out = options.out
+    if out and out.suffix[1:] in FORMATS:
+        paths = style.save(drawing, out.parent, out.stem, [out.suffix[1:]])
+    else:
+        paths = style.save(drawing, out or folder, stem, options.format or ["png"])
+    print(*paths)
+    return paths

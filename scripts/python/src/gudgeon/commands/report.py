@@ -1,0 +1,51 @@
+"""Writes an HTML page about one run: the mechanism in motion, interactive plots, the case, the summary, warnings.
+
+    gudgeon-plot report sim_V_oscillating             -> results/sim_V_oscillating.html
+    gudgeon-plot report cases/flores/dry_0500um.nml -o dry.html
+    gudgeon-plot report engine                        from results/engine.csv in the current folder
+    gudgeon-plot report sim_IV --cycles crank_speed guide_force
+
+The page is one file and needs no network. It shows the pressure around the pin in a film of finite length if the run has written
+it (&output film_times = 'from:to:count'), and the worn surfaces of a run with &wear. If the result of a shipped case or of a case
+file is missing, the case is run.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+from gudgeon import language
+from gudgeon.commands import add_results
+from gudgeon.plots.film_pressure import fields_of
+from gudgeon.plots.wear import surfaces_of
+from gudgeon.report.page import page
+from gudgeon.results import MissingResult, located
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("case", metavar="RUN", help="name of a run, its trace or its case file")
+    parser.add_argument("-o", "--out", type=Path, metavar="PATH", help="file of the page, or its folder (default: RUN.html beside the trace)")
+    parser.add_argument("--cycles", nargs="+", metavar="COLUMN",
+                        help="columns whose cycles and orders are shown, even if the run has not settled")
+    add_results(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    results, name = located(options.case, options.results, not options.no_run)
+    directory, shown = results.directory, results[name]
+    if not shown.case:
+        raise MissingResult(f"{name}.resolved.nml is missing beside the trace")
+    twin = results[f"{name}.ideal"] if results.has(f"{name}.ideal") else None
+    pressures, worn = directory / f"{name}.film.csv", directory / f"{name}.wear.csv"
+    text = page(shown, twin, fields_of(pressures) if pressures.exists() else None, language.current, options.cycles,
+                surfaces_of(worn) if worn.exists() else None)
+    out = options.out or directory / f"{name}.html"
+    if out.is_dir():
+        out = out / f"{name}.html"
+    try:
+        out.write_text(text, encoding="utf-8")
+    except OSError as problem:
+        print(f"gudgeon-plot report: {out}: {problem.strerror}", file=sys.stderr)
+        return 5
+    print(f"{out}: {len(text.encode('utf-8')) / 1e6:.2f} MB")
+    return 0

@@ -1,0 +1,148 @@
+"""Pictures in another language: when a drawing is saved, its texts are translated and its numbers get decimal commas.
+
+A translation is a text or a template, in which "{}" stands for a part that is translated separately. Lines are translated one by
+one.
+"""
+
+import argparse
+import re
+import sys
+from collections.abc import Iterable
+
+from gudgeon.portuguese import TEXTS, UNTRANSLATED
+from matplotlib.artist import Artist
+from matplotlib.figure import Figure as Drawing
+from matplotlib.text import Text
+from matplotlib.ticker import Formatter, NullFormatter
+
+LANGUAGES = ("en", "pt")
+
+_WORD = re.compile(r"[^\W\d_²³]{2,}")
+_COMMA = re.compile(r"(?<=\d)\.(?=\d)")
+
+
+class Language:
+    """Translates texts. `unknown` collects texts without translation."""
+
+    def __init__(self, name: str = "en") -> None:
+        self.name = name
+        self.unknown: set[str] = set()
+        self.names: set[str] = set()
+        found = TEXTS if name == "pt" else {}
+        self.exact = {text: said for text, said in found.items() if "{}" not in text}
+        self.templates = [
+            (re.compile(re.escape(text).replace(r"\{\}", "(.+?)") + r"\Z", re.DOTALL), said)
+            for text, said in sorted(found.items(), key=lambda item: -len(item[0].replace("{}", "")))
+            if "{}" in text
+        ]
+
+    def keep(self, name: str) -> str:
+        """Take a text as a name that the user gave, which is not translated; the text itself."""
+        self.names.add(name)
+        return name
+
+    @property
+    def is_english(self) -> bool:
+        return self.name == "en"
+
+    def number(self, text: str) -> str:
+        """The text with decimal commas, set in formulas so that no space follows the comma."""
+        return text if self.is_english else _COMMA.sub("{,}" if "$" in text else ",", text)
+
+    def say(self, text: str) -> str:
+        """The translation of a text of one or more lines."""
+        if self.is_english:
+            return text
+        if text.strip() in self.exact:  # a translation of the whole text, with its lines
+            return self.exact[text.strip()]
+        return "\n".join(self._line(line) for line in text.split("\n")).replace("[deg]", "[graus]")
+
+    def _line(self, text: str) -> str:
+        if figure := re.match(r"([0-9A-Z]\.[0-9]+  )(.*)", text):  # numbers of figures keep the decimal point
+            return figure[1] + self._line(figure[2])
+        if text in self.exact:
+            return self.exact[text]
+        if text in self.names:
+            return text
+        for pattern, said in self.templates:
+            if match := pattern.match(text):
+                for part in match.groups():
+                    said = said.replace("{}", self._line(part), 1)
+                return said
+        if text[:1].isupper() and (text[0].lower() + text[1:]) in self.exact:
+            said = self.exact[text[0].lower() + text[1:]]
+            return said[0].upper() + said[1:]
+        if any(word not in UNTRANSLATED for word in _WORD.findall(re.sub(r"\$[^$]*\$|</?\w+>", "", text))):
+            self.unknown.add(text)
+        return self.number(text)
+
+    def localise(self, drawing: Drawing) -> None:
+        """Translate every text of a drawing. Call it once for each drawing."""
+        if self.is_english or getattr(drawing, "_gudgeon_language", "en") == self.name:
+            return
+        drawing.canvas.draw()
+        ticks: set[Artist] = set()
+        for axes in drawing.axes:
+            for axis in axes._axis_map.values():
+                for get, put in (("get_major_formatter", "set_major_formatter"), ("get_minor_formatter", "set_minor_formatter")):
+                    inner = getattr(axis, get)()
+                    if not isinstance(inner, (NullFormatter, LocalFormatter)):
+                        getattr(axis, put)(LocalFormatter(inner, self))
+                ticks.update(label for tick in (*axis.majorTicks, *axis.minorTicks) for label in (tick.label1, tick.label2))
+                ticks.add(axis.offsetText)
+        for text in drawing.findobj(Text):
+            if text not in ticks and text.get_text().strip():
+                text.set_text(self.say(text.get_text()))
+        drawing._gudgeon_language = self.name
+
+    def warn(self, script: str) -> None:
+        """Print a line on standard error if texts have no translation."""
+        if self.unknown:
+            print(f"{script}: no translation of: {'; '.join(sorted(self.unknown))}", file=sys.stderr)
+
+
+class LocalFormatter(Formatter):
+    """Formats numbers as another formatter does, but with decimal commas and translated words."""
+
+    def __init__(self, inner: Formatter, language: Language) -> None:
+        self.inner, self.language = inner, language
+
+    def set_axis(self, axis: object) -> None:
+        super().set_axis(axis)
+        self.inner.set_axis(axis)
+
+    def set_locs(self, locs: object) -> None:
+        self.inner.set_locs(locs)
+
+    def __call__(self, x: float, pos: int | None = None) -> str:
+        return self.language.say(self.inner(x, pos))
+
+    def format_ticks(self, values: Iterable[float]) -> list[str]:
+        return [self.language.say(text) for text in self.inner.format_ticks(values)]
+
+    def get_offset(self) -> str:
+        return self.language.number(self.inner.get_offset())
+
+
+#: The language of all pictures of a script.
+current = Language()
+
+
+def use(name: str) -> Language:
+    """Set the language of all pictures that are saved afterwards."""
+    global current
+    current = Language(name)
+    return current
+
+
+def add_option(parser: argparse.ArgumentParser) -> None:
+    """Add the option --language, which takes effect while the command line is read."""
+
+    class Use(argparse.Action):
+        def __call__(self, parser: object, namespace: argparse.Namespace, value: str, option: str | None = None) -> None:
+            setattr(namespace, self.dest, value)
+            use(value)
+
+    parser.add_argument(
+        "--language", choices=LANGUAGES, default="en", action=Use, help="language of the pictures; pt also has decimal commas (default: en)"
+    )

@@ -1,0 +1,124 @@
+"""Labels of the parameters and results of studies on axes, and the units in which they are shown."""
+
+import re
+import subprocess
+import sys
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from gudgeon.program import release_program
+from gudgeon.results import MissingResult
+
+#: Keys of a case whose names alone are not clear as labels.
+KEYS = {
+    "joint.clearance": "radial clearance",
+    "crank_pin.joint.clearance": "crank pin's radial clearance",
+    "initial.crank_speed": "crank speed",
+    "lubrication.viscosity": "viscosity",
+    "joint.bearing_length": "bearing length",
+    "joint.bearing_radius": "bearing radius",
+    "contact.restitution": "coefficient of restitution",
+    "friction.coefficient": "coefficient of friction",
+    "mechanism.gravity": "gravity",
+    "drive.damping": "damping of the crank",
+}
+
+#: Columns of results whose names alone are not clear as labels.
+COLUMNS = {
+    "min_film_thickness": "smallest film thickness",
+    "min_film_thickness_mean": "smallest film thickness of a revolution, mean",
+    "contact_time_fraction": "time in contact",
+    "max_penetration": "largest penetration",
+    "max_pin_force": "largest pin force",
+    "max_pin_force_mean": "largest pin force of a revolution, mean",
+    "mean_pin_force": "mean pin force",
+    "mean_crank_speed": "mean crank speed",
+    "dissipated_energy": "energy dissipated in a revolution",
+    "rhs_evaluations": "evaluations",
+    "period_revolutions": "period",
+    "lyapunov_exponent": "Lyapunov exponent",
+    "eccentricity_y": "eccentricity across the cylinder",
+    "eccentricity_x": "eccentricity along the cylinder",
+    "piston_velocity": "piston velocity",
+}
+
+#: Units that take a prefix.
+PREFIXED = ("m", "s", "N", "Pa", "J", "W", "Pa s", "N m", "m/s", "m^3/s", "kg")
+PREFIXES = ((1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"), (1e6, "M"), (1e9, "G"))
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A quantity on an axis: its name, its unit, and the factor from its values to that unit."""
+
+    name: str
+    unit: str = ""
+    factor: float = 1.0
+
+    @property
+    def label(self) -> str:
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+def prefixed(unit: str, values: np.ndarray) -> tuple[str, float]:
+    """The unit with the prefix that brings the largest value between 1 and 1000, and the factor to this unit."""
+    sizes = np.abs(values[np.isfinite(values)])
+    if unit not in PREFIXED or not sizes.any():
+        return unit, 1.0
+    largest = sizes.max()
+    if unit == "m^3/s":
+        return ("mm³/s", 1e9) if largest < 1e-3 else ("m³/s", 1.0)
+    fitting = [item for item in PREFIXES if item[0] <= largest * (1 + 1e-9) and not (unit == "kg" and item[0] != 1)]
+    size, prefix = fitting[-1] if fitting else PREFIXES[0] if unit != "kg" else (1.0, "")
+    return prefix + unit, 1.0 / size
+
+
+def plain_unit(unit: str) -> str:
+    """A unit in typographic form; empty for a number without unit."""
+    if unit in ("-", "1", ""):
+        return ""
+    return unit.replace("^2", "²").replace("^3", "³").replace("degrees", "deg")
+
+
+@lru_cache
+def key_units() -> dict[str, str]:
+    """The unit of every key of a case, from the program's template; empty, with a line on standard error, if the program cannot be built or run."""
+    try:
+        text = subprocess.run([release_program(), "--template"], capture_output=True, text=True, check=True).stdout
+    except (MissingResult, OSError, subprocess.CalledProcessError) as problem:
+        print(f"parameters of studies are drawn without units: {problem}", file=sys.stderr)
+        return {}
+    units, group = {}, ""
+    for line in text.splitlines():
+        if line.startswith("&"):
+            group = line[1:].strip()
+        elif match := re.match(r"\s*(\w+) = .*?! ([^,:]+)[,:]", line):
+            found = match[2].strip()
+            units[f"{group}.{match[1]}"] = "" if re.match(r"[<>]|one of|required|default", found) else found
+    return units
+
+
+def of_parameter(key: str, values: np.ndarray) -> Shown:
+    """A key of a study, as an axis shows it."""
+    own = key.split(".")[-2:]
+    name = KEYS.get(key) or own[-1].replace("_", " ")
+    unit = key_units().get(".".join(own), "")
+    unit = unit if re.fullmatch(r"[\w/ ^.]{1,12}", unit) and " " not in unit.replace("Pa s", "").replace("N m", "") else ""
+    shown, factor = prefixed(unit, np.asarray(values, dtype=float))
+    return Shown(name, plain_unit(shown), factor)
+
+
+def of_column(column: str, unit: str, values: np.ndarray) -> Shown:
+    """A column of a study's results, as an axis shows it. A film thickness that is negative in every run is shown as a
+    penetration."""
+    values = np.asarray(values, dtype=float)
+    finite = values[np.isfinite(values)]
+    if column == "min_film_thickness" and finite.size and (finite < 0).all():
+        shown, factor = prefixed(unit, values)
+        return Shown("largest penetration", shown, -factor)
+    name = COLUMNS.get(column) or column.replace("_", " ")
+    if column.endswith("_fraction"):
+        return Shown(name, "%", 100.0)
+    shown, factor = prefixed(unit, values)
+    return Shown(name, plain_unit(shown), factor)

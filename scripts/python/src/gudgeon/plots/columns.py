@@ -1,0 +1,79 @@
+"""Columns of runs over time or crank angle."""
+
+from collections.abc import Sequence
+
+import matplotlib.pyplot as plt
+import numpy as np
+from gudgeon.names import prefixed
+from gudgeon.plots import style
+from gudgeon.plots.quantity import shade_uncertified
+from gudgeon.plots.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILION,
+    WIDTH,
+)
+from gudgeon.results import Run
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+
+COLOURS = (BLUE, VERMILION, GREEN, BLACK, ORANGE, PURPLE, SKY)
+
+#: Columns that are drawn by default, those that the runs have.
+DEFAULT = ("crank_speed", "piston_acceleration", "pin_force", "film_thickness", "cylinder_pressure")
+
+
+def values_of(run: Run, column: str) -> np.ndarray:
+    """A column of a run, or the magnitude of a vector of which it has the columns _x and _y. Raises MissingResult if it has neither."""
+    if column not in run and f"{column}_x" in run:
+        return np.hypot(run[f"{column}_x"], run[f"{column}_y"])
+    return run[column]
+
+
+def available(run: Run) -> list[str]:
+    """The default columns that a run has."""
+    return [name for name in DEFAULT if name in run or f"{name}_x" in run]
+
+
+def plot_column(axis: Axes, runs: Sequence[Run], column: str, over: str = "crank_angle", cycle: int | None = None) -> None:
+    """Draw one column of several runs on an axis, over "time" [ms] or "crank_angle" [deg]; `cycle` chooses one cycle, counted from 0, or
+    from the end if negative."""
+    values = [values_of(run, column) for run in runs]
+    unit = runs[0].units.get(column, runs[0].units.get(f"{column}_x", ""))
+    shown, factor = prefixed(unit, np.concatenate(values))
+    for run, column_values, colour in zip(runs, values, COLOURS * len(runs)):
+        rows = rows_of_cycle(run, cycle)
+        x = 1e3 * run["time"][rows] if over == "time" else np.degrees(run["crank_angle"][rows])
+        axis.plot(x, factor * column_values[rows], color=colour, label=run.name)
+        if cycle is None and len(runs) == 1:
+            shade_uncertified(axis, run, x)
+    axis.set_ylabel(f"{column.replace('_', ' ')}\n[{shown}]" if shown else column.replace("_", " "))
+
+
+def rows_of_cycle(run: Run, cycle: int | None) -> slice:
+    """The rows of one whole cycle of a run, or all rows."""
+    if cycle is None:
+        return slice(None)
+    travel = np.abs(run["crank_angle"] - run["crank_angle"][0]) / run.cycle
+    whole = max(int(travel[-1] + 1e-6), 1)
+    wanted = cycle if cycle >= 0 else whole + cycle
+    found = np.flatnonzero((travel >= wanted - 1e-9) & (travel <= wanted + 1 + 1e-9))
+    return slice(found[0], found[-1] + 1) if found.size else slice(0, 0)
+
+
+def draw(runs: Sequence[Run], columns: Sequence[str], over: str = "crank_angle", cycle: int | None = None) -> Drawing:
+    """One axis for each column, with all runs."""
+    drawing, axes = plt.subplots(len(columns), 1, figsize=(WIDTH, 0.6 + 1.6 * len(columns)), sharex=True, squeeze=False)
+    for axis, column in zip(axes[:, 0], columns):
+        plot_column(axis, runs, column, over, cycle)
+    axes[-1, 0].set_xlabel("time [ms]" if over == "time" else "crank angle [deg]")
+    drawing.align_ylabels()
+    if len(runs) > 1:
+        style.add_legend(drawing, axes.flat)
+    else:
+        drawing.suptitle(runs[0].name)
+    return drawing

@@ -1,0 +1,106 @@
+"""Pictures of settled cycles: means with their scatter, orders and spectra, loads on the bearings, the indicator diagram."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from gudgeon.cycles import Cycles, bearing_loads, orders, spectrum
+from gudgeon.plots.style import BLACK, BLUE, GREY, ORANGE, VERMILION, WIDTH
+from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import MaxNLocator
+
+HEIGHT = 1.7  # height of a row [inch]
+
+
+def label(cycles: Cycles, column: str) -> str:
+    """Name and unit of a column, as an axis label."""
+    unit = cycles.run.units.get(column, "")
+    return column.replace("_", " ") + (f" [{unit}]" if unit and unit != "-" else "")
+
+
+def draw_means(cycles: Cycles, columns: list[str]) -> Drawing:
+    """Each column over the cycle: single cycles as thin lines, their mean, and a band of one standard deviation on both sides."""
+    drawing, axes = plt.subplots(len(columns), 1, figsize=(WIDTH, 0.5 + HEIGHT * len(columns)), sharex=True, squeeze=False)
+    order = np.argsort(cycles.place)
+    angle = np.degrees(cycles.place[order])
+    for axis, column in zip(axes[:, 0], columns):
+        values = cycles[column][:, order]
+        mean, scatter = values.mean(axis=0), values.std(axis=0)
+        for k in range(min(cycles.number, 40)):
+            axis.plot(angle, values[k], color=GREY, linewidth=0.25, alpha=0.6, label="single cycles" if k == 0 else None)
+        axis.fill_between(angle, mean - scatter, mean + scatter, color=ORANGE, alpha=0.45, linewidth=0, label="standard deviation")
+        axis.plot(angle, mean, color=BLUE, label="mean")
+        axis.set_ylabel(label(cycles, column))
+    axes[-1, 0].set_xlabel("crank angle within the cycle [deg]")
+    axes[-1, 0].set_xticks(np.arange(0, np.degrees(cycles.length) + 1, 90))
+    drawing.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    what = "a revolution" if cycles.length < 7 else f"{cycles.length / (2 * np.pi):g} revolutions"
+    drawing.suptitle(f"{cycles.run.name}: {cycles.number} {'cycle' if cycles.number == 1 else 'cycles'} of {what}")
+    return drawing
+
+
+def draw_orders(cycles: Cycles, columns: list[str], highest: float) -> Drawing:
+    """Amplitudes by order, and the amplitude density by frequency, of each column."""
+    drawing, axes = plt.subplots(len(columns), 2, figsize=(WIDTH, 0.5 + HEIGHT * len(columns)), squeeze=False)
+    for (left, right), column in zip(axes, columns):
+        table = orders(cycles, column)
+        table = table[(table["order"] > 0) & (table["order"] <= highest)]
+        width = 0.7 * (table["order"].iloc[1] - table["order"].iloc[0]) if len(table) > 1 else 0.5
+        left.bar(table["order"], table["amplitude"], width=width, color=BLUE)
+        if cycles.number > 1:
+            left.errorbar(table["order"], table["amplitude"], yerr=table["scatter"], fmt="none", ecolor=VERMILION, elinewidth=0.7)
+        left.set_ylabel(label(cycles, column))
+        left.set_ylim(bottom=0)
+        frequency, density = spectrum(cycles, column)
+        shown = (frequency > 0) & (density > 0)
+        right.loglog(frequency[shown], density[shown], color=BLACK, linewidth=0.6)
+        if shown.any():
+            top = density[shown].max()
+            right.set_ylim(top * 1e-6, top * 3)
+    axes[0, 0].set_title("amplitude by order" + (" (bars: scatter from cycle to cycle)" if cycles.number > 1 else ""))
+    axes[0, 1].set_title("amplitude density [unit/√Hz]")
+    axes[-1, 0].set_xlabel("order: cycles in a revolution")
+    axes[-1, 1].set_xlabel("frequency [Hz]")
+    drawing.suptitle(cycles.run.name)
+    return drawing
+
+
+def draw_bearings(cycles: Cycles) -> Drawing:
+    """Polar plots of the loads on the bearings: the mean cycle dark, single cycles light. Dots mark each 90 degrees of the crank,
+    or each 180 degrees where a cycle has two revolutions."""
+    loads = bearing_loads(cycles)
+    drawing, axes = plt.subplots(
+        1, len(loads), figsize=(WIDTH, WIDTH / len(loads) + 0.6), subplot_kw={"projection": "polar"}, squeeze=False
+    )
+    marks = [int(np.argmin(np.abs(cycles.place - k * cycles.length / 4))) for k in range(4)]
+    for axis, (name, force) in zip(axes[0], loads.items()):
+        for k in range(min(cycles.number, 20)):
+            x, y = force[0, k], force[1, k]
+            axis.plot(np.arctan2(y, x), np.hypot(x, y) / 1e3, color=GREY, linewidth=0.25, alpha=0.6)
+        x, y = force.mean(axis=1)
+        x, y = np.append(x, x[0]), np.append(y, y[0])
+        axis.plot(np.arctan2(y, x), np.hypot(x, y) / 1e3, color=BLUE)
+        for mark in marks:
+            axis.plot(np.arctan2(y[mark], x[mark]), np.hypot(x[mark], y[mark]) / 1e3, "o", color=VERMILION, markersize=2.5)
+            axis.annotate(
+                f"{np.degrees(cycles.place[mark]):.0f}", (np.arctan2(y[mark], x[mark]), np.hypot(x[mark], y[mark]) / 1e3),
+                fontsize=6, xytext=(2, 3), textcoords="offset points", color=VERMILION,
+            )
+        axis.set_title(name.replace(", ", ",\n") + " [kN]", pad=6)
+        axis.set_xticks(np.radians([0, 90, 180, 270]))
+        axis.yaxis.set_major_locator(MaxNLocator(3))
+        axis.tick_params(labelsize=5.5, labelcolor=GREY, pad=0)
+        axis.set_rlabel_position(60)
+    drawing.suptitle(f"{cycles.run.name}: loads on the bearings, mean cycle blue; dots: crank angle [deg]")
+    return drawing
+
+
+def draw_indicator(cycles: Cycles) -> Drawing:
+    """Pressure over volume: single cycles light, the mean dark."""
+    drawing, axis = plt.subplots(figsize=(0.65 * WIDTH, 0.5 * WIDTH))
+    volume, pressure = cycles["cylinder_volume"] * 1e6, cycles["cylinder_pressure"] / 1e5
+    for k in range(min(cycles.number, 40)):
+        axis.plot(volume[k], pressure[k], color=GREY, linewidth=0.3)
+    axis.plot(volume.mean(axis=0), pressure.mean(axis=0), color=BLUE)
+    axis.set_xlabel("cylinder volume [cm³]")
+    axis.set_ylabel("cylinder pressure [bar]")
+    axis.set_title(cycles.run.name)
+    return drawing

@@ -1,0 +1,88 @@
+"""Pictures of films: the pressure in the bearing at chosen times, and the six simulations with each film."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from gudgeon.plots.style import BLACK, BLUE, GREEN, VERMILION, WIDTH
+from gudgeon.results import Results, Run
+from matplotlib.figure import Figure as Drawing
+
+SIMULATIONS = ("I", "II", "III", "IV", "V", "VI")
+#: Ending of the case's name, film, colour.
+FILMS = (("", "Pinkus–Sternlicht", BLUE), ("_oscillating", "oscillating", VERMILION), ("_finite", "finite length", GREEN))
+
+
+def grid_of(field: pd.DataFrame) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Angles around the bore [rad] from -pi to pi, positions along its whole length [m], pressures (positions, angles) [Pa], film
+    thickness at the angles [m]."""
+    angle = (field["angle"] + np.pi) % (2 * np.pi) - np.pi
+    table = field.assign(angle=angle).pivot(index="place", columns="angle", values="pressure")
+    thickness = field.assign(angle=angle).groupby("angle")["film_thickness"].first().to_numpy()
+    angles, half = table.columns.to_numpy(), table.to_numpy()
+    places = np.concatenate([-table.index.to_numpy()[:0:-1], table.index.to_numpy()])
+    pressure = np.concatenate([half[:0:-1], half])
+    seam = 0.5 * (pressure[:, :1] + pressure[:, -1:])   # pressure at -pi and pi, midway between the outer nodes
+    ends = 0.5 * (thickness[0] + thickness[-1])
+    return (np.concatenate([[-np.pi], angles, [np.pi]]), places, np.hstack([seam, pressure, seam]),
+            np.concatenate([[ends], thickness, [ends]]))
+
+
+def pressure_fields(run: Run, fields: list[pd.DataFrame], name: str) -> Drawing:
+    """One row for each time: the pressure over the unrolled bore, and the pressure in its middle plane with the film thickness."""
+    drawing, axes = plt.subplots(len(fields), 2, figsize=(WIDTH, 0.5 + 1.75 * len(fields)), squeeze=False,
+                                 gridspec_kw={"width_ratios": (3, 2)})
+    for (left, right), field in zip(axes, fields):
+        angles, places, pressure, thickness = grid_of(field)
+        degrees, mega = np.degrees(angles), 1e-6 * pressure
+        top = max(mega.max(), 1e-9)
+        mesh = left.pcolormesh(degrees, 1e3 * places, mega, cmap="viridis", vmin=0, vmax=top, shading="gouraud")
+        left.contour(degrees, 1e3 * places, mega, levels=top * np.array([0.02, 0.25, 0.5, 0.75]), colors="white", linewidths=0.4)
+        drawing.colorbar(mesh, ax=left, pad=0.01)
+        left.axvline(degrees[np.argmin(thickness)], color="white", linewidth=0.6, linestyle=":")
+        time, crank = field["time"].iloc[0], np.degrees(field["crank_angle"].iloc[0]) % 720
+        left.set_title(f"{1e3 * time:.4g} ms, crank at {crank:.1f}° of 720°: {mega.max():.3g} MPa, "
+                       f"film {1e6 * thickness.min():.3g} µm", loc="left")
+        left.set_ylabel("along the bore [mm]")
+        left.grid(False)
+        right.plot(degrees, mega[len(places) // 2], color=BLACK)
+        right.set_ylabel("in the middle [MPa]")
+        right.set_ylim(bottom=0)
+        other = right.twinx()
+        other.plot(degrees, 1e6 * thickness, color=BLUE)
+        other.set_ylabel("film thickness [µm]", color=BLUE)
+        other.set_ylim(bottom=0)
+        other.grid(False)
+        other.tick_params(colors=BLUE)
+        for axis in (left, right):
+            axis.set_xlim(-180, 180)
+            axis.set_xticks(range(-180, 181, 90))
+    axes[-1, 0].set_xlabel("angle in the bearing, from the cylinder axis [°]")
+    axes[-1, 1].set_xlabel("angle in the bearing [°]")
+    drawing.suptitle(f"{name}: pressure of the film over the bore [MPa] (dotted: where it is thinnest)")
+    return drawing
+
+
+def simulations(results: Results) -> Drawing:
+    """Film thickness and pin force of the six simulations over the crank's last two revolutions, each with every film."""
+    drawing, axes = plt.subplots(len(SIMULATIONS), 2, figsize=(WIDTH, 1.5 * len(SIMULATIONS)), squeeze=False)
+    for (left, right), simulation in zip(axes, SIMULATIONS):
+        for ending, film, colour in FILMS:
+            run = results[f"sim_{simulation}{ending}"]
+            turns = run["crank_angle"] / (2 * np.pi)
+            last = turns >= np.floor(turns[-1] + 1e-6) - 2
+            x = turns[last] - turns[last][0] + (turns[last][0] - np.floor(turns[last][0] + 1e-6))
+            size = np.hypot(run["pin_force_x"], run["pin_force_y"])[last]
+            shown = run["film_thickness"][last] > 0
+            left.plot(x, np.where(shown, 1e6 * run["film_thickness"][last], np.nan), color=colour, label=film)
+            right.plot(x, 1e-3 * size, color=colour, label=film)
+        left.set_yscale("log")
+        left.set_ylabel(f"{simulation}: film [µm]")
+        right.set_ylabel("pin force [kN]")
+        for axis in (left, right):
+            axis.set_xlim(0, 2)
+    for axis in axes[-1]:
+        axis.set_xlabel("revolutions, the last two of the run")
+    handles, labels = axes[0, 1].get_legend_handles_labels()
+    drawing.legend(handles, labels, loc="outside lower center", ncols=3)
+    drawing.suptitle("Simulations I to VI with three films: film at its thinnest (gaps: the pin touches), pin force")
+    return drawing

@@ -1,0 +1,527 @@
+"""The page of one run: everything in one HTML file that needs no network.
+
+The trace is stored as float32 columns, and plotly.js unchanged; both are compressed by gzip and unpacked by the browser.
+"""
+
+import base64
+import gzip
+import html
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from gudgeon.language import Language
+from gudgeon.names import prefixed
+from gudgeon.plots import film_pressure
+from gudgeon.plots import wear as wear_pictures
+from gudgeon.plots.style import BLACK, BLUE, GREEN, PURPLE, VERMILION
+from gudgeon.report import cycles as report_cycles
+from gudgeon.results import Run
+from plotly.offline import get_plotlyjs
+
+PAGE = Path(__file__).parent / "assets"
+
+#: A trace with more rows is thinned out; peaks are kept.
+MOST_ROWS = 8000
+
+#: Angles around the pin at which the film's pressure is drawn.
+ANGLES = 72
+
+#: Axes of an orbit.
+ECCENTRICITIES = ("<i>e<sub>y</sub></i> / <i>c</i>", "<i>e<sub>x</sub></i> / <i>c</i>")
+
+#: Quantities of a summary that concern the program and not the run.
+OF_THE_PROGRAM = ("identity", "version", "compiler", "compiler_options", "trace_bytes", "events_bytes")
+
+#: Corners of a skirt in its bore, and their names on the page.
+CORNERS = {1: "top, +y", 2: "bottom, +y", 3: "top, -y", 4: "bottom, -y"}
+
+#: Columns that the animation needs, if the run has them.
+MOTION = (
+    "time",
+    "crank_angle",
+    "rod_angle",
+    "piston_position",
+    "crank_speed",
+    "pin_force_x",
+    "pin_force_y",
+    "eccentricity_x",
+    "eccentricity_y",
+    "film_thickness",
+    "phase",
+    "normal_force",
+    "cylinder_pressure",
+    *(f"rod_mode_{k}" for k in range(1, 9)),
+    "crank_pin_eccentricity_x",
+    "crank_pin_eccentricity_y",
+    "crank_pin_phase",
+    "piston_offset",
+    "piston_tilt",
+    *(f"guide_{corner}_force" for corner in CORNERS),
+)
+
+#: Plots over time: column, title, unit shown, factor; with the curve of the ideal joint if there is such a run.
+OVER_TIME = (
+    ("film_thickness", "Film thickness (below 0: penetration)", "µm", 1e6),
+    ("pin_force", "Pin force", "kN", 1e-3),
+    ("normal_force", "Contact force", "kN", 1e-3),
+    ("crank_pin_film_thickness", "Crank pin: film thickness (below 0: penetration)", "µm", 1e6),
+    ("crank_pin_normal_force", "Crank pin: contact force", "kN", 1e-3),
+    ("crank_speed", "Crank speed", "rad/s", 1.0),
+    ("crank_acceleration", "Crank angular acceleration", "10³ rad/s²", 1e-3),
+    ("rod_acceleration", "Rod angular acceleration", "10³ rad/s²", 1e-3),
+    ("piston_acceleration", "Piston acceleration", "10³ m/s²", 1e-3),
+    ("rod_mid_deflection", "Rod: deflection half way", "µm", 1e6),
+    ("rod_stretch", "Rod: stretch", "µm", 1e6),
+    ("rod_strain_energy", "Rod: strain energy", "mJ", 1e3),
+    ("crankshaft_twist", "Crankshaft: twist", "mrad", 1e3),
+    ("crank_moment", "Crank moment", "N m", 1.0),
+    ("guide_force", "Guide force", "kN", 1e-3),
+    ("guide_friction_force", "Friction of the piston on its guide", "N", 1.0),
+    ("piston_offset", "Piston across its bore", "µm", 1e6),
+    ("piston_tilt", "Tilt of the piston", "mrad", 1e3),
+    ("gas_force", "Gas force", "kN", 1e-3),
+    ("energy_residual", "Energy residual", "J", 1.0),
+)
+
+#: Plots in which the run of the ideal joint has a plot of its own, because the quantity is a property of that run.
+APART = ("energy_residual",)
+
+
+def packed(data: bytes) -> str:
+    """Bytes compressed by gzip, as base64 text; equal bytes give equal texts."""
+    return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode("ascii")
+
+
+def chosen_rows(columns: list[np.ndarray], most: int = MOST_ROWS) -> np.ndarray:
+    """Rows to keep: all, or for each stretch of rows the first and those with the smallest and largest value of every column."""
+    rows = len(columns[0])
+    if rows <= most:
+        return np.arange(rows)
+    stretches = max(1, most // (2 * len(columns) + 1))
+    bounds = np.linspace(0, rows, stretches + 1).astype(int)
+    kept = {0, rows - 1}
+    for low, high in zip(bounds, bounds[1:]):
+        kept.add(int(low))
+        for values in columns:
+            kept.update((int(low + values[low:high].argmin()), int(low + values[low:high].argmax())))
+    return np.array(sorted(kept))
+
+
+def with_sizes(run: Run) -> dict[str, np.ndarray]:
+    """The run's columns, and the magnitude of the pin's force."""
+    columns = {name: run[name] for name in run.trace.columns}
+    columns["pin_force"] = np.hypot(run["pin_force_x"], run["pin_force_y"])
+    return columns
+
+
+def is_informative(values: np.ndarray) -> bool:
+    return bool(np.ptp(values) > 0)
+
+
+def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
+    """The plots of the page, in the form that its script expects: curves refer to columns by name."""
+    found = []
+    for name, title, unit, factor in OVER_TIME:
+        if name not in columns or not is_informative(columns[name]):
+            continue
+        curves = [{"name": "this run", "x": "time", "x_factor": 1e3, "y": name, "y_factor": factor, "colour": BLUE}]
+        if name in APART:
+            for run_name, said in ((name, title), (f"ideal {name}", f"{title} of the ideal joint's run")):
+                if run_name in columns and is_informative(columns[run_name]):
+                    shown_unit, factor = prefixed(unit, columns[run_name])
+                    curve = {"name": said, "x": "time", "x_factor": 1e3, "y": run_name, "y_factor": factor, "colour": BLUE}
+                    if run_name != name:
+                        curve["colour"] = BLACK
+                    found.append({"title": said, "x": "time [ms]", "y": shown_unit, "timed": True, "curves": [curve]})
+            continue
+        if f"ideal {name}" in columns:
+            curves.append(
+                {
+                    "name": "ideal joint",
+                    "x": "time",
+                    "x_factor": 1e3,
+                    "y": f"ideal {name}",
+                    "y_factor": factor,
+                    "colour": BLACK,
+                    "dash": "dash",
+                }
+            )
+        found.append({"title": title, "x": "time [ms]", "y": unit, "timed": True, "curves": curves})
+
+    for quantity, title, unit, factor in (
+        ("gap", "Gaps of the skirt's corners (below 0: penetration)", "µm", 1e6),
+        ("force", "Forces on the skirt's corners", "kN", 1e-3),
+    ):
+        curves = [
+            {
+                "name": said,
+                "x": "time",
+                "x_factor": 1e3,
+                "y": f"guide_{corner}_{quantity}",
+                "y_factor": factor,
+                "colour": colour,
+            }
+            for (corner, said), colour in zip(CORNERS.items(), (BLUE, GREEN, VERMILION, PURPLE))
+            if f"guide_{corner}_{quantity}" in columns
+        ]
+        if curves:
+            found.append({"title": title, "x": "time [ms]", "y": unit, "timed": True, "curves": curves})
+
+    def plane(title: str, x: str, y: str, names: tuple[str, str], factors: tuple[float, float], **more: object) -> dict:
+        curve: dict[str, object] = {
+            "name": title,
+            "x": names[0],
+            "x_factor": factors[0],
+            "y": names[1],
+            "y_factor": factors[1],
+            "colour": BLUE,
+        }
+        return {"title": title, "x": x, "y": y, "timed": False, "square": True, "curves": [curve], **more}
+
+    if run.clearance:
+        found.append(
+            plane(
+                "Pin orbit over the clearance",
+                *ECCENTRICITIES,
+                ("eccentricity_y", "eccentricity_x"),
+                (1 / run.clearance,) * 2,
+                circle=True,
+                phase="phase",
+            )
+        )
+    if crank_pin := float(run.parameter("crank_pin.joint", "clearance", 0.0)) if "crank_pin_phase" in columns else 0.0:
+        found.append(
+            plane(
+                "Orbit of the crank pin",
+                *ECCENTRICITIES,
+                ("crank_pin_eccentricity_y", "crank_pin_eccentricity_x"),
+                (1 / crank_pin,) * 2,
+                circle=True,
+                phase="crank_pin_phase",
+            )
+        )
+    found.append(
+        plane(
+            "Piston: velocity and acceleration",
+            "velocity [m/s]",
+            "acceleration [10³ m/s²]",
+            ("piston_velocity", "piston_acceleration"),
+            (1.0, 1e-3),
+        )
+    )
+    if "cylinder_volume" in columns:
+        found.append(
+            plane(
+                "p–V diagram", "volume [cm³]", "pressure [bar]", ("cylinder_volume", "cylinder_pressure"), (1e6, 1e-5)
+            )
+        )
+    return found
+
+
+def warnings(run: Run) -> list[str]:
+    """Warnings about a run."""
+    found = []
+
+    def number(name: str) -> float | None:
+        text = run.summary.get(name, ("", ""))[0]
+        try:
+            return float(text)
+        except ValueError:
+            return None
+
+    if (until := run.certified_until) is not None:
+        found.append(
+            f"The run is certified up to {1e3 * until:.4g} ms: beyond, shaded in the plots, single values are not reliable. How far "
+            "results of the whole run are is in the summary (..._difference)."
+        )
+    status = run.summary.get("status", ("unknown", ""))[0]
+    if status != "done":
+        found.append(f"The run did not end as requested: {status}.")
+    for prefix, place, at in (("", "", ""), ("crank_pin_", "crank_pin.", " at the crank pin")):
+        contacts = number(f"{prefix}contacts") or 0
+        if (beyond := number(f"{prefix}impacts_beyond_validity") or 0) > 0:
+            found.append(
+                f"{beyond:.0f} of {contacts:.0f} impacts{at} were faster than the contact law's limit of "
+                "validity, 1e-5 √(E/ρ)."
+            )
+        if (deep := number(f"{prefix}contacts_beyond_validity") or 0) > 0:
+            found.append(
+                f"{deep:.0f} of {contacts:.0f} contacts{at} penetrated deeper than the contact geometry is valid for."
+            )
+        clearance = float(run.parameter(f"{place}joint", "clearance", 0.0)) if f"{prefix}film_thickness" in run else 0.0
+        if clearance and (deepest := number(f"{prefix}max_penetration") or 0) > 0.1 * clearance:
+            found.append(
+                f"The deepest penetration{at}, {1e6 * deepest:.3g} µm, is {deepest / clearance:.2g} clearances; contact "
+                "laws assume that it is small."
+            )
+        film, rough = (run.case.get(f"{place}{group}", run.case.get(group)) for group in ("lubrication", "asperities"))
+        if film and not rough and clearance and 0 < (number(f"{prefix}min_film_thickness") or 0) < 1e-6:
+            found.append(
+                f"The film{at} gets as thin as {1e6 * number(f'{prefix}min_film_thickness'):.3g} µm, the order of surface "
+                "roughness, which the film law neglects."
+            )
+        if abs(change := number(f"{prefix}film_thickness_change") or 0) > 0.05:
+            found.append(
+                f"The film{at} has not settled: its smallest thickness changed by {100 * abs(change):.2g} % in the last cycle."
+            )
+    if (residual := number("max_energy_residual_relative") or 0) > 1e-6:
+        found.append(f"The energy residual is {residual:.1e} of the energy: use a smaller tolerance.")
+    if (
+        run.parameter("lubrication", "law") == "oscillating_film"
+        and (share := number("contact_time_fraction") or 0) > 0.5
+    ):
+        found.append(f"The pin is in contact {100 * share:.0f} % of the time: this film carries no radial load.")
+    if not run.contacts.empty:
+        duration = float((run.contacts["end"] - run.contacts["begin"]).median())
+        interval = float(np.median(np.diff(run["time"])))
+        if duration < 5 * interval:
+            found.append(
+                f"Half of the contacts are shorter than {duration / interval:.1f} samples of the trace: peaks in the "
+                "plots may be too low; the time line and the summary have the exact peaks."
+            )
+    return found
+
+
+def contacts(run: Run) -> list[dict]:
+    return [{key: float(value) for key, value in row.items()} for row in run.contacts.to_dict("records")]
+
+
+def rows_html(rows: list[tuple[str, ...]], heading: str = "") -> str:
+    cells = ["<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows]
+    head = f'<tr><th colspan="3">{html.escape(heading)}</th></tr>' if heading else ""
+    return head + "".join(cells)
+
+
+def shown(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.10g}"
+    return ", ".join(shown(item) for item in value) if isinstance(value, list) else str(value)
+
+
+def summary_number(text: str) -> str:
+    try:
+        return f"{float(text):.6g}"
+    except ValueError:
+        return text
+
+
+def film_columns(run: Run, rows: np.ndarray, fields: list[pd.DataFrame] | None = None) -> tuple[np.ndarray, np.ndarray, bool] | None:
+    """Square root of the film's pressure divided by its largest value, as bytes (rows, angles); peak pressure of each row [Pa]; and
+    whether the pressure is below its mean anywhere."""
+    angles = 2 * np.pi * np.arange(ANGLES) / ANGLES - np.pi
+    found = film_pressure.pressure(run, angles)
+    if found is None and fields:
+        found = film_pressure.from_fields(run, fields, angles)
+    if found is None:
+        return None
+    found = found[rows]
+    largest = np.abs(found).max() or 1.0
+    levels = np.sign(found) * np.sqrt(np.abs(found) / largest)
+    return np.rint(127 * levels).astype(np.int8), found.max(axis=1), bool((found < 0).any())
+
+
+def largest_deflection(columns: dict[str, np.ndarray]) -> float:
+    """Largest deflection of an elastic rod across its chord, anywhere along the rod [m]."""
+    modes = [name for name in columns if name.startswith("rod_mode_")]
+    if not modes:
+        return 0.0
+    along = np.linspace(0, np.pi, 33)
+    shapes = np.array([np.sin(int(name.rsplit("_", 1)[1]) * along) for name in modes])
+    return float(np.abs(np.array([columns[name] for name in modes]).T @ shapes).max())
+
+
+def page(
+    run: Run,
+    ideal: Run | None = None,
+    fields: list[pd.DataFrame] | None = None,
+    language: Language | None = None,
+    cycle_columns: list[str] | None = None,
+    worn: list[tuple[str, pd.DataFrame]] | None = None,
+) -> str:
+    """The HTML text of the page. `fields`: the pressures of a NAME.film.csv; `cycle_columns`: columns whose cycles and orders are
+    shown; `worn`: the worn surfaces of a NAME.wear.csv."""
+    say = (language or Language()).say
+    columns = with_sizes(run)
+    if ideal is not None:
+        for name, values in with_sizes(ideal).items():
+            if name in columns and name != "time":
+                columns[f"ideal {name}"] = np.interp(run["time"], ideal["time"], values)
+    drawn = plots(columns, run)
+    for plot in drawn:
+        plot |= {part: say(plot[part]) for part in ("title", "x", "y")}
+        for curve in plot["curves"]:
+            curve["name"] = say(curve["name"])
+    used = [name for name in MOTION if name in columns]
+    for plot in drawn:
+        for curve in plot["curves"]:
+            used += [curve[axis] for axis in ("x", "y") if curve[axis] not in used]
+        if plot.get("phase") in columns and plot["phase"] not in used:
+            used.append(plot["phase"])
+    rows = chosen_rows([columns[name] for name in used])
+    film = film_columns(run, rows, fields)
+    if film:
+        columns["film_peak"] = np.zeros(len(run["time"]))
+        columns["film_peak"][rows] = film[1]
+        used.append("film_peak")
+    data = b"".join(columns[name][rows].astype("<f4").tobytes() for name in used)
+    touched = contacts(run)
+    bore = bore_of(run) if "piston_tilt" in columns else None
+    scene = {
+        "rows": len(rows),
+        "columns": used,
+        "plots": drawn,
+        "contacts": touched,
+        "line": time_line(columns, run) | {"title": say(time_line(columns, run)["title"])},
+        "words": {word: say(word) for word in script_words()},
+        "comma": bool(language and not language.is_english),
+        "start": first_moment(columns),
+        "angles": ANGLES if film else 0,
+        "signed": bool(film and film[2]),
+        "certified": run.certified_until,
+        "clearance": run.clearance,
+        "crank": float(run.parameter("mechanism", "crank_length")),
+        "rod": float(run.parameter("mechanism", "rod_length")),
+        "bearing": drawn_bearing_radius(run),
+        "bore": bore,
+        "crank_pin": crank_pin_of(run, columns),
+        "speed": float(run.parameter("initial", "crank_speed")),
+        "modes": sum(name.startswith("rod_mode_") for name in used),
+        "peak": {
+            "pin_force": float(columns["pin_force"].max()),
+            "guide_force": max([float(columns[f"guide_{i}_force"].max()) for i in CORNERS if bore], default=0.0),
+            "normal_force": max([contact["force"] for contact in touched], default=0.0),
+            "eccentricity_ratio": float(run["eccentricity_ratio"].max()) if run.clearance else 0.0,
+            "cylinder_pressure": float(columns["cylinder_pressure"].max()) if "cylinder_pressure" in columns else 0.0,
+            "rod_deflection": largest_deflection(columns),
+        },
+    }
+    if "normal_force" in columns:
+        scene["peak"]["normal_force"] = max(scene["peak"]["normal_force"], float(columns["normal_force"].max()))
+    said = [say(text) for text in warnings(run)]
+    case = "".join(
+        rows_html([(key, shown(value)) for key, value in keys.items()], f"&{group}") for group, keys in run.case.items()
+    )
+
+    def summary(of_program: bool) -> str:
+        return rows_html(
+            [
+                (name, summary_number(value), "" if unit == "1" else unit)
+                for name, (value, unit) in run.summary.items()
+                if not name.startswith("steps_of_order") and (name in OF_THE_PROGRAM) == of_program
+            ]
+        )
+
+    parts = {
+        "title": html.escape(str(run.parameter("case", "title", "")) or run.name),
+        "subtitle": html.escape(
+            f"{run.name}: "
+            + say(
+                f"{len(run['time'])} samples over {run['time'][-1]:.6g} s"
+                + (f", of which {len(rows)} are kept here, peaks among them" if len(rows) < len(run["time"]) else "")
+            )
+        ),
+        "language": (language or Language()).name,
+        "style": (PAGE / "page.css").read_text(encoding="utf-8"),
+        "script": (PAGE / "page.js").read_text(encoding="utf-8"),
+        "warnings": "".join(f'<p class="warning">{html.escape(text)}</p>' for text in said)
+        or f'<p class="fine">{html.escape(say("No warnings."))}</p>',
+        "wear": wear_section(worn, language or Language()) if worn else "",
+        "cycles": report_cycles.section(run, cycle_columns, language),
+        "summary": f"<table>{summary(False)}</table>",
+        "program": f"<table>{summary(True)}</table>",
+        "case": f"<table>{case}</table>",
+        "footer": html.escape(
+            f"gudgeon {run.summary.get('version', ('', ''))[0]}. "
+            + say(
+                "Film pressures are computed for this page from the motion in the trace. Plots by plotly.js, MIT licence."
+            )
+        ),
+        "scene": json.dumps(scene, ensure_ascii=False).replace("</", "<\\/"),
+        "trace": packed(data),
+        "pressure": packed(film[0].tobytes()) if film else "",
+        "library": packed(get_plotlyjs().encode("utf-8")),
+    }
+    text = (PAGE / "page.html").read_text(encoding="utf-8")
+    text = re.sub(r"\[\[(.+?)\]\]", lambda found: html.escape(say(found[1])), text)
+    head, *fields = text.split("{{")  # each field once, so that inserted texts are not searched for fields
+    return head + "".join(parts[name] + rest for name, rest in (field.split("}}", 1) for field in fields))
+
+
+def wear_section(worn: list[tuple[str, pd.DataFrame]], language: Language) -> str:
+    """The section on worn surfaces as HTML."""
+    heading = language.say("Wear of pin and bore")
+    drawing = wear_pictures.draw(worn, [wear_pictures.JOINTS[joint] for joint, _ in worn])
+    said = "Depth around each surface, exaggerated, and over the angle on it"
+    return f'<section id="wear"><h2>{html.escape(heading)}</h2>{report_cycles.picture(drawing, said, language)}</section>'
+
+
+def first_moment(columns: dict[str, np.ndarray]) -> float:
+    """The time at which the page opens [s]: that of the largest pin force after the first tenth of the run."""
+    time = columns["time"]
+    force = np.where(time >= time[0] + 0.1 * (time[-1] - time[0]), columns["pin_force"], 0.0)
+    return float(time[int(np.argmax(force))])
+
+
+def script_words() -> list[str]:
+    """The texts in the page's script: those in W(...)."""
+    return re.findall(r'\bW\("([^"]+)"\)', (PAGE / "page.js").read_text(encoding="utf-8"))
+
+
+def time_line(columns: dict[str, np.ndarray], run: Run) -> dict:
+    """The curve of the page's time line: the film thickness from 0 or below, or the magnitude of the pin's force. Its extremes are
+    those of the summary, which include the values between two rows."""
+
+    def of_summary(name: str, otherwise: float) -> float:
+        try:
+            return float(run.summary[name][0])
+        except (KeyError, ValueError):
+            return otherwise
+
+    if "film_thickness" in columns:
+        thickness = columns["film_thickness"]
+        least = min(float(thickness.min()), of_summary("min_film_thickness", np.inf))
+        return {
+            "column": "film_thickness",
+            "title": "film thickness",
+            "unit": "µm",
+            "factor": 1e6,
+            "range": [min(0.0, least), float(thickness.max())],
+            "extremes": [least, float(thickness.max())],
+        }
+    largest = max(float(columns["pin_force"].max()), of_summary("max_pin_force", 0.0))
+    return {
+        "column": "pin_force",
+        "title": "pin force",
+        "unit": "kN",
+        "factor": 1e-3,
+        "range": [0.0, largest],
+        "extremes": [float(columns["pin_force"].min()), largest],
+    }
+
+
+def crank_pin_of(run: Run, columns: dict[str, np.ndarray]) -> dict[str, float] | None:
+    """Clearance of the crank pin [m] and its largest eccentricity over the clearance; None if the crank pin has no clearance."""
+    if "crank_pin_eccentricity_x" not in columns:
+        return None
+    clearance = float(run.parameter("crank_pin.joint", "clearance", 0.0))
+    largest = np.hypot(columns["crank_pin_eccentricity_x"], columns["crank_pin_eccentricity_y"]).max()
+    return {"clearance": clearance, "peak_ratio": float(largest) / clearance}
+
+
+def bore_of(run: Run) -> dict[str, object]:
+    """Clearance and dimensions of a skirt in its bore [m]: ends and centre of mass from the pin, along and across."""
+    along, across = run.parameter("guide", "piston_com")
+    keys = {"clearance": "bore_clearance", "top": "skirt_top", "bottom": "skirt_bottom", "radius": "piston_radius"}
+    return {"along": along, "across": across, **{name: float(run.parameter("guide", key)) for name, key in keys.items()}}
+
+
+def drawn_bearing_radius(run: Run) -> float:
+    """The bearing's radius [m], or a radius that suits the picture if the case gives none."""
+    return float(run.parameter("joint", "bearing_radius", 0) or 0) or 0.2 * float(
+        run.parameter("mechanism", "crank_length")
+    )

@@ -1,0 +1,8 @@
+!> The version of the program.
+module version_number
+  implicit none
+  private
+  public :: program_version
+
+  character(len=*), parameter :: program_version = '0.2.0'   !! as in fpm.toml
+end module version_number

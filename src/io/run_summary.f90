@@ -1,0 +1,301 @@
+!> The summary of a run: NAME.summary.csv.
+module run_summary
+  use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
+  use kinds, only: dp
+  use constants, only: two_pi
+  use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
+  use simulation, only: run_report_t
+  use cycle_answers, only: answer_t, cycle_quantities
+  use result_table, only: result_table_t
+  use run_figures, only: pin_figures_t, elastic_figures_t
+  use piston_guide, only: n_corners, corner_names
+  use period_watch, only: period_watch_t
+  use joint_places, only: places, n_places, in_order, name_prefix
+  use archard_wear, only: of_pin, of_bore
+  use case_definition, only: case_t
+  use joint_case, only: joint_case_t
+  use result_notes, only: notes_on_results, relative_residual, energy_warning, no_exponent
+  use text_tools, only: integer_text, next_line
+  use version_number, only: program_version
+  implicit none
+  private
+  public :: summary_table, summary_value, build_advice
+
+  character(len=*), parameter :: newline = achar(10)
+
+contains
+
+  !> The rows `quantity,value,unit` of a run.
+  function summary_table(case, report, wall_time, is_twin) result(text)
+    type(case_t), intent(in) :: case
+    type(run_report_t), intent(in) :: report
+    real(dp), intent(in) :: wall_time                               !! [s]
+    logical, intent(in), optional :: is_twin                        !! true for the ideal twin, whose bodies are rigid
+    character(len=:), allocatable :: text
+    type(result_table_t) :: table
+    character(len=5), parameter :: method_names(2) = ['adams', 'radau']
+    integer :: order, limit, mode, method, corner, i
+
+    table%digits = case%output%digits
+    call table%clear()
+    call table%append('quantity,value,unit'//newline)
+    call table%add('status', report%status)
+    associate (s => report%statistics, f => report%figures)
+      call table%add('simulated_time', f%time)
+      call table%add('wall_time', wall_time)
+      call table%add('method', trim(case%integrator%method))
+      call table%add('steps_accepted', s%accepted)
+      call table%add('steps_rejected_error', s%rejected_error)
+      call table%add('steps_rejected_penetration', s%rejected_penetration)
+      call table%add('steps_rejected_domain', s%rejected_domain)
+      call table%add('rhs_evaluations', s%evaluations)
+      call table%add('trace_evaluations', f%evaluations)
+      call table%add('restarts', s%restarts)
+      if (s%accepted > 0) call table%add('smallest_step', s%smallest_step)
+      do order = 1, highest_order
+        call table%add('steps_of_order_N', s%order_count(order), for=integer_text(order))
+      end do
+      if (s%accepted > 0) then
+        call table%add('step_limited_by', trim(limit_names(maxloc(s%limited_by, 1))))
+        call table%add('stability_bound_fraction', real(s%limited_by(limit_stability), dp)/s%accepted)
+        do limit = 1, n_limits
+          call table%add('steps_limited_by_NAME', s%limited_by(limit), for=trim(limit_names(limit)))
+        end do
+        call table%add('stiffness_integral', s%stiffness)
+      end if
+      if (allocated(report%time_with)) then
+        call table%add('method_switches', s%switches)
+        do mode = lbound(report%time_with, 2), ubound(report%time_with, 2)
+          do method = with_adams, with_radau
+            if (report%time_with(method, mode) > 0) call &
+              table%add('PHASE_time_fraction_with_NAME', report%time_with(method, mode)/f%time, phases_of(case, mode)//'_', &
+              trim(method_names(method)))
+          end do
+        end do
+      end if
+      if (s%jacobians > 0) then
+        call table%add('jacobians', s%jacobians)
+        call table%add('steps_rejected_convergence', s%rejected_convergence)
+        do order = 1, size(s%stage_count)
+          call table%add('steps_of_N_stages', s%stage_count(order), for=integer_text(2*order + 1))
+        end do
+      end if
+      call table%add('max_pin_force', f%pin(in_order(1))%max_force)
+      call table%add('crank_revolutions', f%crank_travel/two_pi)
+      if (f%time > 0) call table%add('mean_crank_speed', f%crank_travel/f%time)
+      if (report%periods%is_on) call add_period(report%periods)
+      if (report%exponent%is_known) then
+        call table%add('lyapunov_exponent', report%exponent%mean)
+        call table%add('lyapunov_exponent_error', report%exponent%error)
+        call table%add('lyapunov_revolutions', report%exponent%revolutions)
+      else if (allocated(report%exponent%reason)) then
+        call table%add('lyapunov_warning', no_exponent//report%exponent%reason)
+      end if
+      call table%add('max_energy_residual', max(f%max_energy_residual, f%row_energy_residual))
+      call table%add('max_energy_residual_relative', relative_residual(report))
+      if (report%energy_is_poor) call table%add('energy_warning', energy_warning(case, report))
+      call add_notes()
+      do i = 1, n_places
+        if (.not. case%joints(in_order(i))%has_clearance()) cycle
+        if (i > 1) call table%add('max_pin_force', f%pin(in_order(i))%max_force, name_prefix(in_order(i)))
+        call add_joint(name_prefix(in_order(i)), case%joints(in_order(i)), f%pin(in_order(i)))
+      end do
+      if (case%has_loose_guide()) then
+        do corner = 1, n_corners
+          associate (c => f%corner(corner), prefix => corner_names(corner)//'_')
+            call add_contacts(prefix, c)
+            call table%add('max_force', c%max_force, prefix)
+          end associate
+        end do
+      end if
+      if (case%is_elastic()) call add_elastic(f%elastic)
+    end associate
+    if (allocated(report%answers)) call add_answers(report%answers)
+    call table%add('version', program_version)
+    call table%add('compiler', compiler_version())
+    call table%add('compiler_options', compiler_options())
+    text = table%text(:table%used)
+
+  contains
+
+    !> Rows of the notes on the case and on the results. The ideal twin has those on its own results.
+    subroutine add_notes()
+      character(len=:), allocatable :: notes, line
+      integer :: at, number
+      notes = notes_on_results(case, report)
+      if (allocated(case%notes)) notes = case%notes//newline//notes
+      at = 1
+      number = 0
+      do while (at <= len(notes))
+        call next_line(notes, at, line)
+        if (line == '') cycle
+        number = number + 1
+        call table%add('note_N', line, for=integer_text(number))
+      end do
+    end subroutine add_notes
+
+    !> Rows about the period of the motion, of a run until it is periodic.
+    subroutine add_period(periods)
+      type(period_watch_t), intent(in) :: periods
+      call table%add('motion', trim(merge('periodic    ', 'not_periodic', periods%period > 0)))
+      call table%add('period_revolutions', periods%period)
+      if (periods%period > 0) then
+        call table%add('periodic_after', periods%found_after)
+        call table%add('period', periods%duration)
+        call table%add('periodic_difference', periods%difference)
+      end if
+      if (periods%window_after >= 0) call table%add('window_start', periods%window_start)
+    end subroutine add_period
+
+    !> Rows of a joint with clearance, with a prefix.
+    subroutine add_joint(prefix, joint, pin)
+      character(len=*), intent(in) :: prefix
+      type(joint_case_t), intent(in) :: joint
+      type(pin_figures_t), intent(in) :: pin
+      if (allocated(joint%film)) then
+        if (joint%oil%has_name()) call table%add('oil', joint%oil%name, prefix)
+        if (joint%oil%is_known()) call table%add('viscosity', joint%oil%dynamic_viscosity(), prefix)
+        if (joint%film%table_of /= '') then
+          call table%add('film_table_error', joint%film%table_error, prefix)
+          call table%add('film_table_mean_error', joint%film%table_mean_error, prefix)
+          call table%add('film_table_time', joint%film%table_time, prefix)
+        end if
+      end if
+      call table%add('min_film_thickness', pin%min_film_thickness, prefix)
+      if (allocated(joint%film) .and. abs(pin%film_change) > 0) &
+        call table%add('film_thickness_change', pin%film_change, prefix)
+      call add_contacts(prefix, pin)
+      call table%add('max_entry_penetration', pin%max_entry_penetration, prefix)
+      call table%add('impacts_beyond_validity', pin%impacts_beyond_validity, prefix)
+      call table%add('contacts_beyond_validity', pin%contacts_beyond_validity, prefix)
+      if (pin%friction_work < huge(pin%friction_work)) call table%add('friction_work', pin%friction_work, prefix)
+      if (allocated(joint%wear) .and. allocated(report%wear)) call add_wear(prefix)
+      if (.not. (joint%reports_film .and. allocated(joint%film))) return
+      call table%add('film_energy_lost', pin%film_energy_lost, prefix)
+      if (joint%film%neglects_shear()) &
+        call table%add('neglected_shear_loss', pin%neglected_shear_loss, prefix)
+      if (joint%film%gives_pressure()) call table%add('max_film_pressure', pin%max_film_pressure, prefix)
+      if (joint%film%gives_side_flow() .and. report%figures%time > 0) &
+        call table%add('mean_film_side_flow', pin%film_volume/report%figures%time, prefix)
+    end subroutine add_joint
+
+    !> Rows of the worn surfaces of a joint.
+    subroutine add_wear(prefix)
+      character(len=*), intent(in) :: prefix
+      integer :: i
+      do i = 1, size(report%wear)
+        associate (worn => report%wear(i))
+          if (name_prefix(worn%place) /= prefix) cycle
+          call table%add('worn_volume_pin', sum(worn%volume(:, of_pin)), prefix)
+          call table%add('worn_volume_bore', sum(worn%volume(:, of_bore)), prefix)
+          call table%add('max_wear_depth_pin', maxval(worn%depth(:, of_pin)), prefix)
+          call table%add('max_wear_depth_bore', maxval(worn%depth(:, of_bore)), prefix)
+          if (.not. worn%bore_changes) cycle
+          call table%add('wear_revolutions', worn%turns, prefix)
+          call table%add('wear_step_over_clearance', worn%step_ratios(1), prefix)
+          call table%add('wear_step_over_penetration', worn%step_ratios(2), prefix)
+        end associate
+      end do
+    end subroutine add_wear
+
+    !> Rows of the contacts of a pin or of a corner of the skirt.
+    subroutine add_contacts(prefix, at)
+      character(len=*), intent(in) :: prefix
+      type(pin_figures_t), intent(in) :: at
+      call table%add('contacts', at%contacts, prefix)
+      if (report%figures%time > 0) call table%add('contact_time_fraction', at%contact_time/report%figures%time, prefix)
+      call table%add('max_penetration', at%max_penetration, prefix)
+    end subroutine add_contacts
+
+    !> Rows of elastic members. The summary of the ideal twin says that they are rigid.
+    subroutine add_elastic(largest)
+      type(elastic_figures_t), intent(in) :: largest
+      if (present(is_twin)) then
+        if (is_twin) call table%add('elastic_members', 'none: the ideal twin is rigid')
+        if (is_twin) return
+      end if
+      call table%add('elastic_members', trim(merge(merge('rod and crankshaft', 'rod               ', &
+        allocated(case%crankshaft)), 'crankshaft        ', allocated(case%elastic_rod))))
+      if (allocated(case%elastic_rod)) then
+        call table%add('rod_bending_frequency', largest%bending_frequency/two_pi)
+        call table%add('rod_axial_frequency', largest%axial_frequency/two_pi)
+        call table%add('max_rod_mid_deflection', largest%mid_deflection)
+        call table%add('max_rod_stretch', largest%stretch)
+        call table%add('max_rod_strain_energy', largest%strain_energy)
+      end if
+      if (.not. allocated(case%crankshaft)) return
+      call table%add('crankshaft_frequency', largest%twist_frequency/two_pi)
+      call table%add('max_crankshaft_twist', largest%twist)
+    end subroutine add_elastic
+
+    !> Rows of the last whole cycle.
+    subroutine add_answers(answers)
+      type(answer_t), intent(in) :: answers(:)
+      character(len=:), allocatable :: name
+      integer :: i
+      do i = 1, size(answers)
+        associate (it => answers(i))
+          name = trim(cycle_quantities(it%quantity)%name)
+          if (it%text /= '') then
+            call table%add(name, trim(it%text))
+          else if (name == 'cycle_revolutions') then
+            call table%add(name, nint(it%value))
+          else if (it%place > 0) then
+            call table%add(name, it%value, name_prefix(it%place))
+          else
+            call table%add(name, it%value)
+          end if
+        end associate
+      end do
+    end subroutine add_answers
+  end function summary_table
+
+  !> Names of the phases of the joints in a mode of the scene, in the order of the places: the digits of the mode in base three. If
+  !> the first place has none, the place of the first name precedes it. For a guide with clearance its phase precedes them; it is
+  !> the highest digit.
+  function phases_of(case, mode) result(text)
+    type(case_t), intent(in) :: case
+    integer, intent(in) :: mode   !! number >= 0
+    character(len=:), allocatable :: text
+    character(len=7), parameter :: names(0:2) = ['free   ', 'film   ', 'contact']
+    integer :: pins, i
+    pins = mode
+    text = ''
+    if (case%has_loose_guide()) then
+      pins = mod(mode, size(names)**count(case%joints%has_clearance()))
+      text = trim(merge('guide_free   ', 'guide_contact', pins == mode))
+    end if
+    do i = 1, n_places
+      if (.not. case%joints(in_order(i))%has_clearance()) cycle
+      if (text /= '') text = text//'_'
+      if (.not. any(case%joints(in_order(:i - 1))%has_clearance())) text = text//name_prefix(in_order(i))
+      text = text//trim(names(mod(pins, size(names))))
+      pins = pins/size(names)
+    end do
+    if (text == '') text = trim(names(mod(pins, size(names))))
+  end function phases_of
+
+  !> The value of a quantity in the text of a summary; empty if it is not there.
+  function summary_value(table, quantity) result(text)
+    character(len=*), intent(in) :: table, quantity
+    character(len=:), allocatable :: text
+    integer :: first
+    text = ''
+    first = index(table, newline//quantity//',')
+    if (first == 0) return
+    first = first + len(newline//quantity//',')
+    text = table(first:first + index(table(first:)//newline, newline) - 2)
+    text = text(:index(text, ',', back=.true.) - 1)
+  end function summary_value
+
+  !> Advice for the user of a program that was compiled without optimisation, or an empty text.
+  pure function build_advice(flags, seconds) result(text)
+    character(len=*), intent(in) :: flags   !! compiler options, separated by blanks
+    real(dp), intent(in) :: seconds         !! time taken by the cases [s]
+    character(len=:), allocatable :: text
+    real(dp), parameter :: long_run = 2
+    text = ''
+    if (seconds > long_run .and. index(' '//flags, ' -O2') + index(' '//flags, ' -O3') + index(' '//flags, ' -Ofast') == 0) &
+      text = 'this is a build for debugging, several times slower than the fast program: scripts/install.sh installs that'
+  end function build_advice
+end module run_summary

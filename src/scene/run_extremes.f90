@@ -1,0 +1,284 @@
+!> Extremes, contacts and totals of a run: at each pin, at the corners of the skirt, and of elastic members.
+!>
+!> Peaks are searched also between accepted points, and no peak is below the largest value of a row.
+module run_extremes
+  use kinds, only: dp
+  use run_state, only: run_state_t
+  use ode_method, only: ode_method_t
+  use joint_places, only: n_places
+  use scene_problem, only: scene_t, evaluation_t, event_contact_begins, of_guide, phase_contact
+  use joint_events, only: penetration_and_rate, may_lose_force, find_lost_force
+  use cycle_statistics, only: skirt
+  use cycle_watch, only: cycle_watch_t
+  use pin_record, only: pin_record_t
+  use guide_record, only: guide_record_t
+  use elastic_record, only: elastic_record_t
+  use run_figures, only: run_figures_t
+  use wear_record, only: wear_profile_t
+  use trace_sink, only: trace_event_t
+  implicit none
+  private
+  public :: run_extremes_t
+
+  type :: run_extremes_t
+    type(run_figures_t) :: figures
+    integer, private :: n_pins = 0                 !! number of pins that have a record
+    type(pin_record_t), private :: pins(n_places)
+    type(guide_record_t), private :: guide         !! of a piston with clearance in its bore
+    type(elastic_record_t), private :: elastic     !! of elastic members
+  contains
+    procedure :: prepare
+    procedure :: declare
+    procedure :: begin
+    procedure :: begin_revolution
+    procedure :: end_revolution
+    procedure :: search
+    procedure :: add_row
+    procedure :: add_point
+    procedure :: add_elastic
+    procedure :: change_phases
+    procedure :: record_event
+    procedure :: find_film_changes
+    procedure :: begin_wear
+    procedure :: end_wear_cycle
+    procedure :: change_bore
+    procedure :: wear
+  end type run_extremes_t
+
+contains
+
+  !> Prepare for a scene that is ready to run.
+  subroutine prepare(self, scene)
+    class(run_extremes_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    integer :: i
+    self%n_pins = size(scene%reported)
+    do i = 1, self%n_pins
+      call self%pins(i)%prepare(scene%reported(i), scene)
+    end do
+    call self%guide%prepare(scene)
+    call self%elastic%prepare(scene, self%figures%elastic)
+  end subroutine prepare
+
+  !> Declare the totals so far.
+  subroutine declare(self, list, scene)
+    class(run_extremes_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    type(scene_t), intent(inout) :: scene
+    integer :: i
+    call self%figures%declare(list)
+    do i = 1, self%n_pins
+      call self%pins(i)%declare(list, self%figures, scene)
+    end do
+    call self%guide%declare(list, self%figures)
+    if (self%elastic%is_present) call self%figures%elastic%declare(list)
+  end subroutine declare
+
+  !> Begin at time t, where the scene has been evaluated if that is `in_domain` the model.
+  subroutine begin(self, scene, t, now, in_domain, cycles)
+    class(run_extremes_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: in_domain
+    type(cycle_watch_t), intent(inout), optional :: cycles
+    integer :: i
+    if (in_domain) call self%elastic%begin(scene, t, now)
+    if (present(cycles)) call self%guide%begin_revolution()
+    do i = 1, self%n_pins
+      call self%pins(i)%begin(scene, t, now)
+      call self%pins(i)%count_from(t)
+      if (in_domain) call self%pins(i)%record_values(scene, now, self%figures, cycles)
+    end do
+    if (.not. (in_domain .and. self%guide%is_present)) return
+    call self%guide%stand_at(t, now)
+    call self%guide%record_values(scene, now, self%figures)
+  end subroutine begin
+
+  !> Begin a revolution whose results are wanted.
+  subroutine begin_revolution(self)
+    class(run_extremes_t), intent(inout) :: self
+    call self%guide%begin_revolution()
+  end subroutine begin_revolution
+
+  !> Add the extremes of the skirt in a revolution that ends to its results.
+  subroutine end_revolution(self, cycles)
+    class(run_extremes_t), intent(inout) :: self
+    type(cycle_watch_t), intent(inout) :: cycles
+    call self%guide%end_revolution(cycles)
+  end subroutine end_revolution
+
+  !> Search for peaks between the last point recorded (or the beginning of a step after an event) and t, where the scene is
+  !> evaluated.
+  subroutine search(self, method, scene, t, now, is_end, cycles)
+    class(run_extremes_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: is_end   !! t is the end of the step, or of its final part
+    type(cycle_watch_t), intent(inout), optional :: cycles
+    integer :: i
+    do i = 1, self%n_pins
+      call self%pins(i)%search(method, scene, t, now, is_end, self%figures, cycles)
+    end do
+    call self%guide%search(method, scene, t, now, self%figures)
+    call self%elastic%search(method, scene, t, now, self%figures%elastic)
+    if (present(cycles)) call cycles%search_machine(method, scene, t, now)
+  end subroutine search
+
+  !> Account for the values of a row: not for the present revolution, whose results must not depend on whether rows are written.
+  subroutine add_row(self, scene, now)
+    class(run_extremes_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    type(evaluation_t), intent(in) :: now
+    integer :: i
+    do i = 1, self%n_pins
+      call self%pins(i)%record_values(scene, now, self%figures)
+    end do
+    call self%guide%record_values(scene, now, self%figures)
+  end subroutine add_row
+
+  !> Account for the elastic members in an evaluation.
+  subroutine add_elastic(self, scene, now)
+    class(run_extremes_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    type(evaluation_t), intent(in) :: now
+    call self%elastic%record_values(scene, now, self%figures%elastic)
+  end subroutine add_elastic
+
+  !> Account for the time since the last accepted point, and for the work of friction up to (t, y).
+  subroutine add_point(self, scene, t, y)
+    class(run_extremes_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(scene%n)
+    integer :: i
+    associate (f => self%figures)
+      do i = 1, self%n_pins
+        if (self%pins(i)%joint == 0) cycle
+        associate (figures => f%pin(self%pins(i)%pin), joint => scene%joints(self%pins(i)%joint))
+          if (self%pins(i)%is_touching(scene)) figures%contact_time = figures%contact_time + (t - f%time)
+          if (joint%integrates_friction) figures%friction_work = joint%work_of_friction(y)
+        end associate
+      end do
+      call self%guide%add_time(scene, t - f%time, f)
+      f%time = t
+    end associate
+  end subroutine add_point
+
+  !> An event may change the phase of a joint: the next interval begins there.
+  subroutine change_phases(self)
+    class(run_extremes_t), intent(inout) :: self
+    integer :: i
+    do i = 1, self%n_pins
+      call self%pins(i)%change_phase()
+    end do
+  end subroutine change_phases
+
+  !> Record that a contact begins or ends at time t, at a joint or at a corner of the skirt; `now` is evaluated before that event. A
+  !> joint without a record has no entry in the trace.
+  subroutine record_event(self, joint, corner, kind, t, now, event, is_found, cycles)
+    class(run_extremes_t), intent(inout) :: self
+    integer, intent(in) :: joint    !! index in the scene, or `of_guide`
+    integer, intent(in) :: corner   !! of the skirt
+    integer, intent(in) :: kind     !! event_contact_begins or event_contact_ends
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    type(trace_event_t), intent(out) :: event
+    logical, intent(out) :: is_found
+    type(cycle_watch_t), intent(inout), optional :: cycles
+    integer :: i
+    is_found = joint == of_guide
+    if (is_found) then
+      call self%guide%record_contact(corner, kind, t, now, self%figures, event)
+      if (present(cycles) .and. kind == event_contact_begins) call cycles%count_impact(skirt)
+      return
+    end if
+    do i = 1, self%n_pins
+      if (self%pins(i)%joint /= joint) cycle
+      call self%pins(i)%record_contact(kind, t, now, self%figures, event, cycles)
+      is_found = .true.
+    end do
+  end subroutine record_event
+
+  !> How much the films of a run have changed from cycle to cycle at its end.
+  subroutine find_film_changes(self, scene, cycles)
+    class(run_extremes_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    type(cycle_watch_t), intent(in) :: cycles
+    integer :: i, revolutions
+    revolutions = 1
+    if (allocated(scene%gas)) revolutions = scene%gas%revolutions
+    do i = 1, scene%n_joints
+      associate (place => scene%joints(i)%place)
+        self%figures%pin(place)%film_change = cycles%film_change(place, revolutions)
+      end associate
+    end do
+  end subroutine find_film_changes
+
+  !> Count wear from time t.
+  subroutine begin_wear(self, t)
+    class(run_extremes_t), intent(inout) :: self
+    real(dp), intent(in) :: t
+    integer :: i
+    do i = 1, self%n_pins
+      if (allocated(self%pins(i)%wear)) call self%pins(i)%wear%begin_at(t)
+    end do
+  end subroutine begin_wear
+
+  !> End a cycle of wear that is complete at the end of a run.
+  subroutine end_wear_cycle(self, scene)
+    class(run_extremes_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    integer :: i
+    do i = 1, self%n_pins
+      if (.not. allocated(self%pins(i)%wear)) cycle
+      associate (joint => scene%joints(self%pins(i)%joint))
+        if (joint%has_worn_bore()) call self%pins(i)%wear%end_cycle(joint)
+      end associate
+    end do
+  end subroutine end_wear_cycle
+
+  !> Change the shape of a worn bore at the end of its cycle, at (t, y). A contact law whose force may be lost may lose it, or act
+  !> again.
+  subroutine change_bore(self, scene, joint, t, y, parts)
+    class(run_extremes_t), intent(inout) :: self
+    type(scene_t), intent(inout) :: scene
+    integer, intent(in) :: joint      !! index in the scene
+    real(dp), intent(in) :: t, y(scene%n)
+    logical, intent(out) :: parts     !! the pin was in contact, and does not touch the deeper bore
+    type(evaluation_t) :: now
+    real(dp) :: contact(2)
+    logical :: in_domain
+    integer :: i
+    parts = .false.
+    do i = 1, self%n_pins
+      if (self%pins(i)%joint /= joint .or. .not. allocated(self%pins(i)%wear)) cycle
+      associate (worn => scene%joints(joint))
+        if (.not. worn%has_worn_bore()) cycle
+        call self%pins(i)%wear%change_bore(worn)
+        if (worn%phase /= phase_contact) cycle
+        contact = penetration_and_rate(worn, y)
+        parts = .not. contact(1) > 0
+        if (parts .or. .not. may_lose_force(worn)) cycle
+        self%figures%evaluations = self%figures%evaluations + 1
+        call scene%evaluate(t, y, now, in_domain)
+        if (.not. in_domain) cycle
+        call self%elastic%record_values(scene, now, self%figures%elastic)
+        call find_lost_force(worn, now%joint(joint), worn%relative_rates(now%accelerations))
+      end associate
+    end do
+  end subroutine change_bore
+
+  !> The worn surfaces of the joints whose wear is counted.
+  function wear(self, scene) result(worn)
+    class(run_extremes_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    type(wear_profile_t), allocatable :: worn(:)
+    integer :: i
+    allocate (worn(0))
+    do i = 1, self%n_pins
+      if (allocated(self%pins(i)%wear)) worn = [worn, self%pins(i)%wear%profile(scene)]
+    end do
+  end function wear
+end module run_extremes

@@ -1,0 +1,630 @@
+!> A scene: the chain of crank, rod and piston with the joints and the gas of a case, as a system of differential equations.
+module scene_problem
+  use kinds, only: dp
+  use ode_problem, only: ode_problem_t, max_events
+  use state_layout, only: layout_t, coordinates_t, slice_t
+  use run_state, only: run_state_t
+  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
+  use joint_places, only: places, n_places, in_order
+  use chain_loads, only: loads_t, force_size
+  use mechanism_chain, only: chain_t
+  use crank_rod, only: accelerate_crank_rod
+  use ideal_chain, only: accelerate_ideal_chain
+  use joint_evaluation, only: joint_evaluation_t, clear_loads
+  use clearance_joint, only: clearance_joint_t, most_joints, n_phases, phase_free, phase_film, phase_contact
+  use joint_events, only: penetration_and_rate
+  use sticking, only: hold_surfaces
+  use piston_guide, only: piston_guide_t, guide_loads_t
+  use working_gas, only: working_gas_t
+  use crank_turns, only: crank_turns_t, wear_cycle_t
+  implicit none
+  private
+  public :: scene_t, evaluation_t, work_part_t
+  public :: by_gas, by_drive, by_damping, by_guide, by_elastic
+  public :: phase_free, phase_film, phase_contact
+  public :: event_none, event_contact_begins, event_contact_ends, of_guide, of_wear
+
+  !> Events reported in the trace.
+  integer, parameter :: event_none = 0, event_contact_begins = 1, event_contact_ends = 2
+
+  !> The results of one evaluation of a scene. Arrays have one element for each joint with clearance. The right-hand side sets only
+  !> the components that it needs.
+  type :: evaluation_t
+    type(motion_t) :: motion
+    type(accelerations_t) :: accelerations
+    type(loads_t) :: loads
+    type(joint_evaluation_t) :: joint(most_joints)
+    type(guide_loads_t) :: guide    !! of a guide that is not ideal
+    real(dp) :: crank_moment        !! moment of the drive on the crank [N m]
+    real(dp) :: cylinder_pressure   !! [Pa]
+    real(dp) :: power               !! of all non-conservative forces and the drive [W]
+  end type evaluation_t
+
+  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2, of_wear = -3   !! owners of events other than joints
+
+  !> The owner of an event function of the integrator.
+  type :: event_owner_t
+    integer :: joint = 0            !! or of_gas, of_turns, of_guide, of_wear
+    integer :: event = 0            !! number of the event within its owner
+  end type event_owner_t
+
+  !> What does work on the bodies besides the kinds of load in the joints.
+  integer, parameter :: by_gas = -1, by_drive = -2, by_damping = -3, by_guide = -4, by_elastic = -5
+
+  !> A part of the work on the bodies.
+  type :: work_part_t
+    integer :: what = 0             !! kind of load in a joint, or one of the above
+    integer :: joint = 0            !! that joint; 0: none
+    integer :: at = 0               !! index of its quadrature; 0: its work follows otherwise
+  end type work_part_t
+
+  !> A scene as an ode_problem. It claims the crank angle in the state vector, unless the crank speed is prescribed; the joints
+  !> claim their eccentricities. Quadratures are the work of all non-conservative forces and the drive [J] and, on request, the
+  !> integrals of the magnitudes of the forces at the reported places [N s] and, if it does not follow
+  !> from the work, the energy that the joints take from the bodies [J].
+  type, extends(ode_problem_t) :: scene_t
+    type(chain_t) :: chain
+    integer :: n_joints = 0         !! number of joints with clearance
+    type(clearance_joint_t), allocatable :: joints(:)
+    integer :: joint_at(n_places) = 0   !! index of the joint with clearance at each place; 0: an ideal pin, or none
+    integer, allocatable :: reported(:) !! places with results: the first one, and those with a joint
+    type(piston_guide_t), allocatable :: guide   !! not allocated: the guide is ideal
+    type(working_gas_t), allocatable :: gas
+    type(crank_turns_t), allocatable :: turns   !! turns of a free crank that end the run
+    type(wear_cycle_t), allocatable :: wear_cycle   !! turns of the crank after which the shape of a worn bore changes
+    real(dp) :: start_angle = 0     !! crank angle at t = 0 [rad]
+    real(dp) :: start_speed = 0     !! crank speed at t = 0; constant if it is prescribed without run-up [rad/s]
+    real(dp) :: span = 1            !! duration of the simulation [s]
+    type(layout_t) :: layout        !! layout of the state vector
+    type(coordinates_t) :: crank    !! indices of the crank angle in the state vector
+    logical :: runs_up = .false.    !! the prescribed speed is run up to start_speed
+    logical :: crank_moves = .true. !! the crank angle is a state: its speed is not prescribed
+    integer :: work_at = 0          !! index of the work of the forces
+    type(slice_t) :: measures       !! indices of the integrals on request
+    logical :: measures_loss = .false.   !! the last of them is the energy taken by the joints
+    type(work_part_t), allocatable :: parts(:)   !! parts of the work, if they are told apart
+    logical :: has_shared_loads = .false.   !! of these, film and contact act at the same time in a joint
+    integer :: other_part = 0       !! the part that is the whole work without that of the others; 0: none
+    logical :: is_plain = .true.    !! rigid bodies, an ideal guide and a drive that does not vary
+    logical :: may_stick = .false.  !! a joint has set-valued friction
+    logical :: enters_at_step_end = .false.   !! contacts begin at the ends of steps, and steps that enter too deep are rejected
+    logical :: has_more_rates = .false.  !! there are rates of integrals on request, of elastic members, of a guide, or of the law
+                                         !! of a joint
+    real(dp) :: entry_time = -huge(1.0_dp)          !! beginning of the last contact [s]
+    type(event_owner_t) :: event_of(max_events)     !! owners of the event functions
+  contains
+    procedure :: claim
+    procedure, non_overridable :: read_crank
+    procedure, non_overridable :: place_pins
+    procedure, non_overridable :: find_loads
+    procedure :: derivatives
+    procedure :: evaluate
+    procedure :: jacobian
+    procedure :: initial_state
+    procedure :: prepare_start
+    procedure :: declare
+    procedure :: complete_state
+    procedure :: events => all_events
+    procedure :: handle_event
+    procedure :: reported_event
+    procedure :: judge_step
+    procedure :: lands_on_step_end
+    procedure :: next_kink_time
+    procedure :: is_singular
+    procedure :: crank_angle
+    procedure :: crank_speed
+    procedure :: work
+    procedure :: measure_joint
+    procedure, non_overridable :: set_layout
+    procedure :: measure_works
+    procedure :: works
+    procedure :: pin_force
+    procedure :: force_integrals
+    procedure :: joint_loss
+    procedure :: energy_scale
+    procedure :: speed_scale
+    procedure :: twist_frequency
+  end type scene_t
+
+  interface
+    !> Derivatives of the accelerations with respect to positions and rates; in closed form if only the piston pin has clearance and
+    !> its surfaces do not stick.
+    module subroutine jacobian(self, t, y, a_p, a_v)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: t, y(:)
+      real(dp), intent(out) :: a_p(:, :), a_v(:, :)
+    end subroutine jacobian
+
+    !> Event functions of the joints, one after the other, then of the gas and of the turns of the crank.
+    pure module subroutine all_events(self, t, y, g, g_rate)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: t, y(self%n)
+      real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
+    end subroutine all_events
+
+    module subroutine handle_event(self, index, t, y, action)
+      class(scene_t), intent(inout) :: self
+      integer, intent(in) :: index
+      real(dp), intent(in) :: t
+      real(dp), intent(inout) :: y(:)
+      integer, intent(out) :: action
+    end subroutine handle_event
+
+    !> The kind of trace event that event `index` of the integrator is, before it is handled.
+    pure integer module function reported_event(self, index)
+      class(scene_t), intent(in) :: self
+      integer, intent(in) :: index
+    end function reported_event
+
+    !> Reject a step whose penetration at its end exceeds the limit of a joint, or in which a pin reverses its sliding and passes
+    !> over the static friction.
+    pure module subroutine judge_step(self, t_old, y_old, t, y, verdict, fraction)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: t_old, y_old(:), t, y(:)
+      integer, intent(out) :: verdict
+      real(dp), intent(out) :: fraction
+    end subroutine judge_step
+
+    pure logical module function lands_on_step_end(self, index)
+      class(scene_t), intent(in) :: self
+      integer, intent(in) :: index
+    end function lands_on_step_end
+
+    !> Predicted end of a contact.
+    pure real(dp) module function next_kink_time(self, t, y)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: t, y(:)
+    end function next_kink_time
+
+    !> Find the discrete state at t = 0 after everything else has been set. A pin beyond the clearance is in contact. A pin
+    !> exactly at the wall is in contact if it moves outwards or, at rest, is pressed outwards.
+    module subroutine prepare_start(self)
+      class(scene_t), intent(inout) :: self
+    end subroutine prepare_start
+
+    !> Declare the state at (t, y) to a list that records it, or set it from a list; then call `complete_state`.
+    module subroutine declare(self, list, t, y)
+      class(scene_t), intent(inout) :: self
+      type(run_state_t), intent(inout) :: list
+      real(dp), intent(inout) :: t, y(:)
+    end subroutine declare
+
+    !> Find the part of the discrete state that follows from a state that has been set.
+    module subroutine complete_state(self, t, y)
+      class(scene_t), intent(inout) :: self
+      real(dp), intent(in) :: t, y(:)
+    end subroutine complete_state
+
+    !> `find_accelerations` of a scene that is not plain: with elastic members, a guide that is not ideal or a drive that varies.
+    pure module subroutine find_general_accelerations(self, joints, t, y, now, in_domain)
+      class(scene_t), intent(in) :: self
+      type(clearance_joint_t), intent(in) :: joints(:)
+      real(dp), intent(in) :: t, y(self%n)
+      type(evaluation_t), intent(inout) :: now
+      logical, intent(out) :: in_domain
+    end subroutine find_general_accelerations
+
+    !> Set the motion of the bodies and of the pins in their bearings, as far as it follows from the state. `in_domain` is false if
+    !> it is not admissible.
+    pure module subroutine move_bodies(self, joints, t, y, now, in_domain)
+      class(scene_t), intent(in) :: self
+      type(clearance_joint_t), intent(in) :: joints(:)
+      real(dp), intent(in) :: t, y(self%n)
+      type(evaluation_t), intent(inout) :: now
+      logical, intent(out) :: in_domain
+    end subroutine move_bodies
+
+    !> Claim the states of the elastic members.
+    module subroutine claim_elastic(self)
+      class(scene_t), intent(inout) :: self
+    end subroutine claim_elastic
+
+    !> Tell the parts of the work apart; must be called before the run. One part follows from the whole work, the others are
+    !> quadratures without influence on the steps.
+    module subroutine measure_works(self)
+      class(scene_t), intent(inout) :: self
+    end subroutine measure_works
+
+    !> Rates of the quadratures of the parts of the work.
+    pure module subroutine set_work_rates(self, y, now, dydt)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: y(self%n)
+      type(evaluation_t), intent(in) :: now
+      real(dp), intent(inout) :: dydt(*)
+    end subroutine set_work_rates
+
+    !> Work of each part on the bodies since t = 0 [J], in a scene that tells them apart.
+    pure module function works(self, t, y)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: t, y(:)
+      real(dp) :: works(size(self%parts))
+    end function works
+
+    !> Natural frequency of crank and flywheel on an elastic crankshaft at the starting angle [rad/s], with ideal joints and a rigid
+    !> rod.
+    pure real(dp) module function twist_frequency(self)
+      class(scene_t), intent(in) :: self
+    end function twist_frequency
+  end interface
+
+contains
+
+  pure subroutine derivatives(self, t, y, dydt, in_domain)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    real(dp), intent(out) :: dydt(self%n)
+    logical, intent(out) :: in_domain
+    type(evaluation_t) :: now
+    integer :: i
+    if (self%has_shared_loads) then
+      do i = 1, self%n_joints
+        call clear_loads(now%joint(i))
+      end do
+    end if
+    call find_accelerations(self, self%n_joints, self%joints, t, y, now, in_domain)
+    if (.not. in_domain) return
+    if (self%crank_moves) then
+      dydt(self%crank%position) = now%motion%crank_speed
+      dydt(self%crank%rate) = now%accelerations%crank
+    end if
+    call set_rates(self%n_joints, self%joints, now, dydt)
+    dydt(self%work_at) = now%power
+    if (.not. self%has_more_rates) return
+    if (allocated(self%guide)) call self%guide%set_rates(now%motion%tilting, now%accelerations%offset, now%accelerations%tilt, &
+      dydt)
+    if (allocated(self%chain%elastic)) call self%chain%elastic%set_rates(now%motion, now%accelerations, dydt)
+    do i = 1, self%n_joints
+      if (self%joints(i)%has_own_rates) call self%joints(i)%set_own_rates(now%joint(i), dydt)
+    end do
+    if (allocated(self%parts)) call set_work_rates(self, y, now, dydt)
+    if (self%measures%last < self%measures%first) return
+    if (self%measures_loss) dydt(self%measures%last) = -sum(now%joint(:self%n_joints)%power)
+    do i = 1, size(self%reported)
+      dydt(self%measures%first + i - 1) = force_size(self%pin_force(now, self%reported(i)))
+    end do
+  end subroutine derivatives
+
+  !> Rates of the states of the joints.
+  pure subroutine set_rates(n, joints, now, dydt)
+    integer, intent(in) :: n
+    type(clearance_joint_t), intent(in) :: joints(n)
+    type(evaluation_t), intent(in) :: now
+    real(dp), intent(inout) :: dydt(*)
+    integer :: i
+    do i = 1, n
+      associate (at => joints(i)%at, pin => joints(i)%site%pin)
+        dydt(at%position) = now%joint(i)%eccentricity_rate(1)
+        dydt(at%position + 1) = now%joint(i)%eccentricity_rate(2)
+        dydt(at%rate) = joints(i)%site%sense*now%accelerations%pin(1, pin)
+        dydt(at%rate + 1) = joints(i)%site%sense*now%accelerations%pin(2, pin)
+      end associate
+    end do
+  end subroutine set_rates
+
+  !> Evaluate all quantities at (t, y). `in_domain` is false if a model is not defined there; then only the crank angle and the
+  !> motion of the joints are set, without sliding speeds.
+  pure subroutine evaluate(self, t, y, evaluation, in_domain)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    type(evaluation_t), intent(out) :: evaluation
+    logical, intent(out) :: in_domain
+    integer :: i
+    evaluation%cylinder_pressure = 0
+    evaluation%loads%force = 0
+    evaluation%loads%moment = 0
+    evaluation%motion%crank_pin = 0
+    evaluation%motion%crank_pin_rate = 0
+    do i = 1, self%n_joints
+      call clear_loads(evaluation%joint(i))
+    end do
+    call find_accelerations(self, self%n_joints, self%joints, t, y, evaluation, in_domain)
+    if (in_domain) call self%chain%move_piston(evaluation%motion)
+    do i = 1, self%n_joints
+      call self%joints(i)%complete(evaluation%motion, in_domain, y, evaluation%joint(i))
+    end do
+  end subroutine evaluate
+
+  !> Compute motion, loads, accelerations and power. `in_domain` is false if an eccentricity is not admissible. (The joints are
+  !> passed as an argument of fixed size, which avoids looking up bounds and strides. The equations of the two most common chains
+  !> are called directly, so that the compiler includes them here.)
+  pure subroutine find_accelerations(self, n, joints, t, y, now, in_domain)
+    class(scene_t), intent(in) :: self
+    integer, intent(in) :: n
+    type(clearance_joint_t), intent(in) :: joints(n)
+    real(dp), intent(in) :: t, y(self%n)
+    type(evaluation_t), intent(inout) :: now
+    logical, intent(out) :: in_domain
+
+    if (.not. self%is_plain) then
+      call find_general_accelerations(self, joints, t, y, now, in_domain)
+      return
+    end if
+    call self%read_crank(t, y, now%motion)
+    call self%place_pins(n, joints, y, now, in_domain)
+    if (.not. in_domain) return
+    associate (bodies => self%chain%bodies, drive => self%chain%drive, motion => now%motion)
+      call follow_rod(bodies%crank%length, bodies%per_rod_length, motion, in_domain)
+      if (.not. in_domain) return
+      call self%find_loads(n, joints, y, now)
+      if (n == 0) then
+        call accelerate_ideal_chain(bodies, drive, motion, now%loads, now%accelerations, now%crank_moment)
+      else if (.not. self%chain%is_loose(crank_pin)) then
+        call accelerate_crank_rod(bodies, drive, now%loads, motion, now%accelerations, now%crank_moment)
+      else
+        call self%chain%accelerate_rigid(drive, motion, now%loads, now%accelerations, now%crank_moment)
+      end if
+      if (self%may_stick) then
+        now%accelerations%rod_end = -now%accelerations%rod
+        if (any(now%joint(:n)%sticks)) call hold_surfaces(self%chain, joints, motion, now%joint, now%loads, &
+          now%accelerations, now%crank_moment, now%power)
+      end if
+      now%power = (now%crank_moment - drive%damping*motion%crank_speed)*motion%crank_speed + now%power
+      if (.not. allocated(self%gas)) return
+      call follow_piston(bodies%crank%length, bodies%rod%length, motion)
+      now%power = now%power - now%loads%axial_force*motion%piston_velocity
+    end associate
+  end subroutine find_accelerations
+
+  !> Set angle and speed of the crank.
+  pure subroutine read_crank(self, t, y, motion)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    type(motion_t), intent(inout) :: motion
+    if (self%crank_moves) then
+      call turn_crank(motion, y(self%crank%position), y(self%crank%rate))
+    else
+      call turn_crank(motion, crank_angle(self, t, y), crank_speed(self, t, y))
+      if (self%runs_up) motion%held_acceleration = self%chain%varying%acceleration(t)
+    end if
+  end subroutine read_crank
+
+  !> Set the eccentricities of the joints, also in the motion of the chain. `in_domain` is false if one is not admissible.
+  pure subroutine place_pins(self, n, joints, y, now, in_domain)
+    class(scene_t), intent(in) :: self
+    integer, intent(in) :: n
+    type(clearance_joint_t), intent(in) :: joints(n)
+    real(dp), intent(in) :: y(self%n)
+    type(evaluation_t), intent(inout) :: now
+    logical, intent(out) :: in_domain
+    real(dp) :: offset(2), offset_rate(2), shift(2), shift_rate(2)
+    logical :: admitted
+    integer :: i
+    admitted = .true.
+    offset = 0
+    offset_rate = 0
+    do i = 1, n
+      associate (joint => joints(i), relative => now%joint(i))
+        call joint%read_state(y, relative)
+        admitted = admitted .and. joint%admits(y, relative)
+        shift = joint%site%sense*relative%eccentricity
+        shift_rate = joint%site%sense*relative%eccentricity_rate
+        offset = offset + shift
+        offset_rate = offset_rate + shift_rate
+        if (joint%site%pin == piston_pin) cycle
+        now%motion%crank_pin = shift
+        now%motion%crank_pin_rate = shift_rate
+      end associate
+    end do
+    now%motion%offset = offset
+    now%motion%offset_rate = offset_rate
+    in_domain = admitted
+  end subroutine place_pins
+
+  !> The loads of joints and gas, and the power of the joints.
+  pure subroutine find_loads(self, n, joints, y, now)
+    class(scene_t), intent(in) :: self
+    integer, intent(in) :: n
+    type(clearance_joint_t), intent(in) :: joints(n)
+    real(dp), intent(in) :: y(self%n)
+    type(evaluation_t), intent(inout) :: now
+    integer :: i
+    now%power = 0
+    do i = 1, n
+      call joints(i)%loads(self%chain%bodies, now%motion, y, now%joint(i), now%loads)
+      now%power = now%power + now%joint(i)%power
+    end do
+    now%loads%axial_force = 0
+    if (.not. allocated(self%gas)) return
+    now%cylinder_pressure = self%gas%pressure(now%motion%crank_angle)
+    now%loads%axial_force = self%gas%force(now%cylinder_pressure)
+  end subroutine find_loads
+
+  !> Let all parts claim their states and number the events, after everything else has been set.
+  subroutine claim(self)
+    class(scene_t), intent(inout) :: self
+    integer :: i
+    self%n_joints = size(self%joints)
+    self%joint_at = 0
+    do i = 1, self%n_joints
+      self%joint_at(self%joints(i)%place) = i
+    end do
+    self%reported = pack(in_order, in_order == in_order(1) .or. self%joint_at(in_order) > 0)
+    self%highest_mode = n_phases**self%n_joints - 1
+    if (allocated(self%guide)) self%highest_mode = 2*(self%highest_mode + 1) - 1
+    self%crank_moves = self%chain%drive%free_crank .or. self%chain%has_crankshaft()
+    call claim_states(self)
+    call self%layout%count_again()
+    call claim_states(self)
+    self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying))
+    self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide)
+    call self%set_layout()
+  end subroutine claim
+
+  !> Let all parts claim their states.
+  subroutine claim_states(self)
+    class(scene_t), intent(inout) :: self
+    type(slice_t) :: work
+    integer :: i
+    if (self%crank_moves) call self%layout%claim_positions(1, 1.0_dp, self%speed_scale(), self%crank, grows=.true.)
+    do i = 1, self%n_joints
+      call self%joints(i)%claim(self%layout, self%speed_scale(), self%span)
+    end do
+    if (allocated(self%guide)) call self%guide%claim(self%layout, self%speed_scale(), self%span)
+    if (allocated(self%chain%elastic)) call claim_elastic(self)
+    call self%layout%claim_quadratures(1, self%energy_scale(), work)
+    self%work_at = work%first
+  end subroutine claim_states
+
+  !> Pass the parts of the layout that the integrator needs to it.
+  subroutine set_layout(self)
+    class(scene_t), intent(inout) :: self
+    self%n = self%layout%n()
+    self%n_positions = self%layout%n_positions
+    self%n_quadratures = self%layout%n_quadratures
+  end subroutine set_layout
+
+  !> Request the integrals of the joints; must be called before the run. In a scene with clearance they do not influence the steps.
+  !> In a scene without clearance the only one, the integral of the force, takes part in the error control, since otherwise the
+  !> steps would be too long for it.
+  subroutine measure_joint(self)
+    class(scene_t), intent(inout) :: self
+    integer :: n
+    real(dp) :: scale
+    n = size(self%reported)
+    scale = 0
+    if (self%n_joints > 0) then
+      self%measures_loss = .not. work_tells(self)
+      if (self%measures_loss) n = n + 1
+    else
+      scale = self%energy_scale()/(self%chain%bodies%crank%length*self%speed_scale())
+    end if
+    call self%layout%claim_quadratures(n, scale, self%measures)
+    self%has_more_rates = .true.
+    call self%set_layout()
+  end subroutine measure_joint
+
+  !> Whether the energy taken by the joints follows from the work of all forces: no other part does work except a constant torque.
+  pure logical function work_tells(self)
+    class(scene_t), intent(in) :: self
+    work_tells = self%chain%drive%free_crank .and. .not. (self%chain%drive%damping > 0 .or. allocated(self%gas) &
+      .or. allocated(self%chain%varying) .or. allocated(self%guide) .or. allocated(self%chain%elastic))
+  end function work_tells
+
+  !> Force of the joint at a place on its pin [N]; at a place without joint that on the pin of its ideal pin.
+  pure function pin_force(self, now, place) result(force)
+    class(scene_t), intent(in) :: self
+    type(evaluation_t), intent(in) :: now
+    integer, intent(in) :: place
+    real(dp) :: force(2)
+    if (self%joint_at(place) > 0) then
+      force = now%joint(self%joint_at(place))%force
+    else
+      force = now%loads%force(:, places(place)%pin)
+    end if
+  end function pin_force
+
+  !> Integrals of the magnitudes of the forces on the pins so far [N s], in a scene that computes them; 0 at places without results.
+  pure function force_integrals(self, y) result(integrals)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    real(dp) :: integrals(n_places)
+    integrals = 0
+    if (self%measures%last < self%measures%first) return
+    integrals(self%reported) = y(self%measures%first:self%measures%first + size(self%reported) - 1)
+  end function force_integrals
+
+  !> Energy that the joints have taken from the bodies so far [J], in a scene that computes it. If it is not integrated itself, it
+  !> is the work of the driving torque minus the work of all forces.
+  pure real(dp) function joint_loss(self, t, y)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    joint_loss = 0
+    if (self%n_joints == 0 .or. self%measures%last < self%measures%first) return
+    if (self%measures_loss) then
+      joint_loss = y(self%measures%last)
+    else
+      joint_loss = self%chain%drive%torque*(self%crank_angle(t, y) - self%start_angle) - self%work(y)
+    end if
+  end function joint_loss
+
+  !> State at t = 0.
+  pure function initial_state(self) result(y)
+    class(scene_t), intent(in) :: self
+    real(dp) :: y(self%n)
+    integer :: i
+    y = 0
+    if (allocated(self%chain%elastic)) call self%chain%elastic%set_start(y)
+    if (self%crank_moves) then
+      y(self%crank%position) = self%start_angle
+      y(self%crank%rate) = self%start_speed
+      if (self%runs_up) y(self%crank%rate) = self%chain%varying%first_speed   ! on a shaft whose other end is run up
+    end if
+    do i = 1, self%n_joints
+      call self%joints(i)%set_start(y)
+    end do
+    if (allocated(self%guide)) call self%guide%set_start(y)
+  end function initial_state
+
+  !> Whether the force of a film has no bound near this state.
+  pure logical function is_singular(self, y)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    integer :: i
+    is_singular = .false.
+    do i = 1, self%n_joints
+      is_singular = is_singular .or. self%joints(i)%is_singular(y)
+    end do
+  end function is_singular
+
+  !> Crank angle at (t, y) [rad].
+  pure real(dp) function crank_angle(self, t, y)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    if (self%crank_moves) then
+      crank_angle = y(self%crank%position)
+    else
+      crank_angle = self%start_angle + self%start_speed*t
+      if (self%runs_up) crank_angle = self%start_angle + self%chain%varying%turned(t)
+    end if
+  end function crank_angle
+
+  !> Crank speed at (t, y) [rad/s].
+  pure real(dp) function crank_speed(self, t, y)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    if (self%crank_moves) then
+      crank_speed = y(self%crank%rate)
+    else
+      crank_speed = self%start_speed
+      if (self%runs_up) crank_speed = self%chain%varying%speed(t)
+    end if
+  end function crank_speed
+
+  !> Work of all non-conservative forces and the drive so far [J].
+  pure real(dp) function work(self, y)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    work = y(self%work_at)
+  end function work
+
+  !> Natural size of the crank speed [rad/s]: the starting speed; from rest, one radian in the time simulated. If a run ends during
+  !> its run-up, the largest speed that it reaches.
+  pure real(dp) function speed_scale(self)
+    class(scene_t), intent(in) :: self
+    speed_scale = abs(self%start_speed)
+    if (self%runs_up) then
+      associate (drive => self%chain%varying)
+        if (self%span < drive%ramp_time) speed_scale = max(abs(drive%first_speed), abs(drive%speed(self%span)))
+      end associate
+    end if
+    if (.not. speed_scale > 0) speed_scale = 1/self%span
+  end function speed_scale
+
+  !> Natural size of the energy [J]: the kinetic energy at the speed scale, the potential energy of a lift by the crank length, and
+  !> the energy of rod and piston at the natural speeds of the joints.
+  pure real(dp) function energy_scale(self)
+    class(scene_t), intent(in) :: self
+    integer :: i
+    associate (b => self%chain%bodies)
+      energy_scale = 0.5_dp*(b%crank_term + b%piston%mass*b%crank%length**2)*self%speed_scale()**2 &
+        + (b%crank%mass + b%rod%mass + b%piston%mass)*norm2(b%gravity)*b%crank%length
+      if (self%chain%has_crankshaft()) energy_scale = energy_scale &
+        + 0.5_dp*self%chain%elastic%crankshaft%flywheel_inertia*self%speed_scale()**2
+      do i = 1, self%n_joints
+        energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%joints(i)%own_speed(self%span)**2
+      end do
+      if (allocated(self%guide)) &
+        energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%guide%own_speed(self%span)**2
+    end associate
+  end function energy_scale
+end module scene_problem

@@ -1,0 +1,180 @@
+!> The columns of a trace: which columns a scene has, which the case asks for, and the values of a row.
+module trace_columns
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_case_file
+  use text_tools, only: nearest_word, allowed
+  use trace_row, only: trace_row_t, column_list_t, name_length
+  use chain_motion, only: motion_t, accelerations_t, piston_pin
+  use chain_reactions, only: reactions_t
+  use joint_columns, only: add_joint_columns
+  use guide_columns, only: add_guide_columns
+  use elastic_columns, only: add_elastic_columns
+  use case_definition, only: case_t
+  use scene_problem, only: scene_t, evaluation_t
+  use scene_builder, only: assemble_scene
+  implicit none
+  private
+  public :: column_list_t, choose_columns, row_values, column_name
+
+contains
+
+  !> The columns that the case asks for. Error: a column that the scene does not have.
+  subroutine choose_columns(case, ideal_joint, list, error)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint  !! true for the ideal twin: it has the columns of ideal joints, and ignores names of other
+                                        !! columns
+    type(column_list_t), intent(out) :: list
+    type(error_t), allocatable, intent(out) :: error
+    type(scene_t), allocatable :: scene
+    type(trace_row_t) :: row
+    type(evaluation_t) :: nothing
+    logical, allocatable :: wanted(:)
+    integer :: i
+
+    call assemble_scene(case, ideal_joint, .false., scene)
+    nothing = transfer([(0.0_dp, i=1, storage_size(nothing)/storage_size(0.0_dp) + 1)], nothing)
+    call row%collect_names()
+    call add_columns(scene, 0.0_dp, nothing, 0.0_dp, 0.0_dp, row)
+    list%names = row%names(:row%n)
+    list%meanings = row%meanings(:row%n)
+    list%on_request = row%on_request(:row%n)
+    allocate (wanted(row%n), source=.not. row%on_request(:row%n))
+    if (case%output%columns /= 'standard') &
+      call read_names(case%output%columns, list%names, row%on_request(:row%n), ideal_joint, wanted, error)
+    list%id = pack([(i, i=1, row%n)], wanted)
+  end subroutine choose_columns
+
+  !> Mark the columns named in a text such as 'time, crank_angle' or 'standard, film_power'. Error: each name that the scene does
+  !> not have.
+  subroutine read_names(text, names, on_request, ignores_missing, wanted, error)
+    character(len=*), intent(in) :: text
+    character(len=name_length), intent(in) :: names(:)   !! names of the columns of the scene
+    logical, intent(in) :: on_request(:)   !! true for columns that are not standard
+    logical, intent(in) :: ignores_missing
+    logical, intent(out) :: wanted(:)
+    type(error_t), allocatable, intent(out) :: error
+    character(len=name_length) :: known(size(names) + 1)   !! names without units
+    character(len=:), allocatable :: rest, name, near, message
+    integer :: i, comma
+    logical :: found
+
+    known(1) = 'standard'
+    do i = 1, size(names)
+      known(i + 1) = names(i)(:scan(names(i), '[') - 1)
+    end do
+    message = ''
+    near = ''
+    wanted = .false.
+    rest = text//','
+    do
+      comma = scan(rest, ',')
+      if (comma == 0) exit
+      name = trim(adjustl(rest(:comma - 1)))
+      rest = rest(comma + 1:)
+      found = ignores_missing .or. name == 'standard'
+      if (name == 'standard') wanted = wanted .or. .not. on_request
+      do i = 1, size(names)
+        if (name /= names(i) .and. name /= known(i + 1)) cycle
+        found = .true.
+        wanted(i) = .true.
+      end do
+      if (found) cycle
+      if (message /= '') message = message//achar(10)
+      near = nearest_word(name, known)
+      if (near /= '') near = '; did you mean '//near//'?'
+      message = message//"&output columns = '"//name//"': no such column in this scene"//near//allowed(known)
+    end do
+    if (message /= '') call fail(error, message, status_case_file)
+  end subroutine read_names
+
+  !> Name and unit of column i of the list.
+  pure function column_name(list, i) result(name)
+    type(column_list_t), intent(in) :: list
+    integer, intent(in) :: i
+    character(len=:), allocatable :: name
+    name = trim(list%names(list%id(i)))
+  end function column_name
+
+  !> The values of a row at time t, from an evaluation of the scene and the work of the non-conservative forces.
+  pure subroutine row_values(list, scene, t, now, work, initial_energy, values)
+    type(column_list_t), intent(in) :: list
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t                !! [s]
+    type(evaluation_t), intent(in) :: now
+    real(dp), intent(in) :: work             !! of the non-conservative forces since t = 0 [J]
+    real(dp), intent(in) :: initial_energy   !! [J]
+    real(dp), intent(out) :: values(:)       !! (size(list%id))
+    type(trace_row_t) :: row
+    integer :: i
+    call row%choose(list)
+    call add_columns(scene, t, now, work, initial_energy, row)
+    do i = 1, size(values)   ! row%values(list%id) would allocate a copy of the indices
+      values(i) = row%values(list%id(i))
+    end do
+  end subroutine row_values
+
+  !> Add every column of a scene to a row, in the order of the trace.
+  pure subroutine add_columns(scene, t, now, work, initial_energy, row)
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, work, initial_energy
+    type(evaluation_t), intent(in) :: now
+    type(trace_row_t), intent(inout) :: row
+    real(dp) :: energy
+    integer :: i
+    call row%add('time[s]', t, 'time since the start of the run')
+    call add_motion(now%motion, now%accelerations, row)
+    call row%add('crank_moment[N.m]', now%crank_moment, &
+      'moment of the drive on the crank, positive in the sense of crank_angle; at constant speed the one that holds the speed')
+    call add_forces(scene, now, row)
+    energy = 0
+    if (row%wants(2)) energy = scene%chain%energy(now%motion)
+    call row%add('energy[J]', energy, 'kinetic and potential energy of all bodies, with the energy stored in elastic members')
+    call row%add('energy_residual[J]', energy - initial_energy - work, &
+      'energy minus initial energy minus the work of all non-conservative forces and of the drive; 0 for an exact integration')
+    do i = 1, scene%n_joints
+      call add_joint_columns(scene%joints(i), now%joint(i), row)
+    end do
+    if (allocated(scene%guide)) call add_guide_columns(scene%guide, now%motion, now%accelerations, now%guide, row)
+    if (allocated(scene%chain%elastic)) call add_elastic_columns(scene%chain%elastic, now%motion, now%accelerations, row)
+    if (allocated(scene%gas)) call scene%gas%add_columns(now%motion%sin_crank, now%motion%cos_crank, now%cylinder_pressure, row)
+  end subroutine add_columns
+
+  pure subroutine add_motion(m, a, row)
+    type(motion_t), intent(in) :: m
+    type(accelerations_t), intent(in) :: a
+    type(trace_row_t), intent(inout) :: row
+    real(dp) :: rod_angle
+    call row%add('crank_angle[rad]', m%crank_angle, 'angle of the crank from +x towards +y, counted on over whole revolutions')
+    rod_angle = 0
+    if (row%wants(1)) rod_angle = atan2(m%sin_rod, m%cos_rod)
+    call row%add('rod_angle[rad]', rod_angle, 'angle of the connecting rod from the cylinder axis, positive from +x towards -y')
+    call row%add('piston_position[m]', m%piston_position, 'height of the piston pin bearing above the crank axis, along x')
+    call row%add('crank_speed[rad/s]', m%crank_speed, 'rate of crank_angle')
+    call row%add('rod_speed[rad/s]', m%rod_speed, 'rate of rod_angle')
+    call row%add('piston_velocity[m/s]', m%piston_velocity, 'rate of piston_position')
+    call row%add('crank_acceleration[rad/s2]', a%crank, 'rate of crank_speed')
+    call row%add('rod_acceleration[rad/s2]', a%rod, 'rate of rod_speed')
+    call row%add('piston_acceleration[m/s2]', a%piston, 'rate of piston_velocity')
+  end subroutine add_motion
+
+  !> Add the columns of the forces between the bodies.
+  pure subroutine add_forces(scene, now, row)
+    type(scene_t), intent(in) :: scene
+    type(evaluation_t), intent(in) :: now
+    type(trace_row_t), intent(inout) :: row
+    type(reactions_t) :: reaction
+    call row%add('pin_force_x[N]', now%loads%force(1, piston_pin), &
+      'force of the joint on the piston pin (on the rod), along x; the piston takes the opposite force')
+    call row%add('pin_force_y[N]', now%loads%force(2, piston_pin), 'the same along y')
+    if (row%wants(7)) reaction = scene%chain%reactions(now%motion, now%accelerations, now%loads)
+    call row%add('crankpin_force_x[N]', reaction%crankpin(1), 'force of the crank on the rod at the crank pin, along x (F3)')
+    call row%add('crankpin_force_y[N]', reaction%crankpin(2), 'the same along y (F4)')
+    call row%add('crank_bearing_force_x[N]', reaction%crank_bearing(1), &
+      'force of the frame on the crank at its main bearing, along x (F1)')
+    call row%add('crank_bearing_force_y[N]', reaction%crank_bearing(2), 'the same along y (F2)')
+    call row%add('guide_force[N]', reaction%guide, 'force of the piston on its guide along y; the piston takes the opposite (F7)')
+    call row%add('frame_force_x[N]', reaction%frame(1), &
+      'force of the frame on the mechanism along x: crank bearing, guide and cylinder head together; the frame takes the opposite')
+    call row%add('frame_force_y[N]', reaction%frame(2), 'the same along y')
+  end subroutine add_forces
+end module trace_columns
