@@ -13,7 +13,7 @@ trap 'rm -f "$log"' EXIT
 .venv/bin/python scripts/manual/pages.py collect "$program" || exit 1
 .venv/bin/ford README.md >"$log" 2>&1
 status=$?
-if [ "$status" != 0 ] || grep -qi -e warning -e error "$log"; then
+if [ "$status" != 0 ] || grep -qiwE 'warnings?|errors?' "$log"; then
   cat "$log" >&2
   echo "manual: FORD failed or warned" >&2
   exit 1

@@ -47,7 +47,7 @@ for argument in "$@"; do
     "$(number %.4f contact_time_fraction)" "$(number %.4e min_film_thickness)" \
     "$(value max_pin_force "$summary")" "$(value mean_crank_speed "$summary")" \
     "$(value max_energy_residual_relative "$summary")" "$(value wall_time "$summary")" \
-    "$(sed -n 's/^status,"\(.*\)",.*/\1/p' "$summary")"
+    "$(sed -n '/^status,/{s/^status,"\{0,1\}//;s/"\{0,1\},$//;p;}' "$summary")"
   [ -n "$(value crank_pin_contacts "$summary")" ] && printf '%-24s %9s %9s %12s %12s\n' '  its crank pin' \
     "$(value crank_pin_contacts "$summary")" "$(number %.4f crank_pin_contact_time_fraction)" \
     "$(number %.4e crank_pin_min_film_thickness)" "$(number %.4e crank_pin_max_pin_force)"

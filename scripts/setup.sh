@@ -8,6 +8,7 @@
 #   scripts/setup.sh --studies  also the packages of gudgeon-plot sensitivity, scripts/run_studies.sh and scripts/cluster
 #   scripts/setup.sh --manual   also FORD, which scripts/manual.sh needs
 #   scripts/setup.sh --lint     also the linters of Fortran and Python
+#   scripts/setup.sh --embedding  also what the tests of the library, the Python package and functional mock-up units need
 #
 # Root or sudo is needed only to install Debian packages. fpm and gudgeon-plot are installed in .venv, with links to them in
 # /usr/local/bin or ~/.local/bin. This file is POSIX sh; if it is sourced, it changes no option of the calling shell.
@@ -53,11 +54,13 @@ pathlib.Path(sysconfig.get_path("purelib"), "gudgeon.pth").write_text(str(pathli
 }
 
 # fpm 0.12 still links the objects of source files that have been moved or removed, without a message. Therefore all programs are
-# built again if the list of source files has changed since the last set-up.
+# built again if a source file of the last set-up is gone.
 gudgeon_sources() {
   gudgeon_list=$(find src tests scripts -name '*.f90' | sort)
   [ "$gudgeon_list" = "$(cat build/sources 2>/dev/null)" ] && return 0
-  rm -rf build/gfortran_* scripts/bench/build/gfortran_*
+  for gudgeon_file in $(cat build/sources 2>/dev/null || echo none); do
+    [ -f "$gudgeon_file" ] || { rm -rf build/gfortran_* scripts/bench/build/gfortran_* tests/build/gfortran_*; break; }
+  done
   mkdir -p build && printf '%s\n' "$gudgeon_list" >build/sources
 }
 
@@ -98,10 +101,10 @@ case "${0##*/} $#" in
           gudgeon_apt chromium chromium-driver || gudgeon_status=1
         fi
         ;;
-      --studies) gudgeon_packages="-r scripts/python/requirements.txt -r scripts/python/requirements-studies.txt" ;;
+      --studies | --embedding) gudgeon_packages="-r scripts/python/requirements.txt -r scripts/python/requirements-${1#--}.txt" ;;
       --manual | --lint) gudgeon_packages="-r scripts/python/requirements-${1#--}.txt" ;;
       *)
-        echo "setup: usage: scripts/setup.sh [--python | --browser | --studies | --manual | --lint]" >&2
+        echo "setup: usage: scripts/setup.sh [--python | --browser | --studies | --manual | --lint | --embedding]" >&2
         gudgeon_status=2
         ;;
     esac
@@ -112,6 +115,6 @@ case "${0##*/} $#" in
     ;;
 esac
 unset -f gudgeon_apt gudgeon_link gudgeon_venv gudgeon_pip gudgeon_python gudgeon_sources gudgeon_setup
-unset gudgeon_sudo gudgeon_dir gudgeon_packages gudgeon_list
+unset gudgeon_sudo gudgeon_dir gudgeon_packages gudgeon_list gudgeon_file
 # the status of the last command is that of the set-up, whether this file is sourced or run
 [ "$gudgeon_status" = 0 ]

@@ -1,66 +1,104 @@
 #!/bin/sh
-# Sets up the tool chain and runs the tests: those in Fortran with every check of the compiler and warnings as errors, then the released
-# program as users run it. Ends with the line "N passed, N failed"; the exit status is 0 if nothing failed.
+# Sets up the tool chain and runs the tests: those in Fortran with every check of the compiler and warnings as errors, and the released
+# program as users run it, two stages side by side. Ends with the line "N passed, N failed"; the exit status is 0 if nothing failed.
 #
 #   scripts/test.sh                     what every change must pass
-#   scripts/test.sh --all               the rest too: Fortran tests as released, tests of the independent judge
-#   scripts/test.sh contact friction    the Fortran suites test_contact and test_friction alone, with all checks of the compiler
+#   scripts/test.sh --all               the rest too: Fortran tests as released, tests of the independent judge, more extreme scenes
+#   scripts/test.sh contact friction    the Fortran suites test_contact and test_friction alone, with all checks of the compiler;
+#                                       with --times, the processor time of each
 cd "$(dirname "$0")/.." || exit 1
 . scripts/setup.sh || { echo "0 passed, 1 failed"; exit 1; }
+if [ "$1" = --stage ]; then   # --stage FOLDER NAME|COMMAND: run the command, print its output and add its counts to those in the folder
+  log=$(mktemp "$2/log.XXXXXX")
+  began=$(date +%s)
+  timeout 1200 sh -c "${3#*|}" >"$log" 2>&1   # none takes a third of that
+  status=$?
+  seconds=$(($(date +%s) - began))
+  times >"$log.times"
+  processor=$(tail -n 1 "$log.times" | tr 'ms' '  ' | awk '{ printf "%.0f", 60*($1 + $3) + $2 + $4 }')
+  {
+    echo "== ${3%%|*}"
+    echo "   $seconds s, $processor s of processor time"
+    grep -v '^\[ *[0-9]*%\]' "$log"
+  } >"$log.said"
+  cat "$log.said"
+  awk -v status=$status '/^[0-9]+ passed, [0-9]+ failed$/ { passed = $1; failed = $3; counted = 1 }
+    END { print passed + 0, failed + 0, (!counted || (status && !failed)) }' "$log" >>"$2/counts"   # not built, or crashed: wrong
+  exit 0
+fi
 all=false
 [ "$1" = --all ] && all=true && shift
-[ $# -gt 0 ] && exec fpm @strict -- "$@"
 
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
-passed=0
-failed=0
-wrong=0
-
-count() {   # count NAME COMMAND...: run the command and add up its counts
-  name=$1
-  shift
-  echo "== $name"
-  began=$(date +%s)
-  timeout 1200 "$@" >"$log" 2>&1   # none takes a third of that
-  status=$?
-  echo "   $(($(date +%s) - began)) s"
-  grep -v '^\[ *[0-9]*%\]' "$log"
-  counts=$(sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed$/\1 \2/p' "$log" | tail -n 1)
-  if [ -n "$counts" ]; then
-    passed=$((passed + ${counts% *}))
-    failed=$((failed + ${counts#* }))
-    [ "$status" != 0 ] && [ "${counts#* }" = 0 ] && wrong=$((wrong + 1))
-  else
-    wrong=$((wrong + 1))   # the program was not built, or crashed
-  fi
+run_suites() {   # run_suites PROGRAM FOLDER SUITE...: build a Fortran test program, units or runs, of the package in this folder
+  program=$1
+  folder=$2
+  shift 2
+  said=$(fpm @strict --directory "$folder" --target "$program" --runner echo 2>&1) || { printf '%s\n' "$said" >&2; return 1; }
+  "$folder/$(printf '%s\n' "$said" | grep "^build/.*/$program\$" | tail -n 1)" "$@"
 }
 
-count "all modules and programs compile" sh -c 'fpm build --no-prune && fpm build --directory scripts/bench && echo "1 passed, 0 failed"'
-count "build scripts" tests/test_build.sh
-count "layers, linters" sh -c 'scripts/setup.sh --lint && tests/test_layers.py'
-count "Fortran tests, all compiler checks" fpm @strict
-count "random changes of case files" tests/test_fuzz.py
-$all && count "Fortran tests, release build" fpm @release_tests
-count "command line" tests/test_program.sh
-count "parameter studies" tests/test_sweep.sh
-$all && count "independent judge of runs" tests/test_judge.py
-count "extreme scenes" tests/judge/extremes --scenes 120 --seed 5 --evaluations 100000 --judged 24 --limit 120 --known tests/judge/known_findings.csv --quiet
-count "states and runs that go on from them" tests/test_state_file.py
-count "summaries against traces" tests/test_summaries.py
-count "answers of cycles" tests/test_cycle_answers.py
-count "force tables of films" tests/test_film_tables.py
-count "failures of the machine" tests/test_faults.py --kills 10
-count "pictures" sh -c 'scripts/setup.sh --python && tests/test_plots.py'
-count "analysis of settled cycles" sh -c 'scripts/setup.sh --python && .venv/bin/python tests/test_orders.py'
-count "heat and work of the gas" sh -c 'scripts/setup.sh --python && .venv/bin/python tests/test_gas.py'
-count "bearing cases" python3 tests/test_bearing_cases.py
-count "effects of single models" sh -c 'scripts/setup.sh --python && .venv/bin/python tests/test_models.py'
-count "pages of runs in a browser" sh -c 'scripts/setup.sh --browser && tests/test_report.py'
-count "manual" sh -c 'scripts/setup.sh --manual && tests/test_manual.py'
-count "statements of the dissertation" sh -c 'scripts/setup.sh --python && .venv/bin/python scripts/bench/check_findings.py --check'
-count "sensitivity and cluster studies" sh -c 'scripts/setup.sh --studies && tests/test_studies.py'
+if [ $# -gt 0 ]; then
+  times=
+  units=
+  runs=
+  for name; do
+    if [ "$name" = --times ]; then times=$name
+    elif grep -q "run_test_$name\$" tests/units.f90; then units="$units $name"
+    else runs="$runs $name"; fi
+  done
+  status=0
+  # shellcheck disable=SC2086  # names
+  [ -z "$units" ] || run_suites units tests $times $units || status=1
+  # shellcheck disable=SC2086
+  [ -z "$runs" ] || run_suites runs . $times $runs || status=1
+  exit $status
+fi
 
-failed=$((failed + wrong))
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ]
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# Run stages, two at a time, from lines NAME|COMMAND: each prints its output when it has ended, and adds a line
+# `passed failed wrong` to the counts.
+run_stages() { tr '\n' '\0' | xargs -0 -n 1 -P 2 scripts/test.sh --stage "$work"; }
+
+# Programs are built and packages are installed first, so that later stages find them.
+run_stages <<'END'
+programs|scripts/build.sh && fpm @strict --runner true && fpm build --no-prune && fpm build --directory scripts/bench && echo "1 passed, 0 failed"
+Python packages, browser|for kind in python browser studies manual lint embedding; do scripts/setup.sh --$kind || exit 1; done; echo "1 passed, 0 failed"
+END
+
+stages() {   # the longest first
+  cat <<'END'
+manual|tests/test_manual.py
+Fortran tests of cases|fpm @strict --target runs
+extreme scenes|tests/judge/extremes --scenes 60 --seed 5 --evaluations 100000 --judged 12 --limit 120 --known tests/judge/known_findings.csv --quiet
+parameter studies|tests/test_sweep.sh
+pictures|tests/test_plots.py
+random changes of case files|tests/test_fuzz.py
+sensitivity and cluster studies|tests/test_studies.py
+C interface, Python package, mock-up units|tests/test_embedding.sh
+statements of the dissertation|.venv/bin/python scripts/bench/check_findings.py --check
+analysis of settled cycles|.venv/bin/python tests/test_orders.py
+summaries against traces|tests/test_summaries.py
+pages of runs in a browser|tests/test_report.py
+effects of single models|.venv/bin/python tests/test_models.py
+answers of cycles|tests/test_cycle_answers.py
+Fortran tests of single models|fpm @strict --target units
+force tables of films|tests/test_film_tables.py
+command line|tests/test_program.sh
+bearing cases|python3 tests/test_bearing_cases.py
+build scripts|tests/test_build.sh
+states and runs that go on from them|tests/test_state_file.py
+layers, linters|tests/test_layers.py
+failures of the machine|tests/test_faults.py --kills 10
+heat and work of the gas|.venv/bin/python tests/test_gas.py
+END
+  $all && cat <<'END'
+independent judge of runs|tests/test_judge.py
+many extreme scenes|tests/judge/extremes --scenes 240 --seed 5 --evaluations 100000 --judged 48 --limit 120 --known tests/judge/known_findings.csv --quiet
+Fortran tests, release build|fpm @release_tests
+END
+}
+stages | run_stages
+
+awk '{ passed += $1; failed += $2 + $3 } END { print passed " passed, " failed " failed"; exit failed > 0 }' "$work/counts"

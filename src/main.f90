@@ -10,6 +10,8 @@ program gudgeon
   use case_schema, only: key_table_t, case_schema_of
   use bearing_definition, only: bearing_schema_of
   use case_text, only: template_text
+  use json_schema, only: json_schema_text
+  use shell_pages, only: completion_text, manual_text
   use reference_pages, only: keys_reference, results_reference, oils_reference
   use run_progress, only: progress_wanted, tell, say
   use text_tools, only: printable
@@ -32,7 +34,7 @@ program gudgeon
     call say(help_text(), status)
   else if (options%version) then
     call say('gudgeon '//program_version, status)
-  else if (options%template .or. options%reference /= '') then
+  else if (options%template .or. options%manual .or. options%reference//options%completion /= '') then
     call say_page(options, status)
   else if (options%sweep) then
     call run_studies(options, status)
@@ -44,7 +46,7 @@ program gudgeon
 
 contains
 
-  !> Print a template or a page of the manual.
+  !> Print a template, a page of the manual, or what a shell shows.
   subroutine say_page(options, status)
     type(command_line_t), intent(inout) :: options
     integer, intent(inout) :: status
@@ -59,6 +61,10 @@ contains
       call say(template(), status)
     else if (options%reference == 'oils') then
       call say(oils_reference(), status)
+    else if (options%manual) then
+      call say(manual_text(), status)
+    else if (options%completion /= '') then
+      call say(completion_text(options%completion), status)
     else if (options%reference == 'results') then
       call say(results_reference(), status)
     else
@@ -70,6 +76,10 @@ contains
         call say(keys_reference(table, ''), status)
       else
         call case_schema_of(table)
+        if (options%reference == 'schema') then
+          call say(json_schema_text(table), status)
+          return
+        end if
         if (options%reference == 'case') options%reference = ''
         call say(keys_reference(table, options%reference), status)
       end if

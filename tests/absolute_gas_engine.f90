@@ -31,8 +31,6 @@ contains
     class(absolute_gas_engine_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
-    associate (unused => t)
-    end associate
     if (self%n_events > 0) call self%scene%gas%events(y(1), y(4), g, g_rate)
   end subroutine events
 
@@ -42,8 +40,6 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     integer, intent(out) :: action
-    associate (unused => t)
-    end associate
     call self%scene%gas%pass(index, y(1), y(4))
     action = event_continue
   end subroutine handle_event

@@ -2,7 +2,7 @@
 !> message; all methods give the same result for a case.
 module case_checks
   use kinds, only: dp
-  use error_handling, only: error_t
+  use error_handling, only: error_t, status_case_file
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: parse_case
@@ -27,7 +27,9 @@ contains
     type(error_t), allocatable :: error
     call parse_case(bodies//groups, 'x.nml', nothing, case, error)
     call check%that(allocated(error) .neqv. wanted == '', name//' is accepted or refused as expected')
-    if (allocated(error)) call check%that(index(error%message, wanted) > 0, name//', message: '//error%message)
+    if (.not. allocated(error)) return
+    call check%that(index(error%message, wanted) > 0, name//', message: '//error%message)
+    call check%that(error%status == status_case_file, name//' is refused as an error of a case file')
   end subroutine expect
 
   !> A case with these settings runs with each method, its energy residual is small, and the film thickness is the same within 1e-6

@@ -9,9 +9,10 @@ module collecting_sink
   use row_store, only: row_store_t
   use trace_sink, only: trace_event_t
   use chain_motion, only: crank_pin, piston_pin
+  use data_tables, only: load_table
   implicit none
   private
-  public :: collecting_sink_t, trace_t, run_case, load_trace, load_table, column, values_of, last_row_time
+  public :: collecting_sink_t, trace_t, run_case, load_trace, column, values_of, last_row_time
 
   type, extends(row_store_t) :: collecting_sink_t
   end type collecting_sink_t
@@ -80,42 +81,6 @@ contains
     close (unit)
     trace%event = trace%event(:rows)
   end function load_trace
-
-  !> Read a table of numbers from data/: the names of its columns, cut at 40 characters, and its values (columns, rows).
-  subroutine load_table(name, names, values)
-    character(len=*), intent(in) :: name
-    character(len=40), allocatable, intent(out) :: names(:)
-    real(dp), allocatable, intent(out) :: values(:, :)
-    character(len=2000) :: line
-    integer :: unit, status, i, rows, commas
-    open (newunit=unit, file='data/'//name, status='old', action='read')
-    read (unit, '(a)') line
-    commas = count([(line(i:i) == ',', i=1, len_trim(line))])
-    allocate (names(commas + 1), values(commas + 1, 3000))
-    names = split(line, commas + 1)
-    rows = 0
-    do
-      read (unit, *, iostat=status) values(:, rows + 1)
-      if (status /= 0) exit
-      rows = rows + 1
-    end do
-    close (unit)
-    values = values(:, :rows)
-  end subroutine load_table
-
-  !> The fields of a line, split at commas (list-directed input would stop at the / of a unit).
-  pure function split(line, n) result(fields)
-    character(len=*), intent(in) :: line
-    integer, intent(in) :: n
-    character(len=40) :: fields(n)
-    integer :: i, first, next
-    first = 1
-    do i = 1, n
-      next = index(line(first:)//',', ',')
-      fields(i) = line(first:first + next - 2)
-      first = first + next
-    end do
-  end function split
 
   !> The position of a named column, 0 if it does not exist.
   pure integer function column(trace, name)

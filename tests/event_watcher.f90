@@ -24,8 +24,6 @@ contains
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: index
     real(dp), intent(in) :: t, y(:)
-    associate (unused_y => y)
-    end associate
     select type (problem)
     class is (scene_t)
       if (problem%reported_event(index) == event_none .or. self%n >= most_instants) return

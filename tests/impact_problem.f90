@@ -70,8 +70,6 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: in_domain
-    associate (unused => t)
-    end associate
     in_domain = .true.
     dydt(1) = y(2)
     dydt(2) = -self%law%normal_force(y(1), y(2), self%speed)/self%mass
@@ -82,8 +80,6 @@ contains
     class(impact_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
-    associate (unused => t)
-    end associate
     g = [-y(2), -y(1)]
     g_rate = [self%law%normal_force(y(1), y(2), self%speed)/self%mass, -y(2)]
   end subroutine events
@@ -94,8 +90,6 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     integer, intent(out) :: action
-    associate (unused => t)
-    end associate
     action = merge(event_continue, event_stop, index == 1)
     if (index == 1) self%depth = y(1)
     if (index == 1) self%smooth_in_root = .false.
@@ -105,8 +99,6 @@ contains
   pure real(dp) function next_kink_time(self, t, y)
     class(impact_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
-    associate (unused => self)
-    end associate
     next_kink_time = huge(next_kink_time)
     if (y(2) < 0) next_kink_time = t - y(1)/y(2)
   end function next_kink_time

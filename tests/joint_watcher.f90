@@ -24,8 +24,6 @@ contains
     integer, intent(in) :: index
     real(dp), intent(in) :: t, y(:)
     integer :: joint
-    associate (unused_y => y)
-    end associate
     select type (problem)
     class is (scene_t)
       if (problem%reported_event(index) == event_none) return

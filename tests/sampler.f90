@@ -24,8 +24,6 @@ contains
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t_to
     real(dp) :: t
-    associate (unused => problem)
-    end associate
     do while (self%taken < size(self%y, 2))
       t = (self%taken + 1)*self%interval
       if (t > t_to + 1e-12_dp*self%interval) exit

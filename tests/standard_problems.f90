@@ -317,8 +317,6 @@ contains
     class(standard_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
-    associate (unused => y)
-    end associate
     g = t - (self%part + 1)
     if (self%name == 'F4') g = t - 10*(self%part + 1)
     if (self%part >= 19) g = -1
@@ -329,8 +327,6 @@ contains
   pure real(dp) function at_infinite_slope(self, t, y)
     class(standard_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
-    associate (unused => y)
-    end associate
     at_infinite_slope = huge(t)
     if (self%name == 'F5' .and. self%part < 19 .and. t < self%part + 1) at_infinite_slope = self%part + 1
   end function at_infinite_slope
@@ -341,8 +337,6 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     integer, intent(out) :: action
-    associate (unused_t => t, unused_y => y)
-    end associate
     self%part = self%part + index
     action = event_continue
   end subroutine pass_discontinuity

@@ -59,8 +59,6 @@ contains
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: index
     real(dp), intent(in) :: t, y(:)
-    associate (unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
-    end associate
     self%events = self%events + 1
   end subroutine event_accepted
 end module state_watcher

@@ -2,15 +2,15 @@
 module test_bristles
   use kinds, only: dp
   use constants, only: two_pi
-  use error_handling, only: error_t, status_case_file
+  use error_handling, only: error_t
   use checks, only: checks_t
   use friction_law, only: friction_law_t
   use ode_method, only: ode_method_t
   use ode_methods, only: new_method
   use ode_solver, only: integrate, silent_observer_t, integration_done
-  use collecting_sink, only: load_table
   use laws, only: friction_law_of
   use shaken_bristles, only: shaken_t, new_shaken
+  use data_tables, only: load_table
   implicit none
   private
   public :: run_test_bristles
@@ -33,7 +33,6 @@ contains
     call stiffness_in_stick(check)
     call slopes(check)
     call extremes(check)
-    call conflicts(check)
   end subroutine run_test_bristles
 
   subroutine make(name, law)
@@ -238,33 +237,4 @@ contains
       end do
     end do
   end subroutine extremes
-
-  subroutine conflicts(check)
-    class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: base = ' coefficient=0.1 stribeck_speed=1e-2 bristle_stiffness=1e4'
-    call refused("law='lugre' static_coefficient=0.05"//base, 'static_coefficient = 0.05: must be >= coefficient = 0.1, or 0')
-    call refused("law='elasto_plastic' static_coefficient=0.05"//base, &
-      'static_coefficient = 0.05: must be >= coefficient = 0.1, or 0')
-    call refused("law='dahl' coefficient=0 bristle_stiffness=1", 'coefficient = 0: must be > 0 for a law with bristles')
-    call refused("law='dahl' coefficient=0.1 bristle_stiffness=0", 'bristle_stiffness = 0: must be > 0 (1/m)')
-    call refused("law='lugre' coefficient=0.1 bristle_stiffness=1", 'stribeck_speed: required')
-    call refused("law='dahl' coefficient=0.1", 'bristle_stiffness: required')
-    call refused("law='elasto_plastic' breakaway_ratio=1"//base, 'breakaway_ratio = 1: must be >= 0 and < 1')
-    call refused("law='lugre' bristle_damping=-1"//base, 'bristle_damping = -1: must be >= 0 (s/m)')
-    call refused("law='lugre' bristle_damping=1 damping_speed=0.3"//base, &
-      'damping_speed = 0.3: bristle_damping gives more than the static friction at touch-down: must be < ')
-    call refused("law='lugre' bristle_damping=1"//base, 'damping_speed: a constant bristle_damping')
-
-  contains
-
-    subroutine refused(keys, wanted)
-      character(len=*), intent(in) :: keys, wanted
-      class(friction_law_t), allocatable :: law
-      type(error_t), allocatable :: error
-      call friction_law_of(keys, law, error)
-      call check%that(allocated(error), 'refused: '//keys)
-      if (.not. allocated(error)) return
-      call check%that(error%status == status_case_file .and. index(error%message, '&friction '//wanted) > 0, error%message)
-    end subroutine refused
-  end subroutine conflicts
 end module test_bristles

@@ -107,7 +107,7 @@ contains
     class(checks_t), intent(inout) :: check
     character(len=1) :: none(0)
     character(len=*), parameter :: stands_alone = &
-      '--template and --reference are not combined with other options or with files'//hint
+      '--template, --reference, --completion and --man are not combined with other options or with files'//hint
     call refused(check, none, 'no case file given'//hint)
     call refused(check, [character(len=16) :: '--template', '-s', 'drive=none'], stands_alone)
     call refused(check, [character(len=16) :: '-q', 'sweep', '--template'], stands_alone)
@@ -123,7 +123,7 @@ contains
     call refused(check, ['--template='], '--template : must be one of dry, film, engine, compressor, slap, elastic, wear'//hint)
     call refused(check, [character(len=16) :: 'sweep', '--template=dry'], 'gudgeon sweep --template has no kinds'//hint)
     call refused(check, ['--reference=joints'], &
-      '--reference joints: must be case, bearing, study, oils, results or a group of cases'//hint)
+      '--reference joints: must be case, bearing, study, oils, results, schema or a group of cases'//hint)
     call refused(check, ['--name=a/b'], '--name a/b: must be a name without folder; --out gives the folder'//hint)
     call refused(check, [character(len=16) :: '--name=a', 'b.nml', 'c.nml'], '--name is for one case'//hint)
     call refused(check, [character(len=16) :: 'sweep', '--name=a', 'b.nml'], '--name is for one case'//hint)

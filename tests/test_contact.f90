@@ -1,20 +1,21 @@
-!> The contact laws: stiffness, restitution, loss, limits, factory.
+!> The contact laws: stiffness, restitution, loss, limits, a force that is lost.
 module test_contact
   use kinds, only: dp
-  use error_handling, only: error_t, status_case_file
+  use error_handling, only: error_t
   use checks, only: checks_t
-  use case_definition, only: case_t
-  use case_file, only: parse_case
   use contact_law, only: contact_law_t, ratio_limit
   use laws, only: contact_law_of
   use bearing_size, only: bearing_t
   use hertz_sphere, only: hertz_sphere_t
   use free_impact, only: speed_given_back, exact_restitution
+  use winkler, only: winkler_t
+  use adams_impact, only: adams_impact_t
   implicit none
   private
   public :: run_test_contact
 
   real(dp), parameter :: bearing_radius = 10e-3_dp, clearance = 20e-6_dp
+  real(dp), parameter :: c = 1e-4_dp   !! clearance of the case [m]
 
 contains
 
@@ -25,8 +26,7 @@ contains
     call test_hertz(check)
     call test_dissipation(check)
     call test_extremes(check)
-    call test_factory(check)
-    call test_refusals(check)
+    call share_and_rate(check)
   end subroutine run_test_contact
 
   subroutine test_stiffness(check)
@@ -189,76 +189,26 @@ contains
     end do
   end subroutine test_extremes
 
-  subroutine test_factory(check)
+  !> The share is the force over the elastic force, and its rate the derivative along the motion. It is 1 where the contact ends.
+  subroutine share_and_rate(check)
     class(checks_t), intent(inout) :: check
-    class(contact_law_t), allocatable :: law
-    type(error_t), allocatable :: error
-    call contact_law_of("law='velcro'", law, error)
-    call check%that(allocated(error) .and. .not. allocated(law), 'an unknown contact law is refused')
-    if (.not. allocated(error)) return
-    call check%that(index(error%message, 'x.nml:1: &contact law = velcro: must be one of lankarani_nikravesh, hertz') == 1, &
-      'the refusal names the laws')
-    call check%that(error%status == status_case_file, 'the refusal is a case file error')
-  end subroutine test_factory
-
-  !> Each invalid combination is refused with one line.
-  subroutine test_refusals(check)
-    class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: joint = "kind='clearance' clearance=20e-6 bearing_radius=10e-3"
-    character(len=*), parameter :: whole = joint//' bearing_length=15e-3'
-    call refused(joint, "geometry='johnson'", "&joint bearing_length: required with contact geometry = 'johnson' (m)")
-    call refused(joint//' bearing_length=0', "geometry='winkler' bedding_modulus=1e13", &
-      '&joint bearing_length = 0: must be > 0 (m)')
-    call refused("kind='clearance' clearance=4.9e-6 bearing_radius=10e-3 bearing_length=15e-3", "geometry='pereira'", &
-      "&joint clearance = 4.9e-6: must be >= 5e-6 and <= 1e-2 with contact geometry = 'pereira' (m)")
-    call refused(whole, "geometry='sphere'", '&contact geometry = sphere: must be one of hertz_sphere, johnson, conformal, '// &
-      'pereira, winkler', is_list=.true.)
-    call refused(whole, "geometry='conformal' stiffness=1e9", "&contact stiffness = 1e9: is for geometry = 'hertz_sphere' "// &
-      "alone and must not be given with 'conformal' (N/m^exponent)")
-    call refused(whole, "geometry='johnson' exponent=1.4", "&contact exponent = 1.4: is for geometry = 'hertz_sphere' alone "// &
-      "and must not be given with 'johnson'")
-    call refused(whole, "geometry='johnson' exponent=1.5 stiffness=0", '')
-    call refused(whole, "geometry='conformal' housing_compliance=-0.6", '&contact housing_compliance = -0.6: must be >= -0.5')
-    call refused(whole, "geometry='winkler'", "&contact bedding_modulus: required with geometry = 'winkler', or "// &
-      'liner_modulus and liner_thickness (Pa/m)')
-    call refused(whole, "geometry='winkler' liner_modulus=3e9", '&contact liner_thickness: required with liner_modulus (m)')
-    call refused(whole, "geometry='winkler' liner_thickness=1e-3", '&contact liner_modulus: required with liner_thickness (Pa)')
-    call refused(whole, "geometry='winkler' bedding_modulus=1e13 liner_modulus=3e9 liner_thickness=1e-3", &
-      '&contact bedding_modulus = 1e13: must not be given together with liner_modulus or liner_thickness (Pa/m)')
-    call refused(whole, "geometry='winkler' liner_modulus=3e9 liner_thickness=1e-3 liner_poissons_ratio=0.5", &
-      '&contact liner_poissons_ratio = 0.5: must be >= 0 and <= 0.49')
-    call refused(whole, "law='exact' restitution=0.009", "&contact restitution = 0.009: must be >= 0.01 with law = 'exact'")
-    call refused(whole, "law='gonthier' restitution=0", "&contact restitution = 0: must be >= 0.01 with law = 'gonthier'")
-    call refused(whole, "law='zhiying_qishao' restitution=0", '')
-    call refused(whole, "law='flores' restitution=0.5 dissipation=0.3", '&contact dissipation = 0.3: must not be given '// &
-      'together with restitution = 0.5; contact.restitution=0.9 takes that back')
-    call refused(whole, "dissipation=-1", '&contact dissipation = -1: must be > 0 (s/m)')
-    call refused(whole, "law='impact' damping=10", "&contact full_damping_depth: required with law = 'impact' (m)")
-    call refused(whole, "law='impact' damping=-1 full_damping_depth=1e-6", '&contact damping = -1: must be >= 0 (N s/m)')
-
-  contains
-
-    !> The case is refused with this message; '': it is accepted. `is_list`: the message has a line number and ends with a list of
-    !> names that may be longer.
-    subroutine refused(joint_keys, contact_keys, message, is_list)
-      character(len=*), intent(in) :: joint_keys, contact_keys, message
-      logical, intent(in), optional :: is_list
-      type(case_t) :: case
-      type(error_t), allocatable :: error
-      character(len=:), allocatable :: got
-      character(len=1) :: nothing(0)
-      call parse_case('&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 rod_mass=1 rod_inertia=1 '// &
-        'piston_mass=1 / &initial crank_speed=100 / &integrator revolutions=1 / &joint '//joint_keys//' / &contact '// &
-        contact_keys//' /', 'x.nml', nothing, case, error)
-      got = ''
-      if (allocated(error)) got = error%message
-      if (message == '') then
-        call check%equal_text(got, '', 'taken: '//contact_keys)
-      else if (present(is_list)) then
-        call check%begins_with(got, 'x.nml:1: '//message, 'refused: '//contact_keys)
-      else
-        call check%equal_text(got, 'x.nml: '//message, 'refused: '//contact_keys)
-      end if
-    end subroutine refused
-  end subroutine test_refusals
+    type(adams_impact_t) :: law
+    real(dp), parameter :: depth(3) = [1e-7_dp, 9e-7_dp, 3e-6_dp], speed = -0.02_dp, acceleration = 3e4_dp, dt = 1e-9_dp
+    real(dp) :: share, rate, before, after, unused, elastic
+    integer :: i
+    law = adams_impact_t(full_damping=5e3_dp, full_damping_depth=1e-6_dp)
+    allocate (law%geometry, source=winkler_t(given_modulus=1e13_dp))
+    call law%prepare(bearing_t(0.01_dp, 0.04_dp, c, 0.2_dp))
+    do i = 1, size(depth)
+      call law%find_share(depth(i), speed, acceleration, share, rate)
+      elastic = law%geometry%elastic_force(depth(i))
+      call check%relative(max(0.0_dp, share)*elastic, law%normal_force(depth(i), speed, 1.0_dp), 1e-12_dp, 'share of the force')
+      call law%find_share(depth(i) - speed*dt, speed - acceleration*dt, acceleration, before, unused)
+      call law%find_share(depth(i) + speed*dt, speed + acceleration*dt, acceleration, after, unused)
+      call check%relative((after - before)/(2*dt), rate, 1e-5_dp, 'its rate')
+    end do
+    call law%find_share(-1e-12_dp, speed, acceleration, share, rate)
+    call check%that(share > 1 .and. share < 1 + 1e-5_dp .and. rate > 0, 'the share increases beyond 1 after the contact')
+    call check%that(abs(law%normal_force(1e-6_dp, -1e3_dp, 1.0_dp)) <= 0, 'a contact never pulls')
+  end subroutine share_and_rate
 end module test_contact

@@ -9,8 +9,6 @@ module test_contact_geometries
   use contact_law, only: contact_law_t
   use laws, only: contact_law_of
   use trace_row, only: trace_row_t
-  use chain_motion, only: piston_pin
-  use collecting_sink, only: trace_t, run_case
   implicit none
   private
   public :: run_test_contact_geometries
@@ -35,7 +33,6 @@ contains
     call pereira_between_its_branches(check)
     call laws_slopes(check)
     call extremes(check)
-    call contacts_beyond_validity_count(check)
   end subroutine run_test_contact_geometries
 
   subroutine new_law(check, keys, law, bearing)
@@ -318,26 +315,4 @@ contains
       end do
     end do
   end subroutine extremes
-
-  !> A contact that is deeper than its geometry is valid for is counted once.
-  subroutine contacts_beyond_validity_count(check)
-    class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: geometry(4) = [character(len=30) :: 'contact.geometry=johnson', &
-      'contact.geometry=conformal', 'contact.geometry=pereira', 'contact.geometry=hertz_sphere']
-    type(trace_t) :: trace
-    integer :: i, deep
-    do i = 1, size(geometry)
-      trace = run_case('cases/flores/dry_0100um.nml', [character(len=40) :: geometry(i), 'joint.bearing_length=0.002', &
-        'integrator.revolutions=0.5'])
-      call check%that(.not. allocated(trace%error), 'a run with '//geometry(i))
-      if (allocated(trace%error)) return
-      deep = count(trace%event%kind == 2 .and. trace%event%max_penetration > 0.3_dp*0.1e-3_dp)
-      call check%that(deep > 0 .or. i == 4, 'contacts are deep with '//geometry(i))
-      if (i > 1) deep = 0
-      associate (pin => trace%report%figures%pin(piston_pin))
-        call check%that(pin%contacts_beyond_validity == deep, 'contacts beyond validity with '//geometry(i))
-        call check%that(pin%contacts > deep, 'contacts within validity with '//geometry(i))
-      end associate
-    end do
-  end subroutine contacts_beyond_validity_count
 end module test_contact_geometries

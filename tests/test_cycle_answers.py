@@ -121,7 +121,8 @@ def test_rows(program: Path, work: Path) -> None:
         case = ROOT / "cases" / f"{name}.nml"
         summary, rows = run(program, work, case, "output.samples_per_revolution=20000", "output.sampling=crank_angle",
                             "output.angle_origin_deg=0", "output.ideal_twin=F", "integrator.method=auto",
-                            *(["output.columns=standard,film_power"] if "film" in name or "lubricated" in name else []))
+                            *(["output.columns=standard,film_power"] if "film" in name or "lubricated" in name else []),
+                            *(["lubrication.report=T"] if "mixed" in name else []))
         if not rows:
             continue
         begins = summary["cycle_start"]
@@ -139,6 +140,17 @@ def test_rows(program: Path, work: Path) -> None:
             film = -integral(rows, lambda row: row[f"{place}film_power"], begins, ends)
             check(abs(summary[f"{place}cycle_work_film"] - film) <= 2e-3*size, f"{name}: work of the film against the rows",
                   f"{summary[f'{place}cycle_work_film']}, not {film}")
+        lost = sum(summary.get(f"{place}cycle_mean_{loss}_power", 0) for loss in ("film", "friction"))*summary["cycle_duration"]
+        turned = integral(rows, lambda row: abs(row["rod_speed"] + (row["crank_speed"] if place else row.get("piston_tilt_rate", 0))),
+                          begins, ends)
+        moment = summary[f"{place}cycle_mean_friction_moment"]
+        check(abs(moment*turned - lost) <= 1e-3*abs(lost) + 1e-12*size, f"{name}: mean moment of friction against the rows",
+              f"{moment} N m, not {lost/turned}")
+        if f"{place}asperity_force" in rows[0]:
+            share = integral(rows, lambda row: row[f"{place}asperity_force"], begins, ends)/integral(
+                rows, lambda row: math.hypot(row[f"{place}pin_force_x"], row[f"{place}pin_force_y"]), begins, ends)
+            found = summary[f"{place}cycle_asperity_load_share"]
+            check(close(found, share, 1e-3), f"{name}: share of the asperities against the rows", f"{found}, not {share}")
         if f"{place}film_thickness" in rows[0]:
             thinnest = min(inside, key=lambda row: row[f"{place}film_thickness"])
             film = summary[f"{place}cycle_min_film_thickness"]
@@ -148,6 +160,21 @@ def test_rows(program: Path, work: Path) -> None:
             apart = summary[f"{place}cycle_min_film_thickness_angle"] - math.degrees(thinnest["crank_angle"])
             apart = abs((apart + 180) % 360 - 180)
             check(apart < 0.5, f"{name}: crank angle of the thinnest film", f"{apart} degrees apart")
+
+
+def test_wear(program: Path, work: Path) -> None:
+    """The wear of an hour of the last cycle against the difference of two runs, which are a revolution apart."""
+    case = ROOT / "cases" / "wear" / "flores.nml"
+    depths = []
+    for revolutions in (3, 4):
+        summary, _ = run(program, work, case, f"integrator.revolutions={revolutions}", "output.samples_per_revolution=10")
+        with (work / "flores.wear.csv").open() as file:
+            depths.append([{name.split("[")[0]: row[name] for name in row} for row in csv.DictReader(file)])
+    for surface in ("pin", "bore"):
+        growth = max(float(after[f"{surface}_depth"]) - float(before[f"{surface}_depth"]) for before, after in zip(*depths))
+        found = summary[f"cycle_wear_depth_rate_{surface}"]
+        check(close(found, growth*3600/summary["cycle_duration"], 2e-3), f"wear of the {surface} in an hour of the last cycle",
+              f"{found}, not {growth*3600/summary['cycle_duration']}")
 
 
 def test_scope(program: Path, work: Path) -> None:
@@ -182,7 +209,7 @@ def main() -> int:
             sys.exit(f"{built.stderr}\n0 passed, 1 failed")
         program = ROOT / built.stdout.strip()
     with tempfile.TemporaryDirectory(prefix="answers") as work:
-        for test in (test_engine, test_ledger, test_rows, test_scope):
+        for test in (test_engine, test_ledger, test_rows, test_wear, test_scope):
             folder = Path(work) / test.__name__
             folder.mkdir()
             test(program.resolve(), folder)

@@ -2,7 +2,6 @@
 module test_drive
   use kinds, only: dp
   use ode_problem, only: difference_jacobian
-  use varying_drive, only: varying_drive_t
   use case_definition, only: case_t
   use case_file, only: read_case
   use error_handling, only: error_t
@@ -23,7 +22,6 @@ contains
 
   subroutine run_test_drive(check)
     class(checks_t), intent(inout) :: check
-    call speed_of_a_ramp(check)
     call moment_of_an_ideal_ramp(check)
     call ramp_with_play(check, ['piston_pin'], 0)
     call ramp_with_play(check, ['crank_pin '], 1)
@@ -37,31 +35,6 @@ contains
     call a_flywheel_is_inertia(check)
     call what_does_not_fit(check)
   end subroutine run_test_drive
-
-  !> Angle, speed and acceleration are derivatives of each other, without a jump at the ends.
-  subroutine speed_of_a_ramp(check)
-    class(checks_t), intent(inout) :: check
-    type(varying_drive_t) :: drive
-    real(dp) :: t
-    integer :: i
-    real(dp), parameter :: h = 1e-5_dp
-    drive%ramp_time = 0.4_dp
-    drive%first_speed = -20
-    drive%last_speed = 300
-    do i = 1, 59
-      t = 0.01_dp*i
-      call check%close_to((drive%turned(t + h) - drive%turned(t - h))/(2*h), drive%speed(t), 1e-5_dp, &
-        'the speed is the rate of the angle')
-      call check%close_to((drive%speed(t + h) - drive%speed(t - h))/(2*h), drive%acceleration(t), 1e-3_dp, &
-        'the acceleration is the rate of the speed')
-    end do
-    call check%close_to(drive%speed(0.0_dp), -20.0_dp, 1e-15_dp, 'first speed')
-    call check%close_to(drive%speed(0.2_dp), 140.0_dp, 1e-12_dp, 'speed at half of the ramp is the mean')
-    call check%close_to(drive%speed(7.0_dp), 300.0_dp, 1e-15_dp, 'last speed')
-    call check%close_to(drive%turned(1.4_dp), 140*0.4_dp + 300, 1e-12_dp, 'angle after the ramp')
-    call check%close_to(drive%acceleration(0.0_dp) + drive%acceleration(0.4_dp) + drive%acceleration(9.0_dp), 0.0_dp, 1e-15_dp, &
-      'no acceleration at the ends')
-  end subroutine speed_of_a_ramp
 
   !> A crank, a massless rod and a piston with a ramp of the speed, without gravity: the moment is I q'' + m x'' dx/dq with the
   !> textbook formulas for x(q) and its derivatives.

@@ -3,9 +3,6 @@
 module test_energy_kept
   use kinds, only: dp
   use checks, only: checks_t
-  use ode_problem, only: ode_problem_t
-  use radau, only: radau_t
-  use ode_solver, only: integrate, silent_observer_t, integration_done
   use case_definition, only: case_t
   use result_notes, only: energy_warning
   use collecting_sink, only: trace_t, run_case, column
@@ -15,19 +12,12 @@ module test_energy_kept
 
   integer, parameter :: long = 60
 
-  !> v follows cos t with a rate proportional to its distance, and w is the integral of -v'; w + v is constant exactly.
-  type, extends(ode_problem_t) :: stiff_follower_t
-  contains
-    procedure :: derivatives
-  end type stiff_follower_t
-
 contains
 
   subroutine run_test_energy_kept(check)
     class(checks_t), intent(inout) :: check
     call a_long_ideal_run_ends_where_it_should(check)
     call a_film_that_collapses(check)
-    call quadratures_belong_to_their_stages(check)
     call a_thrown_pin_where_the_crank_hardly_turns(check)
     call no_step_over_revolutions(check)
     call poor_energy_is_told(check)
@@ -66,42 +56,6 @@ contains
     call check%that(trace%report%figures%max_energy_residual < 3e-3_dp*trace%report%figures%max_energy, &
       'energy of a film that collapses is the work done')
   end subroutine a_film_that_collapses
-
-  !> A quadrature must use the stages at which Newton's iteration has ended, not those one iteration before.
-  subroutine quadratures_belong_to_their_stages(check)
-    class(checks_t), intent(inout) :: check
-    type(stiff_follower_t) :: problem
-    type(radau_t) :: method
-    type(silent_observer_t) :: observer
-    real(dp) :: t, y(3)
-    integer :: status
-    real(dp), parameter :: tolerance = 1e-5_dp
-    problem%n = 3
-    problem%n_positions = 1
-    problem%n_quadratures = 1
-    problem%refuses_steps = .false.
-    method%settings%relative = [tolerance, tolerance, 0.0_dp]
-    method%settings%absolute = [tolerance, tolerance, tolerance]
-    method%settings%span = 20
-    t = 0
-    y = [0.0_dp, 1.0_dp, 0.0_dp]
-    call integrate(problem, method, t, y, 20.0_dp, 10000, observer, status)
-    call check%that(status == integration_done, 'integration of a stiff equation')
-    call check%that(abs(y(3) + y(2) - 1) < 20*tolerance, 'a quadrature uses the final stages')
-  end subroutine quadratures_belong_to_their_stages
-
-  pure subroutine derivatives(self, t, y, dydt, in_domain)
-    class(stiff_follower_t), intent(in) :: self
-    real(dp), intent(in) :: t, y(self%n)
-    real(dp), intent(out) :: dydt(self%n)
-    logical, intent(out) :: in_domain
-    real(dp) :: behind
-    in_domain = .true.
-    behind = y(2) - cos(t)
-    dydt(1) = y(2)
-    dydt(2) = -1e4_dp*(behind + 1e3_dp*behind**3)
-    dydt(3) = -dydt(2)
-  end subroutine derivatives
 
   !> The pin starts with 0.5 m/s across a clearance of 0.1 mm, and the crank hardly turns: the pin moves straight and comes into
   !> contact after 0.2 ms. Its speed and energy need scales that do not come from the crank.

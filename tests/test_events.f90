@@ -133,8 +133,6 @@ contains
     class(plain_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
-    associate (unused_t => t)
-    end associate
     g = y(1)
     g_rate = y(2)
   end subroutine is_state
@@ -251,8 +249,6 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: in_domain
-    associate (unused_t => t, unused_y => y)
-    end associate
     dydt = 0
     in_domain = .true.
   end subroutine stays
@@ -261,8 +257,6 @@ contains
     class(triple_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
-    associate (unused_y => y)
-    end associate
     g = (t - 1)*(t - 2.1_dp)*(t - 5.9_dp)
     g_rate = (t - 2.1_dp)*(t - 5.9_dp) + (t - 1)*(t - 5.9_dp) + (t - 1)*(t - 2.1_dp)
   end subroutine passes_thrice
@@ -273,8 +267,6 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     integer, intent(out) :: action
-    associate (unused_index => index, unused_y => y)
-    end associate
     if (self%first < 0) self%first = t
     action = event_continue
   end subroutine notes_first
@@ -383,8 +375,6 @@ contains
     class(crossings_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
-    associate (unused_t => t)
-    end associate
     g = [y(1) - 0.5_dp, 0.5_dp - y(1), y(2)]
     g_rate = self%rate_factor*[y(2), -y(2), -y(1)]
   end subroutine three_events
@@ -395,8 +385,6 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     integer, intent(out) :: action
-    associate (unused_y => y)
-    end associate
     self%taken = min(self%taken + 1, most)
     self%index(self%taken) = index
     self%time(self%taken) = t
@@ -408,8 +396,6 @@ contains
     real(dp), intent(in) :: t_old, y_old(:), t, y(:)
     integer, intent(out) :: verdict
     real(dp), intent(out) :: fraction
-    associate (unused_y_old => y_old, unused_y => y)
-    end associate
     fraction = 0.6_dp
     verdict = step_admitted
     if (self%refuses .and. t - t_old > 0.01_dp .and. mod(int(t*1e3_dp), 3) > 0) verdict = step_too_deep
@@ -420,8 +406,6 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: in_domain
-    associate (unused_t => t, unused_y => y)
-    end associate
     dydt = -self%side
     in_domain = .true.
   end subroutine towards_zero
@@ -430,8 +414,6 @@ contains
     class(chatterer_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
-    associate (unused_t => t)
-    end associate
     g = -1
     g(merge(1, 2, self%side > 0)) = -self%side*y(1)
     g_rate = 0
@@ -444,8 +426,6 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: in_domain
-    associate (unused_t => t)
-    end associate
     dydt = [y(2), -1.0_dp]
     in_domain = .true.
   end subroutine falls
@@ -454,8 +434,6 @@ contains
     class(ball_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
-    associate (unused_t => t)
-    end associate
     g = merge(-1, 1, self%is_off)*y(1)
     g_rate = merge(-1, 1, self%is_off)*y(2)
     if (self%came_back > 0) g = -1
@@ -467,8 +445,6 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     integer, intent(out) :: action
-    associate (unused_index => index)
-    end associate
     action = event_continue
     if (self%is_off) then
       self%came_back = self%came_back + 1
@@ -486,8 +462,6 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     integer, intent(out) :: action
-    associate (unused_index => index, unused_t => t, unused_y => y)
-    end associate
     self%side = -self%side
     self%taken = self%taken + 1
     action = event_continue
@@ -513,8 +487,6 @@ contains
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: index
     real(dp), intent(in) :: t, y(:)
-    associate (unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
-    end associate
     self%events = self%events + 1
   end subroutine ignore_event
 end module test_events

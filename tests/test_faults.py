@@ -140,7 +140,7 @@ def test_signals(gudgeon: Gudgeon, work: Path) -> None:
         check(len(lines) == 2 and "interrupted at t =" in lines[0] and "dry_0100um.nml: interrupted before" in lines[1],
               f"{number.name}: one line for each case: {lines}")
         summary = (folder / "sim_I.summary.csv").read_text()
-        check('status,"interrupted at t' in summary, f"{number.name}: the summary states the interruption")
+        check("status,interrupted at t" in summary.replace('"', ""), f"{number.name}: the summary states the interruption")
         whole(folder, number.name)
     folder = work / "twin"   # is not begun after its case was interrupted, and an earlier one does not stay beside the new case
     folder.mkdir()
@@ -160,7 +160,7 @@ def test_signals(gudgeon: Gudgeon, work: Path) -> None:
     _, err = process.communicate(timeout=PATIENCE)
     check(process.returncode == 4 and b"sim_II.nml: ideal twin: interrupted" in err,
           f"an ideal twin that is interrupted is named in the message: {process.returncode} {err}")
-    check('status,"done"' in (folder / "sim_II.summary.csv").read_text(), "the case of an interrupted ideal twin is done")
+    check("status,done," in (folder / "sim_II.summary.csv").read_text(), "the case of an interrupted ideal twin is done")
     folder = work / "nohup"
     process = gudgeon.start("-o", folder, *SHORT, FLORES / "dry_0100um.nml",
                             preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
@@ -222,7 +222,7 @@ def test_full_disk_has_summary(gudgeon: Gudgeon, work: Path) -> None:
             summary = folder / "friction_100.summary.csv"
             check(summary.exists() or not (folder / "friction_100.csv").exists(), f"a disk of {size} kB: a trace without a summary")
             if size >= 60:
-                check(summary.exists() and 'status,"stopped: ' in summary.read_text(), f"a disk of {size} kB: the summary states the failure")
+                check(summary.exists() and "status,stopped: " in summary.read_text().replace('"', ""), f"a disk of {size} kB: the summary states the failure")
             whole(folder, f"a disk of {size} kB")
 
 
@@ -472,7 +472,7 @@ def test_batch(gudgeon: Gudgeon, work: Path) -> None:
               f"{bad.name}: {status} {err}")
         check(out.count(": done; ") == 3, f"{bad.name}: the others are finished: {out}")
         for case in good:
-            check('status,"done"' in (folder / f"{case.stem}.summary.csv").read_text(), f"{bad.name}: {case.stem} is done")
+            check("status,done," in (folder / f"{case.stem}.summary.csv").read_text(), f"{bad.name}: {case.stem} is done")
             (folder / f"{case.stem}.summary.csv").unlink()
     shutil.rmtree(folder)
     (folder / "blocked.csv").mkdir(parents=True)

@@ -37,7 +37,6 @@ contains
     call a_table_is_stored(check)
     call symmetries_and_extremes(check)
     call power_is_lost(check)
-    call refuses(check)
     call points_by_tolerance(check)
   end subroutine run_test_finite_bearing
 
@@ -467,18 +466,6 @@ contains
       end do
     end do
   end subroutine power_is_lost
-
-  subroutine refuses(check)
-    class(checks_t), intent(inout) :: check
-    class(film_law_t), allocatable :: law
-    type(error_t), allocatable :: error
-    call film_law_of("law='finite_bearing' viscosity=0.01 film_points=66", 1e-6_dp, law, error)
-    call check%that(allocated(error), 'film_points that cannot be halved twice')
-    call film_law_of("law='finite_bearing' viscosity=0.01 table_points=5", 1e-6_dp, law, error)
-    call check%that(allocated(error), 'a table of five values')
-    call film_law_of("law='finite_bearing' viscosity=0.01 variant='short' cavitation='none'", 1e-6_dp, law, error)
-    call check%that(allocated(error), 'a short bearing without cavitation')
-  end subroutine refuses
 
   !> Numbers of table values and of nodes around the film, which are at the end of the key of a table: at the levels draft, standard
   !> and reference, and as given in the case.

@@ -1,11 +1,11 @@
-!> The friction laws without memory: values, derivatives, continuity, signs, selection by name.
+!> The friction laws without memory: values, derivatives, continuity, signs.
 module test_friction
   use kinds, only: dp
-  use error_handling, only: error_t, status_case_file
+  use error_handling, only: error_t
   use checks, only: checks_t
   use friction_law, only: friction_law_t
-  use collecting_sink, only: load_table
   use laws, only: friction_law_of
+  use data_tables, only: load_table
   implicit none
   private
   public :: run_test_friction
@@ -27,8 +27,6 @@ contains
     call test_slopes(check)
     call test_extremes(check)
     call test_static_coulomb(check)
-    call test_conflicts(check)
-    call test_factory(check)
   end subroutine run_test_friction
 
   subroutine test_ramp(check)
@@ -198,43 +196,4 @@ contains
     call friction_law_of("law='coulomb' coefficient=0.1", law, error)
     call check%close_to(law%holding_ratio(), 0.1_dp, 0.0_dp, 'static friction is sliding friction by default')
   end subroutine test_static_coulomb
-
-  subroutine test_conflicts(check)
-    class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: less = 'static_coefficient = 0.05: must be >= coefficient = 0.1, or 0: as coefficient'
-    call refused("law='coulomb' coefficient=0.1 static_coefficient=0.05", less)
-    call refused("law='brown_mcphee' coefficient=0.1 static_coefficient=0.05 transition_speed=1", less)
-    call refused("law='stribeck' coefficient=0.1 static_coefficient=0.05 transition_speed=1 stribeck_speed=1", less)
-    call refused("law='threlfall' coefficient=0.1 v1=0", 'v1 = 0: threlfall needs a speed: must be > 0 (m/s)')
-    call refused("law='brown_mcphee' coefficient=0.1 transition_speed=0", 'transition_speed = 0: must be > 0 (m/s)')
-    call refused("law='stribeck' coefficient=0.1 stribeck_speed=-1 transition_speed=1", 'stribeck_speed = -1: must be > 0 (m/s)')
-    call refused("law='stribeck' coefficient=0.1 stribeck_speed=1 transition_speed=1 stribeck_exponent=0", &
-      'stribeck_exponent = 0: must be >= 0.1 and <= 10')
-    call refused("law='brown_mcphee' coefficient=0.1", 'transition_speed: required')
-
-  contains
-
-    subroutine refused(keys, wanted)
-      character(len=*), intent(in) :: keys, wanted
-      class(friction_law_t), allocatable :: law
-      type(error_t), allocatable :: error
-      call friction_law_of(keys, law, error)
-      call check%that(allocated(error), 'refused: '//keys)
-      if (.not. allocated(error)) return
-      call check%that(error%status == status_case_file .and. index(error%message, '&friction '//wanted) > 0, error%message)
-    end subroutine refused
-  end subroutine test_conflicts
-
-  subroutine test_factory(check)
-    class(checks_t), intent(inout) :: check
-    class(friction_law_t), allocatable :: law
-    type(error_t), allocatable :: error
-    call friction_law_of("law='glue' coefficient=0.1", law, error)
-    call check%that(allocated(error) .and. .not. allocated(law), 'an unknown friction law is refused')
-    if (.not. allocated(error)) return
-    call check%begins_with(error%message, "x.nml:1: &friction law = glue: must be one of ambrosio, coulomb, "// &
-      "threlfall, brown_mcphee, stribeck, lugre, dahl, elasto_plastic", &
-      'the refusal names the laws')
-    call check%that(error%status == status_case_file, 'the refusal is a case file error')
-  end subroutine test_factory
 end module test_friction

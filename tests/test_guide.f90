@@ -7,7 +7,7 @@ module test_guide
   use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use collecting_sink, only: trace_t, run_case, load_table, column, values_of
+  use collecting_sink, only: trace_t, run_case, column, values_of
   use chain_motion, only: tilting_t
   use joint_places, only: n_places
   use chain_motion, only: motion_t, accelerations_t
@@ -15,6 +15,7 @@ module test_guide
   use guide_events, only: inward_acceleration
   use piston_guide, only: piston_guide_t, guide_loads_t, corner_t, n_corners
   use laws, only: contact_law_of, friction_law_of
+  use data_tables, only: load_table
   implicit none
   private
   public :: run_test_guide
@@ -178,9 +179,9 @@ contains
     type(error_t), allocatable :: error
     real(dp) :: place(2), force(2), total(2), moment
     integer :: i
-    call contact_law_of('law = ''lankarani_nikravesh''', guide%contact, error)
+    call contact_law_of("law='lankarani_nikravesh'", guide%contact, error)
     if (.not. allocated(error)) &
-      call friction_law_of('law = ''ambrosio'', coefficient = 0.3, v0 = 0, v1 = 1e-9', guide%friction, error)
+      call friction_law_of("law='ambrosio' coefficient=0.3 v0=0 v1=1e-9", guide%friction, error)
     call check%that(.not. allocated(error), 'laws of a corner')
     if (allocated(error)) return
     guide%clearance = -2e-3_dp   ! in a bore too narrow for it every corner is in the wall
@@ -472,30 +473,32 @@ contains
   end subroutine compare_with_siconos
 
   !> Runs from Siconos's state just after this impact, in which both ends of the slider hit nearly at once: they converge to rigid
-  !> walls with increasing stiffness, until both ends hit again at 26 ms.
+  !> walls with increasing stiffness, until both ends hit again at 26 ms. The softest one is followed to the end.
   subroutine follow_siconos(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: stiffness(3) = [character(len=5) :: '1e8', '1e9', '1e10']
     real(dp), parameter :: near(3) = [5e-4_dp, 3e-4_dp, 1e-4_dp]   ! allowed error up to 20 ms, in clearances
+    character(len=*), parameter :: until(3) = [character(len=6) :: '0.1972', '0.0402', '0.0402']   ! [s] after the impact
     type(trace_t) :: got
     character(len=40), allocatable :: names(:)
     real(dp), allocatable :: want(:, :)
-    character(len=long) :: settings(2)
-    integer :: i, first, n, m
+    character(len=long) :: settings(3)
+    integer :: i, first, n, m, last
     call load_table('siconos_guide_clearance.csv', names, want)
     first = count(want(1, :) < 2.8e-3_dp - 1e-9_dp)
     do i = 1, size(stiffness)
       settings = 'integrator.relative_tolerance=1e-9'
-      settings(1) = 'guide.stiffness='//stiffness(i)
+      settings(1:2) = [character(len=long) :: 'guide.stiffness='//stiffness(i), 'integrator.end_time='//until(i)]
       got = run_case('cases/joints/slider_after_impact.nml', settings)
-      call check%that(size(got%values, 2) == size(want, 2) - first, 'number of rows of Siconos after the first impact')
-      associate (across => abs(values_of(got, 'piston_offset[m]')/1e-3_dp - want(8, first + 1:)), &
-          turned => abs(values_of(got, 'crank_angle[rad]')/two_pi - want(2, first + 1:)))
+      last = first + size(got%values, 2)
+      call check%that(i > 1 .or. last == size(want, 2), 'number of rows of Siconos after the first impact')
+      associate (across => abs(values_of(got, 'piston_offset[m]')/1e-3_dp - want(8, first + 1:last)), &
+          turned => abs(values_of(got, 'crank_angle[rad]')/two_pi - want(2, first + 1:last)))
         n = count(want(1, first + 1:) < 0.0201_dp)
         m = count(want(1, first + 1:) < 0.0401_dp)
         call check%close_to(sum(across(:n))/n, 0.0_dp, near(i), 'y/c to 20 ms, on average, '//stiffness(i)//' N/m')
         call check%close_to(sum(across(:m))/m, 0.0_dp, 0.01_dp, 'y/c to 40 ms, on average, '//stiffness(i)//' N/m')
-        call check%close_to(maxval(turned), 0.0_dp, 0.005_dp, 'crank angle to 0.2 s, '//stiffness(i)//' N/m [revolutions]')
+        call check%close_to(maxval(turned), 0.0_dp, 0.005_dp, 'crank angle to the end, '//stiffness(i)//' N/m [revolutions]')
       end associate
     end do
   end subroutine follow_siconos

@@ -1,11 +1,10 @@
-!> Motion in a joint with clearance, and scenes whose joints are ideal.
+!> Motion in a joint with clearance.
 module test_joint
   use kinds, only: dp
   use checks, only: checks_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, body_crank, body_big_end, body_small_end
   use clearance_joint, only: clearance_joint_t
   use joint_evaluation, only: joint_evaluation_t, find_polar, find_sliding, sliding_acceleration, outward_acceleration
-  use collecting_sink, only: trace_t, run_case, column
   implicit none
   private
   public :: run_test_joint
@@ -16,7 +15,6 @@ contains
     class(checks_t), intent(inout) :: check
     call polar_terms(check)
     call accelerations_in_the_joint(check)
-    call ideal_scene_runs(check)
   end subroutine run_test_joint
 
   subroutine polar_terms(check)
@@ -79,21 +77,4 @@ contains
       call find_sliding(radius, joint_after)
     end function joint_after
   end subroutine accelerations_in_the_joint
-
-  !> A free ideal mechanism without losses has constant energy; at constant speed the change of energy is the work of the moment.
-  subroutine ideal_scene_runs(check)
-    class(checks_t), intent(inout) :: check
-    type(trace_t) :: trace
-    trace = run_case('cases/sim_I.nml', [character(len=40) :: 'integrator.relative_tolerance=1e-10'], .true.)
-    call check%that(.not. allocated(trace%error), 'the ideal twin of simulation I runs')
-    associate (e => trace%values(column(trace, 'energy[J]'), :), r => trace%values(column(trace, 'energy_residual[J]'), :))
-      call check%close_to(maxval(abs(r))/e(1), 0.0_dp, 1e-8_dp, 'energy of the ideal twin is conserved')
-    end associate
-    call check%that(column(trace, 'film_thickness[m]') == 0, 'an ideal joint has no film column')
-    trace = run_case('cases/flores/ideal.nml', [character(len=40) :: ])
-    associate (r => trace%values(column(trace, 'energy_residual[J]'), :), e => trace%values(column(trace, 'energy[J]'), :))
-      call check%close_to(maxval(abs(r))/maxval(e), 0.0_dp, 1e-5_dp, 'work of the moment at constant speed')
-      call check%that(maxval(e) - minval(e) > 0.1_dp*maxval(e), 'energy changes at constant speed')
-    end associate
-  end subroutine ideal_scene_runs
 end module test_joint

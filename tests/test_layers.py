@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The folders of src are layers: a module uses only modules of its own folder and of lower layers, never of a folder beside or
-above it. Above its registry no module names a law. Lines of Fortran, comments included, have at most 132 characters. Also: the page on
-the architecture names procedures that exist, the version is the same everywhere, and the linters of Fortran and Python are content.
+above it. Above its registry no module names a law. The tests of single models use neither scenes nor case files, so that a changed
+model is tested within seconds. Lines of Fortran, comments included, have at most 132 characters. Also: the page on the architecture
+names procedures that exist, the version is the same everywhere, and the linters of Fortran and Python are content.
 
     tests/test_layers.py        (after scripts/setup.sh --lint)
 
@@ -15,6 +16,7 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parent.parent
 SRC = TOP / "src"
+TESTS = TOP / "tests"
 
 #: The layers from the lowest to the highest; folders in one row must not use each other.
 LAYERS = [
@@ -25,7 +27,7 @@ LAYERS = [
     ["scene"],
     ["io"],
     ["study"],
-    ["main"],
+    ["api", "main"],
 ]
 MOST = 132  # largest number of characters in a line
 
@@ -86,6 +88,21 @@ def named_laws(files: list[Path]) -> list[str]:
     return wrong
 
 
+def used_by_units() -> set[str]:
+    """Layers that the test program of single models uses, by all modules that it needs."""
+    files = [path for folder in (SRC, TESTS) for path in folder.rglob("*.f90")]
+    by_module = {name: path for path in files for name in re.findall(r"^\s*module\s+(?!procedure\b)(\w+)\s*$", path.read_text(), re.M)}
+    reached, waiting = set(), ["units"]
+    while waiting:
+        name = waiting.pop()
+        path = TESTS / "units.f90" if name == "units" else by_module.get(name)
+        if path is None or path in reached:
+            continue
+        reached.add(path)
+        waiting += used_modules(path.read_text())
+    return {folder_of(path) for path in reached if path.is_relative_to(SRC)}
+
+
 def missing_procedures(page: Path) -> list[str]:
     """Procedures in the tables of a page, `file.f90` and `name` in neighbouring cells, that the file does not have."""
     wrong = []
@@ -134,6 +151,8 @@ def main() -> int:
         check("no module uses a higher layer:\n  " + "\n  ".join(wrong), not wrong)
     wrong = named_laws(files)
     check("no module above its registry names a law:\n  " + "\n  ".join(wrong), not wrong)
+    high = used_by_units() & {"scene", "io", "study"}
+    check(f"tests of single models use the layers {sorted(high)}", not high)
     for path in files:
         name = path.stem
         check(

@@ -2,11 +2,8 @@
 !> events.
 module test_lost_force
   use kinds, only: dp
-  use bearing_size, only: bearing_t
   use error_handling, only: error_t
   use checks, only: checks_t
-  use winkler, only: winkler_t
-  use adams_impact, only: adams_impact_t
   use scene_problem, only: scene_t
   use scene_builder, only: build_scene
   use case_definition, only: case_t
@@ -27,35 +24,11 @@ contains
 
   subroutine run_test_lost_force(check)
     class(checks_t), intent(inout) :: check
-    call share_and_rate(check)
     call force_acts_again(check)
     call starts_on_the_kink(check)
     call rests_without_chatter(check)
     call acts_in_every_contact(check)
   end subroutine run_test_lost_force
-
-  !> The share is the force over the elastic force, and its rate the derivative along the motion. It is 1 where the contact ends.
-  subroutine share_and_rate(check)
-    class(checks_t), intent(inout) :: check
-    type(adams_impact_t) :: law
-    real(dp), parameter :: depth(3) = [1e-7_dp, 9e-7_dp, 3e-6_dp], speed = -0.02_dp, acceleration = 3e4_dp, dt = 1e-9_dp
-    real(dp) :: share, rate, before, after, unused, elastic
-    integer :: i
-    law = adams_impact_t(full_damping=5e3_dp, full_damping_depth=1e-6_dp)
-    allocate (law%geometry, source=winkler_t(given_modulus=1e13_dp))
-    call law%prepare(bearing_t(0.01_dp, 0.04_dp, c, 0.2_dp))
-    do i = 1, size(depth)
-      call law%find_share(depth(i), speed, acceleration, share, rate)
-      elastic = law%geometry%elastic_force(depth(i))
-      call check%relative(max(0.0_dp, share)*elastic, law%normal_force(depth(i), speed, 1.0_dp), 1e-12_dp, 'share of the force')
-      call law%find_share(depth(i) - speed*dt, speed - acceleration*dt, acceleration, before, unused)
-      call law%find_share(depth(i) + speed*dt, speed + acceleration*dt, acceleration, after, unused)
-      call check%relative((after - before)/(2*dt), rate, 1e-5_dp, 'its rate')
-    end do
-    call law%find_share(-1e-12_dp, speed, acceleration, share, rate)
-    call check%that(share > 1 .and. share < 1 + 1e-5_dp .and. rate > 0, 'the share increases beyond 1 after the contact')
-    call check%that(abs(law%normal_force(1e-6_dp, -1e3_dp, 1.0_dp)) <= 0, 'a contact never pulls')
-  end subroutine share_and_rate
 
   !> An impact whose force is lost and acts again before the contact ends: the motion is that of very short steps, which need no
   !> events.

@@ -250,8 +250,9 @@ def check_law() -> None:
     page = (ROOT / "data/manual/adding_a_law.md").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder)
-        for name in ("src", "cases", "data", "fpm.toml", "fpm.rsp", "tests", "scripts"):
-            (shutil.copytree if (ROOT / name).is_dir() else shutil.copy)(ROOT / name, copy / name)
+        for name in ("src", "cases", "data", "fpm.toml", "fpm.rsp", "tests", "scripts", "build"):   # what is built is not built again
+            if (ROOT / name).exists():
+                (shutil.copytree if (ROOT / name).is_dir() else shutil.copy)(ROOT / name, copy / name)
         law = copy / "src/friction/linear_ramp.f90"
         law.write_text(code_after(page, "**1. "), encoding="utf-8")
         use, _, line = code_after(page, "**2. ").partition("...")

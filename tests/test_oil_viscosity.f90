@@ -1,24 +1,13 @@
 !> Viscosity of an oil at a temperature: against values computed with 30 digits from the published equations, and a published
-!> example; in runs; and errors in cases.
+!> example.
 module test_oil_viscosity
   use kinds, only: dp
-  use error_handling, only: error_t
   use checks, only: checks_t
+  use data_tables, only: field_of
   use oil_viscosity, only: oil_t
-  use case_definition, only: case_t
-  use case_file, only: read_case, parse_case
-  use chain_motion, only: piston_pin
-  use test_units, only: field_of
-  use run_summary, only: summary_table, summary_value
-  use number_text, only: real_text
-  use case_checks, only: expect, bodies
-  use collecting_sink, only: trace_t, run_case
   implicit none
   private
   public :: run_test_oil_viscosity
-
-  integer, parameter :: long = 60
-  character(len=*), parameter :: vg32 = ' known_temperatures=313.15,373.15 known_viscosities=32e-6,5.4e-6 density=865 '
 
 contains
 
@@ -28,10 +17,7 @@ contains
     call vogel(check)
     call density(check)
     call known_points(check)
-    call every_film(check)
-    call refuses(check)
     call named(check)
-    call names_in_cases(check)
   end subroutine run_test_oil_viscosity
 
   !> Named oils: their viscosities at four temperatures against data/oils.csv; grades of ISO 3448, and windows of SAE J300 (2015) at
@@ -85,54 +71,6 @@ contains
       read (field, *) number
     end function number
   end subroutine named
-
-  !> Spellings of names; a case with a name is the case with the oil's data, which its resolved form has; refusals.
-  subroutine names_in_cases(check)
-    class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: film = '&lubrication temperature=353.15 oil='
-    character(len=12), parameter :: spellings(6) = [character(len=12) :: 'SAE 10W-40', 'sae10w40', '10W-40', '10w40', &
-      'SAE 10w 40', 'Sae-10W-40']
-    type(oil_t) :: oil
-    integer :: i
-    do i = 1, size(spellings)
-      oil%name = trim(spellings(i))
-      call oil%take_name()
-      call check%equal_text(oil%name, 'SAE 10W-40', 'spelling '//spellings(i))
-    end do
-    oil%name = 'vg46'
-    call oil%take_name()
-    call check%equal_text(oil%name, 'ISO VG 46', 'spelling vg46')
-    call expect(check, film//'''SAE 30'' /', '', 'a named oil')
-    call expect(check, film//'''SAE 35'' /', 'oil = SAE 35: unknown oil; one of ISO VG 10 to 680', 'an unknown oil')
-    call expect(check, film//'''SAE 35'' /', '; did you mean SAE 30?', 'a similar oil')
-    call expect(check, film//'''30'' /', 'oil = 30: unknown oil', 'a number alone')
-    call expect(check, film//'''SAE 30'' density=900 /', 'density = 900: must not be given: oil = ''SAE 30'' gives it', &
-      'its density')
-    call expect(check, film//'''SAE 30'' viscosity_law=''vogel'' /', 'viscosity_law', 'another law')
-    call expect(check, film//'''SAE 30'' viscosity=0.01 /', 'viscosity = 0.01: must not be given', 'viscosity too')
-    call expect(check, '&lubrication oil=''SAE 30'' /', 'temperature: required with oil = ''SAE 30''', 'no temperature')
-    call resolves(check, film)
-  end subroutine names_in_cases
-
-  !> The resolved form of a case with a named oil is that of the case with the oil's data; the case keeps the name for its summary.
-  subroutine resolves(check, film)
-    class(checks_t), intent(inout) :: check
-    character(len=*), intent(in) :: film
-    character(len=long), parameter :: by_hand(4) = [character(len=long) :: 'lubrication.viscosity_law=walther', &
-      'lubrication.known_temperatures=313.15,373.15', 'lubrication.known_viscosities=100e-6,11.4e-6', 'lubrication.density=885']
-    character(len=long) :: none(0)
-    character(len=:), allocatable :: resolved, other
-    type(case_t) :: case
-    type(error_t), allocatable :: error
-    call parse_case(bodies//film//'''SAE 30'' /', 'x.nml', none, case, error, resolved)
-    call check%that(allocated(resolved), 'a named oil is accepted')
-    if (.not. allocated(resolved)) return
-    call check%equal_text(case%joints(piston_pin)%oil%name, 'SAE 30', 'the case has the name')
-    call check%that(index(resolved, 'SAE') == 0, 'the resolved form has no name')
-    call parse_case(bodies//film//''''' /', 'x.nml', by_hand, case, error, other)
-    if (allocated(error)) other = error%message
-    call check%equal_text(other, resolved, 'resolved form of a named oil')
-  end subroutine resolves
 
   !> An ISO VG 32 oil (32 and 5.4 mm^2/s at 40 and 100 degrees C; 8.5 at 80 according to a published table of ASTM D341), an SAE
   !> 15W-40 oil, and a fuel below 2 mm^2/s, where the exponential in Z matters.
@@ -196,90 +134,6 @@ contains
       end do
     end do
   end subroutine known_points
-
-  !> A run with an oil equals the run with the resulting viscosities, for every film; the summary contains the viscosity.
-  subroutine every_film(check)
-    class(checks_t), intent(inout) :: check
-    character(len=long), parameter :: films(5) = [character(len=long) :: 'lubrication.variant=closed_form', &
-      'lubrication.variant=half_film', 'lubrication.law=oscillating_film', 'lubrication.variant=short', 'lubrication.variant=table']
-    character(len=long) :: oil(13), plain(13), table
-    type(trace_t) :: by_oil, by_hand
-    type(case_t) :: case
-    type(error_t), allocatable :: error
-    integer :: i
-    oil = ''
-    oil(1:10) = [character(len=long) :: 'lubrication.viscosity=0', 'lubrication.viscosity_law=walther', &
-      'lubrication.temperature=353.15', 'lubrication.known_temperatures=313.15,373.15', 'lubrication.density=865', &
-      'lubrication.known_viscosities=32e-6,5.4e-6', 'integrator.revolutions=0.05', 'lubrication.film_points=32', &
-      'lubrication.table_points=17', 'integrator.relative_tolerance=1e-10']
-    oil(13) = 'integrator.method=auto'
-    plain = oil
-    plain(1:6) = [character(len=long) :: 'lubrication.viscosity=7.0285767E-3', 'output.digits=17', 'joint.kind=clearance', &
-      'joint.clearance=20e-6', 'lubrication.kinematic_viscosity=8.53321469154105e-6', 'initial.crank_angle_deg=0']
-    write (plain(1), '(a,es23.16)') 'lubrication.viscosity=', 823.67278491013_dp*8.53321469154105e-6_dp
-    do i = 1, size(films)
-      oil(11) = merge('lubrication.law=finite_bearing   ', 'lubrication.law=pinkus_sternlicht', i >= 4)
-      oil(12) = films(i)
-      if (i == 3) oil(11) = 'lubrication.kinematic_viscosity=0'
-      plain(11:12) = oil(11:12)
-      if (i == 3) plain(11) = 'mechanism.gravity_angle_deg=0'
-      by_oil = run_case('cases/sim_I.nml', oil)
-      by_hand = run_case('cases/sim_I.nml', plain)
-      call check%that(.not. (allocated(by_oil%error) .or. allocated(by_hand%error)), 'runs with an oil: '//films(i))
-      if (allocated(by_oil%error) .or. allocated(by_hand%error)) cycle
-      call check%close_to(maxval(abs(by_oil%values - by_hand%values)/(1 + abs(by_hand%values))), 0.0_dp, 1e-6_dp, &
-        'film thickness with an oil and with its viscosity: '//films(i))
-      if (i > 1) cycle
-      call read_case('cases/sim_I.nml', oil, case, error)
-      table = summary_value(summary_table(case, by_oil%report, 0.0_dp), 'viscosity')
-      call check%equal_text(trim(table), real_text(823.67278491013_dp*8.53321469154105e-6_dp, 10), 'viscosity in the summary')
-      call read_case('cases/sim_I.nml', plain, case, error)
-      table = summary_value(summary_table(case, by_hand%report, 0.0_dp), 'viscosity')
-      call check%equal_text(trim(table), '', 'no viscosity in the summary if the case gives it')
-    end do
-  end subroutine every_film
-
-  subroutine refuses(check)
-    class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: warm = " viscosity_law='walther' temperature=353.15 "
-    call expect_oil(check, vg32//warm, '', 'an oil is accepted')
-    call expect_oil(check, '', 'viscosity: required (Pa s)', 'no viscosity')
-    call expect_oil(check, 'viscosity=0', 'viscosity = 0: must be > 0 (Pa s)', 'a viscosity of 0')
-    call expect_oil(check, "law='oscillating_film' viscosity=1", &
-      "kinematic_viscosity: required with law = 'oscillating_film' (m^2/s)", 'no kinematic viscosity')
-    call expect_oil(check, vg32//warm//'viscosity=0.01', &
-      "viscosity = 0.01: must not be given: viscosity_law = 'walther' computes it", 'two viscosities')
-    call expect_oil(check, vg32//"viscosity_law='vogel'", "temperature: required with viscosity_law = 'vogel' (K)", &
-      'no temperature')
-    call expect_oil(check, warm//'density=865 known_viscosities=2e-5,1e-5', 'known_temperatures(1): required', 'no temperatures')
-    call expect_oil(check, warm//'density=865 known_temperatures=313.15,373.15', 'known_viscosities(1): required', 'no points')
-    call expect_oil(check, warm//'known_temperatures=313.15,373.15 known_viscosities=2e-5,1e-5', 'density: required', 'no density')
-    call expect_oil(check, warm//'density=865 known_temperatures=313.15,313.2 known_viscosities=2e-5,1e-5', &
-      'known_temperatures(1) = 313.15: must be 1 K apart', 'one point twice')
-    call expect_oil(check, warm//'density=865 known_temperatures=313.15,373.15 known_viscosities=1e-5,2e-5', &
-      'known_viscosities(1) = 1e-5: must be smaller at the higher temperature', 'an oil that thickens')
-    call expect_oil(check, warm//'density=865 known_temperatures=313.15,373.15 known_viscosities=1e-6,1e-7', &
-      'known_viscosities(1) = 1e-6: must be >= 2.1e-7', 'a viscosity below the range of the standard')
-    call expect_oil(check, vg32//"viscosity_law='walther' temperature=90", &
-      'temperature = 90: must be >= 200 and <= 700 (K)', 'a temperature in degrees Celsius')
-    call expect_oil(check, vg32//"viscosity_law='vogel' temperature=353.15 vogel_temperature=310", &
-      'vogel_temperature = 310: must be 10 K or more below', 'a pole too near to the points')
-    call expect_oil(check, 'viscosity=0.01 temperature=353.15', &
-      "temperature = 353.15: needs viscosity_law = 'walther' or 'vogel'", &
-      'a temperature without a law')
-    call expect_oil(check, warm//"viscosity_law='reynolds'", 'viscosity_law', 'an unknown law')
-  end subroutine refuses
-
-  !> A case with these keys of its film is accepted, or refused.
-  subroutine expect_oil(check, keys, wanted, name)
-    class(checks_t), intent(inout) :: check
-    character(len=*), intent(in) :: keys, wanted, name
-    if (wanted == '') then
-      call expect(check, '&lubrication '//keys//' /', '', name)
-    else
-      call expect(check, '&lubrication '//keys//' /', '&lubrication '//wanted, name)
-    end if
-  end subroutine expect_oil
 
   !> An oil known at 40 and 100 degrees C.
   pure function new_oil(law, temperature, viscosities) result(oil)

@@ -460,11 +460,5 @@ contains
     end do
     call check%that(norm2(force(:, 1) - force(:, 2)) <= 0, 'the default variant')
     call check%that(norm2(force(:, 1) - force(:, 3)) > 1e-3_dp*norm2(force(:, 1)), 'the printed variant')
-    call film_law_of(oil//"variant='closed_form'", 1e-6_dp, film, error)
-    call check%that(allocated(error) .and. .not. allocated(film), 'an unknown variant is refused')
-    if (.not. allocated(error)) return
-    call check%equal_text(error%message, 'x.nml: &lubrication variant = closed_form: must be one of bearing_frame, as_printed '// &
-      'for oscillating_film', 'the refusal names the variants')
-    call check%that(error%status == status_case_file, 'the refusal is a case file error')
   end subroutine test_factory
 end module test_oscillating_film

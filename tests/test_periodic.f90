@@ -28,13 +28,13 @@ contains
     call exponent_in_lasting_contact(check)
     call no_exponent(check)
     call exponents_of_machines(check)
-    call exponent_is_the_growth(check, [character(len=long) ::], 'chaos')
+    call exponent_is_the_growth(check, [character(len=long) ::], 16, 'chaos')
     call exponent_is_the_growth(check, [character(len=long) :: 'combustion.cycle=compressor', 'combustion.bore=0.05', &
       'combustion.dead_space=0.05', 'combustion.suction_pressure=1e5', 'combustion.discharge_pressure=3e5', &
-      'combustion.polytropic_exponent=1.3'], 'chaos, compressor')
+      'combustion.polytropic_exponent=1.3'], 8, 'chaos, compressor')
     call exponent_is_the_growth(check, [character(len=long) :: 'cylinder_pressure.bore=0.02', 'drive.kind=free', &
       'cylinder_pressure.table=../../cases/gas/indicator.csv', 'drive.torque_table=../../cases/drive/motor.csv', &
-      'drive.flywheel_inertia=0.05', 'initial.crank_speed=150', 'output.sampling=crank_angle'], 'chaos, indicator and motor')
+      'drive.flywheel_inertia=0.05', 'initial.crank_speed=150', 'output.sampling=crank_angle'], 6, 'chaos, indicator and motor')
   end subroutine run_test_periodic
 
   !> With a film the motion becomes periodic within a revolution. The run ends at the right time with the rows of one revolution,
@@ -268,23 +268,25 @@ contains
 
   !> Two runs at 1e-12 whose pins differ by 1e-12 m: their difference grows according to the exponent if the motion is not
   !> periodic. Several initial states are used, because both are means over a chaotic motion.
-  subroutine exponent_is_the_growth(check, machine, what)
+  subroutine exponent_is_the_growth(check, machine, starts, what)
     class(checks_t), intent(inout) :: check
     character(len=*), intent(in) :: machine(:), what   !! settings in addition to those of the dry joint, and their description
+    integer, intent(in) :: starts                      !! number of initial states
     character(len=long), parameter :: close(4) = [character(len=long) :: auto, 'integrator.relative_tolerance=1e-12', &
       'integrator.crank_revolutions=4', 'output.samples_per_revolution=1']
     real(dp), parameter :: aside = 1e-12_dp, saturated = 1e-2_dp*500e-6_dp
-    character(len=60) :: first, second
+    character(len=60) :: first, second, measured_over
     type(trace_t) :: one, other
     real(dp) :: difference, mean, error, growth, squares, last
     integer :: i, k, x, n
-    one = run_case(dry, [character(len=long) :: auto, 'integrator.revolutions=12', 'run.lyapunov_revolutions=120', machine])
+    write (measured_over, '(a,i0)') 'run.lyapunov_revolutions=', 8*starts
+    one = run_case(dry, [character(len=long) :: auto, 'integrator.revolutions=12', measured_over, machine])
     mean = one%report%exponent%mean
     error = one%report%exponent%error
     growth = 0
     squares = 0
     n = 0
-    do i = 1, 16
+    do i = 1, starts
       write (first, '(a,es12.5,a)') 'initial.eccentricity=', i*2e-5_dp, ',1e-4'
       write (second, '(a,es22.15,a)') 'initial.eccentricity=', i*2e-5_dp + aside, ',1e-4'
       one = run_case(dry, [character(len=long) :: close, machine, first])
@@ -301,7 +303,7 @@ contains
       end do
     end do
     associate (measured => growth/n, scatter => sqrt(max(0.0_dp, squares/n - (growth/n)**2)/n))
-      call check%that(mean > 3*error .and. n > 30, what//': positive exponent')
+      call check%that(mean > 3*error .and. n > 2*starts - 2, what//': positive exponent')
       call check%close_to(mean, measured, 3*(error + scatter), what//': the exponent is the growth of a difference')
     end associate
   end subroutine exponent_is_the_growth

@@ -3,7 +3,7 @@ module test_pinkus_sternlicht
   use, intrinsic :: iso_fortran_env, only: qp => real128
   use kinds, only: dp
   use constants, only: pi
-  use error_handling, only: error_t, status_case_file
+  use error_handling, only: error_t
   use checks, only: checks_t
   use film_law, only: film_law_t, film_motion_t
   use bearing_size, only: bearing_t
@@ -16,6 +16,7 @@ module test_pinkus_sternlicht
   real(dp), parameter :: bearing_radius = 10e-3_dp, bearing_length = 15e-3_dp, clearance = 20e-6_dp
   real(dp), parameter :: viscosity = 0.0117_dp
   real(dp), parameter :: unit_force = viscosity*bearing_length*(bearing_radius - clearance)**3/clearance**2
+
   !> eps, W, eps_dot of the tabulated values.
   real(dp), parameter :: states(3, 6) = reshape([0.5_dp, 1.0_dp, -0.001_dp, 0.5_dp, 1.0_dp, 0.3_dp, &
     0.5_dp, 1.0_dp, -0.3_dp, 0.9_dp, 1.0_dp, 0.3_dp, 0.9_dp, 1.0_dp, -0.3_dp, 0.99_dp, 1.0_dp, -0.3_dp], [3, 6])
@@ -35,7 +36,6 @@ contains
     call test_pressure(check)
     call test_invariance(check)
     call test_extremes(check)
-    call test_factory(check)
   end subroutine run_test_pinkus_sternlicht
 
   !> The film of a variant, selected by name.
@@ -431,22 +431,4 @@ contains
       end do
     end do
   end subroutine test_extremes
-
-  subroutine test_factory(check)
-    class(checks_t), intent(inout) :: check
-    class(film_law_t), allocatable :: film
-    type(error_t), allocatable :: error
-    call film_law_of("law='honey' viscosity=1", 1e-6_dp, film, error)
-    call check%that(allocated(error) .and. .not. allocated(film), 'an unknown film is refused')
-    if (allocated(error)) then
-      call check%begins_with(error%message, &
-        "x.nml:1: &lubrication law = honey: must be one of pinkus_sternlicht, oscillating_film, finite_bearing", &
-        'the refusal names the laws')
-      call check%that(error%status == status_case_file, 'the refusal is a case file error')
-    end if
-    call film_law_of("variant='thick' viscosity=1", 1e-6_dp, film, error)
-    call check%that(allocated(error) .and. .not. allocated(film), 'an unknown variant is refused')
-    if (allocated(error)) call check%that(index(error%message, 'variant = thick: must be one of closed_form') > 0, &
-      'the refusal names the variants')
-  end subroutine test_factory
 end module test_pinkus_sternlicht

@@ -7,6 +7,7 @@ Ends with the line "N passed, N failed".
 """
 
 import contextlib
+import importlib
 import io
 import math
 import re
@@ -16,6 +17,7 @@ import tempfile
 import unittest
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 TOP = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TOP / "scripts" / "bench"))
@@ -30,8 +32,8 @@ import numpy as np
 import pandas as pd
 import show_noise
 import tradeoff
-from gudgeon import language, names, study
-from gudgeon.plots import compare, figures, film_pressure, ringing, style
+from gudgeon import cli, language, names, study
+from gudgeon.plots import columns, compare, figures, film_pressure, laws, ringing, style
 from gudgeon.plots import film as film_pictures
 from gudgeon.plots.figure_map import read_figures
 from gudgeon.plots.quantities import QUANTITIES, once_a_cycle
@@ -43,6 +45,7 @@ from gudgeon.results import (
     Run,
     WindowResults,
     case_files,
+    drawable,
     load_run,
     read_case,
 )
@@ -1072,12 +1075,72 @@ class Reading(unittest.TestCase):
         )
         np.testing.assert_allclose(made.contacts.to_numpy(), [[0.1, 0.3, 7, 8], [0.75, 1, 1, 5]])
 
+    def test_a_run_of_this_process_is_drawn(self) -> None:
+        class Quantities(dict):
+            units = {"contacts": "1"}
+
+        columns = pd.DataFrame({"time": [0.0, 1.0], "film_thickness": [2e-5, 1e-5]})
+        own = SimpleNamespace(
+            name="own", to_pandas=lambda: columns, units={"time": "s", "film_thickness": "m"}, summary=Quantities(contacts=1),
+            events=pd.DataFrame({"joint": ["crank_pin", "piston_pin"], "time": [0.1, 0.2]}),
+            case=SimpleNamespace(to_nml=lambda complete: "&joint\n  kind = 'clearance'\n  clearance = 2e-5   ! m\n/\n"),
+        )
+        made = drawable(own)
+        self.assertEqual((made.clearance, made.summary, list(made.events["time"])), (2e-5, {"contacts": ("1", "1")}, [0.2]))
+        np.testing.assert_array_equal(made["film_thickness"], [2e-5, 1e-5])
+
     def test_missing_results_say_what_to_run(self) -> None:
         with tempfile.TemporaryDirectory() as work:
             with self.assertRaisesRegex(MissingResult, "run: gudgeon -o .*cases/sim_I.nml"):
                 Results(Path(work), run_missing=False).make(["sim_I", "sim_I.ideal"])
             with self.assertRaisesRegex(MissingResult, "nor a shipped case: nonsense"):
                 Results(Path(work)).make(["nonsense"])
+
+
+class Columns(unittest.TestCase):
+    """`gudgeon-plot columns` and `laws`."""
+
+    def setUp(self) -> None:
+        self.angle = np.linspace(0, 7 * np.pi, 701)
+        self.run = run({"time": self.angle / 100, "crank_angle": self.angle, "pin_force_x": 3e3 * np.cos(self.angle),
+                        "pin_force_y": 3e3 * np.sin(self.angle)})
+        self.run.units.update(pin_force_x="N", pin_force_y="N")
+
+    def test_a_vector_is_drawn_by_its_magnitude_in_a_fitting_unit(self) -> None:
+        drawing = columns.draw([self.run], ["pin_force"])
+        (line,) = drawing.axes[0].lines
+        np.testing.assert_allclose(line.get_ydata(), 3)
+        self.assertIn("[kN]", drawing.axes[0].get_ylabel())
+        np.testing.assert_allclose(line.get_xdata(), np.degrees(self.angle))
+        plt.close(drawing)
+
+    def test_one_cycle(self) -> None:
+        for cycle, first in ((0, 0), (1, 2), (-1, 4), (-3, 0)):   # of three whole revolutions
+            rows = columns.rows_of_cycle(self.run, cycle)
+            np.testing.assert_allclose(self.angle[rows][[0, -1]], np.array([first, first + 2]) * np.pi, atol=0.05)
+
+    def test_a_missing_column_is_refused(self) -> None:
+        with self.assertRaisesRegex(MissingResult, "no column film_thickness"):
+            columns.draw([self.run], ["film_thickness"])
+
+    def test_laws_show_the_rows_of_their_phase(self) -> None:
+        ratio = np.linspace(0.5, 1.1, 7)
+        phase = np.where(ratio > 1, 2, 1)
+        made = run({"time": ratio, "phase": phase, "eccentricity_ratio": ratio, "film_thickness": 1e-5 * (1 - ratio),
+                    "film_force_x": 3 * ratio, "film_force_y": 4 * ratio, "normal_force": 1e8 * np.maximum(ratio - 1, 0)})
+        drawing = laws.draw([made])
+        contact, film = (axes.lines[0].get_xydata() for axes in drawing.axes)
+        np.testing.assert_allclose(contact, [[1.0, 1e7]], rtol=1e-9)
+        np.testing.assert_allclose(film, np.column_stack([ratio, 5 * ratio])[phase == 1])
+        plt.close(drawing)
+        with self.assertRaisesRegex(MissingResult, "no row in contact and none in a film"):
+            laws.draw([self.run])
+
+    def test_every_command_has_a_module(self) -> None:
+        there = {path.stem for path in (TOP / "scripts/python/src/gudgeon/commands").glob("*.py")} - {"__init__"}
+        self.assertEqual(there, set(cli.WHAT))
+        for what in cli.WHAT:
+            self.assertIn(f"gudgeon-plot {what}", importlib.import_module(f"gudgeon.commands.{what}").__doc__)
 
 
 class Page(unittest.TestCase):

@@ -59,8 +59,6 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: in_domain
-    associate (unused_self => self)
-    end associate
     in_domain = t >= 1
     dydt = 0
     if (in_domain) dydt = 1.5_dp*sqrt(t - 1)*y
@@ -81,8 +79,6 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: in_domain
-    associate (unused_self => self, unused_t => t)
-    end associate
     dydt(1) = y(2)
     dydt(2) = -y(1)
     in_domain = .true.
@@ -94,8 +90,6 @@ contains
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: in_domain
     real(dp) :: r3
-    associate (unused_self => self, unused_t => t)
-    end associate
     r3 = norm2(y(1:2))**3
     dydt(1:2) = y(3:4)
     dydt(3:4) = -y(1:2)/r3
@@ -107,8 +101,6 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: in_domain
-    associate (unused_self => self, unused_t => t)
-    end associate
     dydt(1) = y(2)
     dydt(2) = -1
     in_domain = .true.
@@ -118,8 +110,6 @@ contains
     class(bouncing_ball_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
-    associate (unused_self => self, unused_t => t)
-    end associate
     g = -y(1)
     g_rate = -y(2)
   end subroutine ball_events
@@ -141,8 +131,6 @@ contains
     class(hopper_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
-    associate (unused_t => t)
-    end associate
     g = y(1) - self%level
     g_rate = y(2)
   end subroutine hopper_events
@@ -153,8 +141,6 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     integer, intent(out) :: action
-    associate (unused_y => y)
-    end associate
     self%passages = self%passages + index
     if (self%passages <= size(self%times)) self%times(self%passages) = t
     action = event_continue

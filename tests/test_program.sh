@@ -147,7 +147,7 @@ run -o "$work/f" -s integrator.max_steps=200 cases/sim_I.nml
 check "a run that cannot continue has exit status 4, got $status" [ "$status" = 4 ]
 check "a run that cannot continue states reason and place" grep -q "max_steps.*t = .*crank angle.*phase film" "$work/err"
 check "a run that cannot continue keeps its rows" [ "$(wc -l <"$work/f/sim_I.csv")" -gt 2 ]
-check "a run that cannot continue has a summary" grep -q '^status,"too many steps' "$work/f/sim_I.summary.csv"
+check "a run that cannot continue has a summary" grep -q '^status,"*too many steps' "$work/f/sim_I.summary.csv"
 for method in adams radau auto; do
   run -o "$work/f" -s integrator.max_evaluations=2000 -s integrator.method=$method cases/sim_I.nml
   check "$method: the limit of evaluations has its own reason, status $status" [ "$status" = 4 ]
@@ -157,7 +157,7 @@ done
 run -o "$work/f" -s integrator.relative_tolerance=1e-9 -s integrator.absolute_tolerance=0.1 cases/flores/dry_0100um.nml
 check "a run with a large energy residual is not done, status $status" [ "$status" = 4 -a "$(grep -vc ': note: ' "$work/err")" = 1 ]
 check "a run with a large energy residual states this" grep -q 'energy not kept.*t = .*crank angle' "$work/err"
-check "the summary states the large energy residual" grep -q '^status,"energy not kept' "$work/f/dry_0100um.summary.csv"
+check "the summary states the large energy residual" grep -q '^status,"*energy not kept' "$work/f/dry_0100um.summary.csv"
 run -o "$work/m" -s integrator.revolutions=0.1 "$work/none.nml" cases/flores/ideal.nml
 check "one wrong case of two: the other is run" [ "$status" = 3 -a -s "$work/m/ideal.csv" ]
 : >"$work/file"
@@ -182,7 +182,7 @@ if (ulimit -f 400) 2>/dev/null; then
   check "full disk: exit status 5, got $status" [ "$status" = 5 ]
   check "full disk: one line names file and reason: $(cat "$work/err")" grep -q "sim_I.csv: File too large" "$work/err"
   check "full disk: complete rows" [ "$(awk -F, '{print NF}' "$work/d/sim_I.csv" | sort -u | wc -l)" = 1 ]
-  check "full disk: the summary states it" grep -q '^status,"stopped: ' "$work/d/sim_I.summary.csv"
+  check "full disk: the summary states it" grep -q '^status,"*stopped: ' "$work/d/sim_I.summary.csv"
 fi
 
 # certificates

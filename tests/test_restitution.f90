@@ -7,7 +7,7 @@ module test_restitution
   use checks, only: checks_t
   use contact_law, only: contact_law_t
   use laws, only: contact_law_of
-  use free_impact, only: restitution_of => exact_restitution
+  use free_impact, only: speed_given_back, exact_restitution
   use impact_problem, only: impact_t, run_impact
   implicit none
   private
@@ -28,6 +28,7 @@ contains
     call energy_at_the_deepest_point(check)
     call dissipation_in_place_of_restitution(check)
     call impact_force(check)
+    call slow_impacts_lose_less(check)
   end subroutine run_test_restitution
 
   !> Pin and bearing of the table of impacts.
@@ -124,7 +125,7 @@ contains
     do i = 1, size(e)
       write (keys, '(a,f8.6)') "law='exact' restitution=", e(i)
       call new_law(check, trim(keys), law)
-      call check%close_to(restitution_of(law%damping), e(i), merge(1e-11_dp, 3e-8_dp, e(i) < 0.99_dp), &
+      call check%close_to(exact_restitution(law%damping), e(i), merge(1e-11_dp, 3e-8_dp, e(i) < 0.99_dp), &
         'root of the restitution equation under exact')
     end do
     call new_law(check, "law='exact' restitution=0.9998", law)
@@ -170,7 +171,7 @@ contains
     call new_law(check, "law='flores' dissipation=1.25", law)
     do i = 1, size(speeds)
       impact = run_impact(law, mass, speeds(i), 5e-5_dp*speeds(i)**(-0.2_dp), 'adams', 1e-10_dp)
-      call check%close_to(impact%restitution, restitution_of(1.25_dp*speeds(i)), 1e-8_dp, 'restitution of a dissipation')
+      call check%close_to(impact%restitution, exact_restitution(1.25_dp*speeds(i)), 1e-8_dp, 'restitution of a dissipation')
     end do
     call check%relative(law%normal_force(1e-6_dp, -0.4_dp, 0.0_dp), 0.5_dp*law%geometry%elastic_force(1e-6_dp), 1e-15_dp, &
       'the force with a dissipation does not depend on the impact speed')
@@ -214,4 +215,31 @@ contains
       back = -exp(-decay*angle/w)*(cos(angle) - decay/w*sin(angle))
     end function oscillator
   end subroutine impact_force
+
+  !> From 1e-3 to 1e-15 m/s the restitution of a free impact is that of the exact solution of the law for chi v/least_impact_speed:
+  !> never above 1, and larger for slower impacts.
+  subroutine slow_impacts_lose_less(check)
+    class(checks_t), intent(inout) :: check
+    class(contact_law_t), allocatable :: law
+    type(error_t), allocatable :: error
+    real(dp), parameter :: restitution(4) = [0.0_dp, 0.5_dp, 0.9_dp, 1.0_dp]
+    real(dp) :: speed, back, previous
+    character(len=40) :: keys
+    integer :: i, power
+    do i = 1, size(restitution)
+      write (keys, '(a,f3.1)') 'stiffness=1e9 restitution=', restitution(i)
+      call contact_law_of(trim(keys), law, error)
+      previous = 0
+      do power = 3, 15
+        speed = 10.0_dp**(-power)
+        back = speed_given_back(law, 1e9_dp, 1.5_dp, speed, 4000, 40000)
+        call check%that(back > 0 .and. back <= 1 + 1e-9_dp, 'restitution of a slow impact is at most 1')
+        call check%that(back >= previous - 1e-7_dp, 'restitution is larger for slower impacts')
+        call check%close_to(back, exact_restitution(law%damping*min(1.0_dp, speed/law%least_impact_speed)), 1e-6_dp, &
+          'slow free impact')
+        previous = back
+      end do
+      call check%close_to(previous, 1.0_dp, 1e-6_dp, 'restitution of the slowest impact')
+    end do
+  end subroutine slow_impacts_lose_less
 end module test_restitution

@@ -32,6 +32,7 @@ contains
     call columns_are_those_asked_for(check)
     call failures_name_their_place(check)
     call event_at_the_end(check)
+    call ideal_scene_runs(check)
   end subroutine run_test_scenes
 
   !> The entry is no deeper than allowed, no impact is missed, and the times converge to those by roots as the allowed depth
@@ -325,4 +326,21 @@ contains
     call check%that(.not. allocated(trace%error), 'an event at the end of a run is its end')
     call check%that(size(trace%values, 2) == 721, 'a run with an event at its end has all rows')
   end subroutine event_at_the_end
+
+  !> A free ideal mechanism without losses has constant energy; at constant speed the change of energy is the work of the moment.
+  subroutine ideal_scene_runs(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    trace = run_case('cases/sim_I.nml', [character(len=40) :: 'integrator.relative_tolerance=1e-10'], .true.)
+    call check%that(.not. allocated(trace%error), 'the ideal twin of simulation I runs')
+    associate (e => trace%values(column(trace, 'energy[J]'), :), r => trace%values(column(trace, 'energy_residual[J]'), :))
+      call check%close_to(maxval(abs(r))/e(1), 0.0_dp, 1e-8_dp, 'energy of the ideal twin is conserved')
+    end associate
+    call check%that(column(trace, 'film_thickness[m]') == 0, 'an ideal joint has no film column')
+    trace = run_case('cases/flores/ideal.nml', [character(len=40) :: ])
+    associate (r => trace%values(column(trace, 'energy_residual[J]'), :), e => trace%values(column(trace, 'energy[J]'), :))
+      call check%close_to(maxval(abs(r))/maxval(e), 0.0_dp, 1e-5_dp, 'work of the moment at constant speed')
+      call check%that(maxval(e) - minval(e) > 0.1_dp*maxval(e), 'energy changes at constant speed')
+    end associate
+  end subroutine ideal_scene_runs
 end module test_scenes

@@ -6,11 +6,7 @@ module test_slow_contact
   use checks, only: checks_t
   use bearing_size, only: bearing_t
   use hertz_sphere, only: hertz_sphere_t
-  use error_handling, only: error_t
-  use contact_law, only: contact_law_t
-  use laws, only: contact_law_of
   use scene_problem, only: event_contact_begins
-  use free_impact, only: speed_given_back, exact_restitution
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private
@@ -27,40 +23,13 @@ contains
 
   subroutine run_test_slow_contact(check)
     class(checks_t), intent(inout) :: check
-    call slow_impacts_lose_less(check)
     call pin_comes_to_rest(check)
     call start_in_contact(check)
     call start_on_the_wall(check)
     call start_off_centre(check)
     call revolution_has_a_budget(check)
+    call contacts_beyond_validity_count(check)
   end subroutine run_test_slow_contact
-
-  !> From 1e-3 to 1e-15 m/s the restitution of a free impact is that of the exact solution of the law for chi v/least_impact_speed:
-  !> never above 1, and larger for slower impacts.
-  subroutine slow_impacts_lose_less(check)
-    class(checks_t), intent(inout) :: check
-    class(contact_law_t), allocatable :: law
-    type(error_t), allocatable :: error
-    real(dp), parameter :: restitution(4) = [0.0_dp, 0.5_dp, 0.9_dp, 1.0_dp]
-    real(dp) :: speed, back, previous
-    character(len=40) :: keys
-    integer :: i, power
-    do i = 1, size(restitution)
-      write (keys, '(a,f3.1)') 'stiffness=1e9 restitution=', restitution(i)
-      call contact_law_of(trim(keys), law, error)
-      previous = 0
-      do power = 3, 15
-        speed = 10.0_dp**(-power)
-        back = speed_given_back(law, 1e9_dp, 1.5_dp, speed, 4000, 40000)
-        call check%that(back > 0 .and. back <= 1 + 1e-9_dp, 'restitution of a slow impact is at most 1')
-        call check%that(back >= previous - 1e-7_dp, 'restitution is larger for slower impacts')
-        call check%close_to(back, exact_restitution(law%damping*min(1.0_dp, speed/law%least_impact_speed)), 1e-6_dp, &
-          'slow free impact')
-        previous = back
-      end do
-      call check%close_to(previous, 1.0_dp, 1e-6_dp, 'restitution of the slowest impact')
-    end do
-  end subroutine slow_impacts_lose_less
 
   !> Released in the centre the pin bounces, settles and carries the piston: K delta^1.5 = m g; for every restitution and
   !> method, with a limited number of contacts.
@@ -182,4 +151,26 @@ contains
     call check%that(.not. allocated(trace%error), 'a run within the limit per revolution is finished')
     call check%that(trace%report%statistics%evaluations > 8000, 'the run exceeds the limit per revolution as a whole')
   end subroutine revolution_has_a_budget
+
+  !> A contact that is deeper than its geometry is valid for is counted once.
+  subroutine contacts_beyond_validity_count(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: geometry(4) = [character(len=30) :: 'contact.geometry=johnson', &
+      'contact.geometry=conformal', 'contact.geometry=pereira', 'contact.geometry=hertz_sphere']
+    type(trace_t) :: trace
+    integer :: i, deep
+    do i = 1, size(geometry)
+      trace = run_case('cases/flores/dry_0100um.nml', [character(len=40) :: geometry(i), 'joint.bearing_length=0.002', &
+        'integrator.revolutions=0.5'])
+      call check%that(.not. allocated(trace%error), 'a run with '//geometry(i))
+      if (allocated(trace%error)) return
+      deep = count(trace%event%kind == 2 .and. trace%event%max_penetration > 0.3_dp*0.1e-3_dp)
+      call check%that(deep > 0 .or. i == 4, 'contacts are deep with '//geometry(i))
+      if (i > 1) deep = 0
+      associate (pin => trace%report%figures%pin(piston_pin))
+        call check%that(pin%contacts_beyond_validity == deep, 'contacts beyond validity with '//geometry(i))
+        call check%that(pin%contacts > deep, 'contacts within validity with '//geometry(i))
+      end associate
+    end do
+  end subroutine contacts_beyond_validity_count
 end module test_slow_contact

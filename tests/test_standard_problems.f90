@@ -159,8 +159,6 @@ contains
     real(dp), intent(in) :: t_old, y_old(:), t, y(:)
     integer, intent(out) :: verdict
     real(dp), intent(out) :: fraction
-    associate (unused_y_old => y_old, unused_y => y)
-    end associate
     fraction = 0.5_dp
     verdict = step_admitted
     if (t - t_old > 1e-3_dp*self%t_end .and. mod(int(1e5_dp*t), 3) > 0) verdict = step_too_deep

@@ -38,8 +38,6 @@ contains
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: in_domain
-    associate (unused => t)
-    end associate
     in_domain = .true.
     dydt(1) = y(2)
     dydt(2) = y(3) - y(1)

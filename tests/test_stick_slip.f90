@@ -8,9 +8,9 @@ module test_stick_slip
   use ode_method, only: ode_method_t
   use ode_methods, only: new_method
   use ode_solver, only: integrate, silent_observer_t, integration_done
-  use collecting_sink, only: load_table
   use laws, only: friction_law_of
   use belt_problem, only: belt_t, new_belt, mass, spring, draw_speed, load
+  use data_tables, only: load_table
   implicit none
   private
   public :: run_test_stick_slip

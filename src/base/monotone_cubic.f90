@@ -123,23 +123,23 @@ contains
     real(dp), intent(in) :: x
     integer, intent(out) :: i
     real(dp), intent(out) :: along
-    real(dp) :: in_domain
+    real(dp) :: position
     integer :: k, last, middle
-    in_domain = x
-    if (self%period > 0) in_domain = x - self%period*floor((x - self%first)/self%period)
-    in_domain = min(max(in_domain, self%first), self%last)
-    k = part_of(self, in_domain)
+    position = x
+    if (self%period > 0) position = x - self%period*floor((x - self%first)/self%period)
+    position = min(max(position, self%first), self%last)
+    k = part_of(self, position)
     i = self%place(k)
     last = self%place(min(k + 1, ubound(self%place, 1)))
     do while (i < last)
       middle = (i + last + 1)/2
-      if (self%point(middle) <= in_domain) then
+      if (self%point(middle) <= position) then
         i = middle
       else
         last = middle - 1
       end if
     end do
-    along = in_domain - self%point(i)
+    along = position - self%point(i)
   end subroutine find
 
   !> Value at x: on a periodic curve anywhere, otherwise beyond the ends that at the nearer end.

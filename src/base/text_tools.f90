@@ -3,8 +3,8 @@ module text_tools
   use, intrinsic :: iso_fortran_env, only: int64
   implicit none
   private
-  public :: lowercase, printable, is_clean, integer_text, whole_number, quoted, nearest_word, likely_word, allowed, &
-    case_name, path_beside, replaced, next_line
+  public :: lowercase, printable, is_clean, integer_text, whole_number, quoted, nearest_word, likely_word, allowed, joined, &
+    case_name, path_beside, replaced, next_line, next_row
 
   !> Ranges of characters that are blanks beyond ASCII, have no width or change the direction of writing: U+00A0, U+00AD,
   !> U+2000-200F, U+2028-202F, U+205F-206F, U+3000, U+FEFF.
@@ -32,9 +32,7 @@ contains
   pure function short_integer(number) result(text)
     integer, intent(in) :: number
     character(len=:), allocatable :: text
-    character(len=11) :: digits
-    write (digits, '(i0)') number
-    text = trim(digits)
+    text = long_integer(int(number, int64))
   end function short_integer
 
   pure function long_integer(number) result(text)
@@ -170,13 +168,19 @@ contains
   pure function allowed(words) result(text)
     character(len=*), intent(in) :: words(:)
     character(len=:), allocatable :: text
-    integer :: i
-    text = ' (allowed: '//trim(words(1))
-    do i = 2, size(words)
-      text = text//', '//trim(words(i))
-    end do
-    text = text//')'
+    text = ' (allowed: '//joined(words)//')'
   end function allowed
+
+  !> `x, y, z`, without words that are empty.
+  pure function joined(words) result(text)
+    character(len=*), intent(in) :: words(:)
+    character(len=:), allocatable :: text
+    integer :: i
+    text = trim(words(1))
+    do i = 2, size(words)
+      if (words(i) /= '') text = text//', '//trim(words(i))
+    end do
+  end function joined
 
   !> Number of letters to insert, remove or replace to turn one word into the other (Levenshtein); large for long words.
   pure function edits(a, b) result(distance)
@@ -244,4 +248,22 @@ contains
     line = text(first:first + length - 1)
     at = first + length + 1
   end subroutine next_line
+
+  !> The next row of a table at or behind position `at` of a text, without surrounding blanks: a line that is not empty and does not
+  !> begin with #. `at` is moved behind it, and `line`, the number of the line before, to its number. Empty if there is none.
+  pure subroutine next_row(text, at, line, row)
+    character(len=*), intent(in) :: text
+    integer, intent(inout) :: at, line
+    character(len=:), allocatable, intent(out) :: row
+    if (at == 1 .and. index(text, char(239)//char(187)//char(191)) == 1) at = 4   ! byte order mark
+    row = ''
+    do while (at <= len(text))
+      call next_line(text, at, row)
+      line = line + 1
+      if (index(row, achar(13), back=.true.) == len(row)) row = row(:len(row) - 1)
+      row = trim(adjustl(row))
+      if (index(row, '#') == 1) row = ''
+      if (row /= '') return
+    end do
+  end subroutine next_row
 end module text_tools

@@ -233,8 +233,6 @@ contains
     class(elastic_rod_t), intent(in) :: self
     real(dp), intent(in) :: crank_length   !! R [m]
     type(motion_t), intent(inout) :: motion
-    associate (unused => self)
-    end associate
     motion%piston_position = crank_length*motion%cos_crank + motion%chord*motion%cos_rod - motion%offset(1)
     motion%piston_velocity = -crank_length*motion%sin_crank*motion%crank_speed + motion%chord_rate*motion%cos_rod &
       - motion%chord*motion%sin_rod*motion%rod_speed - motion%offset_rate(1)

@@ -154,8 +154,6 @@ contains
     class(conformal_t), intent(in) :: self
     real(dp), intent(in) :: half_angle, angle
     real(dp) :: b, y, r
-    associate (unused => self)
-    end associate
     b = tan(0.5_dp*half_angle)
     y = tan(0.5_dp*angle)
     r = sqrt(max(0.0_dp, (b - y)*(b + y)))
@@ -168,8 +166,6 @@ contains
     class(conformal_t), intent(in) :: self
     real(dp), intent(in) :: half_angle
     real(dp) :: u
-    associate (unused => self)
-    end associate
     u = tan(0.5_dp*half_angle)**2
     total_pressure = 2*(u + atanh(u/(2 + u))/u)/(1 + u)
   end function total_pressure

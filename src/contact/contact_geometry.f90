@@ -112,8 +112,6 @@ contains
     class(contact_geometry_t), intent(in) :: self
     type(bearing_t), intent(in) :: bearing
     character(len=:), allocatable, intent(out) :: key, wanted
-    associate (unused => self, unused_bearing => bearing)
-    end associate
     key = ''
     wanted = ''
   end subroutine fits_every_bearing
@@ -121,8 +119,6 @@ contains
   !> Stiffness k Rb L of a foundation of springs [N/m^2]; 0, the default, if the geometry is another one.
   pure real(dp) function no_foundation(self) result(stiffness)
     class(contact_geometry_t), intent(in) :: self
-    associate (unused => self)
-    end associate
     stiffness = 0
   end function no_foundation
 
@@ -136,8 +132,6 @@ contains
   pure real(dp) function line_contact(self, penetration) result(half_angle)
     class(contact_geometry_t), intent(in) :: self
     real(dp), intent(in) :: penetration   !! [m], > 0
-    associate (unused => self, depth => penetration)
-    end associate
     half_angle = 0
   end function line_contact
 
@@ -146,8 +140,6 @@ contains
   pure real(dp) function no_pressure(self, half_angle, angle) result(pressure)
     class(contact_geometry_t), intent(in) :: self
     real(dp), intent(in) :: half_angle, angle   !! [rad]
-    associate (unused => self, unused_angles => half_angle + angle)
-    end associate
     pressure = 0
   end function no_pressure
 
@@ -156,8 +148,6 @@ contains
   pure real(dp) function only_the_force(self, half_angle) result(total)
     class(contact_geometry_t), intent(in) :: self
     real(dp), intent(in) :: half_angle   !! a [rad]
-    associate (unused => self, unused_angle => half_angle)
-    end associate
     total = 1
   end function only_the_force
 
@@ -167,8 +157,6 @@ contains
     real(dp), intent(in) :: penetration    !! [m]; 0 without contact
     real(dp), intent(in) :: normal_force   !! including the damping of the law
     type(trace_row_t), intent(inout) :: row
-    associate (unused => self, depth => penetration, force => normal_force, nothing => row)
-    end associate
   end subroutine no_columns
 
   !> E* [Pa] of the two materials: 1/E* = (1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j.

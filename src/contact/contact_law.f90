@@ -143,9 +143,6 @@ contains
     real(dp), intent(in) :: penetration, penetration_rate   !! [m], [m/s]
     real(dp), intent(in) :: penetration_acceleration        !! [m/s^2]
     real(dp), intent(out) :: share, share_rate
-    associate (unused => self, unused_depth => penetration, unused_rate => penetration_rate, &
-               unused_acceleration => penetration_acceleration)
-    end associate
     share = 1
     share_rate = 0
   end subroutine find_share
@@ -157,8 +154,6 @@ contains
     real(dp), value, intent(in) :: penetration        !! [m], > 0
     real(dp), value, intent(in) :: penetration_rate   !! [m/s]
     real(dp) :: force
-    associate (unused => penetration)
-    end associate
     force = elastic_force*max(0.0_dp, 1 + self%dissipation*penetration_rate)
   end function damped_force
 

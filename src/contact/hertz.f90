@@ -18,8 +18,6 @@ contains
   subroutine parameters(self, list)
     class(hertz_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    associate (nothing_to_give => self, unused => list)
-    end associate
   end subroutine parameters
 
   pure logical function is_elastic()

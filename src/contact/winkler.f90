@@ -163,8 +163,6 @@ contains
   pure real(dp) function pressure(self, half_angle, angle)
     class(winkler_t), intent(in) :: self
     real(dp), intent(in) :: half_angle, angle
-    associate (unused => self)
-    end associate
     pressure = 4*sin(0.5_dp*(half_angle + angle))*sin(0.5_dp*(half_angle - angle))/excess_over_sine(2*half_angle)
   end function pressure
 
@@ -172,7 +170,7 @@ contains
   pure real(dp) function total_pressure(self, half_angle)
     class(winkler_t), intent(in) :: self
     real(dp), intent(in) :: half_angle
-    associate (unused => self, a => half_angle)
+    associate (a => half_angle)
       total_pressure = 4*(2*a*sin(0.5_dp*a)**2 - excess_over_sine(a))/excess_over_sine(2*a)
     end associate
   end function total_pressure

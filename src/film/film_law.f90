@@ -184,8 +184,6 @@ contains
     class(film_law_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(in) :: theta
-    associate (unused => self, unused_too => motion, also_unused => theta)
-    end associate
     nowhere = 0
   end function nowhere
 
@@ -268,8 +266,6 @@ contains
     type(bearing_t), intent(in) :: bearing
     real(dp), intent(in) :: tolerance
     character(len=:), allocatable :: key
-    associate (unused => self, unused_too => bearing, also_unused => tolerance)
-    end associate
     key = ''
   end function no_key
 
@@ -280,16 +276,12 @@ contains
     type(bearing_t), intent(in) :: bearing
     real(dp), intent(in) :: tolerance
     class(table_watch_t), intent(inout), optional :: watch
-    associate (unused => self, unused_too => bearing, also_unused => tolerance, unused_as_well => watch)
-    end associate
   end subroutine no_table
 
   !> The table as numbers, to be stored.
   pure function no_numbers(self) result(numbers)
     class(film_law_t), intent(in) :: self
     real(dp), allocatable :: numbers(:)
-    associate (unused => self)
-    end associate
     allocate (numbers(0))
   end function no_numbers
 
@@ -298,8 +290,6 @@ contains
     class(film_law_t), intent(inout) :: self
     real(dp), intent(in) :: numbers(:)
     logical, intent(out) :: fits
-    associate (unused => self, unused_too => numbers)
-    end associate
     fits = .false.
   end subroutine no_restored_table
 

@@ -32,7 +32,6 @@ module film_results
     real(dp) :: time = 0                  !! [s]
     real(dp), allocatable :: angle(:)     !! from x towards y (around) [rad]
     real(dp), allocatable :: axial(:)     !! distance from the middle of the bearing (along) [m]
-    real(dp), allocatable :: thickness(:) !! (around) [m]
     real(dp), allocatable :: pressure(:, :)    !! above the cavitation pressure [Pa]
     real(dp), allocatable :: fraction(:, :)    !! film fraction [-]
     logical, allocatable :: is_supplied(:, :)  !! cells in a groove or hole
@@ -133,7 +132,6 @@ contains
       field%angle = cells%angle
       field%axial = [((j - 0.5_dp)*cells%width*cells%pin_radius, j=1, cells%along)]
       if (cells%is_land) field%axial = field%axial + 0.5_dp*cells%supply%groove_width
-      field%thickness = solver%gap%at_cells*cells%clearance
     end associate
     field%pressure = solver%oil%pressure(state%pressure)*solver%pressure_unit
     field%fraction = state%fraction

@@ -64,7 +64,7 @@ contains
       'grid points round the film, a multiple of 4; 0: by the tolerance 64 (above 3e-5), 128, 192 (below 1e-8)', &
       '>= 32 and <= 1024', '0')
     call list%text('table_file', self%table_file, &
-      'file that keeps the table, path relative to the case file; '''': in the cache of the user', '')
+      'file that keeps the table, path relative to the case file; '''': in the cache of the user', '', is_path=.true.)
     call self%add_least_film(list)
   end subroutine parameters
 

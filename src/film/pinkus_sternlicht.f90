@@ -63,8 +63,6 @@ contains
     class(pinkus_sternlicht_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
     real(dp), intent(in) :: tolerance
-    associate (unused => tolerance)
-    end associate
     self%clearance = bearing%clearance
     self%per_clearance = 1/bearing%clearance
     self%pressure_scale = self%viscosity*(bearing%pin_radius()/bearing%clearance)**2

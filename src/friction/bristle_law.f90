@@ -3,10 +3,7 @@
 !> The deflection is 0 at the beginning of a contact and while there is no contact. Forces are divided by the normal force (and so
 !> are the parameters of Canudas de Wit et al.), so that |z| <= c_s/s_0 for any load, and the friction vanishes with the load. As a
 !> consequence the energy of the bristles, F_N s_0 z^2/2, depends on the load, and friction may supply energy, up to this amount
-!> each time that the load varies while they are deflected. Measured in cases/friction/lugre over a revolution, relative to the
-!> energy that friction dissipates: 1e-4 at 5000 rpm, 3e-3 at 500 rpm, 1e-2 at 50 rpm; 1e-5 with five times the stiffness. A law in
-!> which bristles relax as the load grows (z' minus z F_N'/F_N while that is positive) supplies none, but then friction dissipates
-!> 3, 14 and 9 % less; it is not offered.
+!> each time that the load varies while they are deflected (how much: data/manual/choices.md).
 module bristle_law
   use kinds, only: dp
   use number_text, only: short_text
@@ -190,8 +187,6 @@ contains
     class(bristle_law_t), intent(in) :: self
     real(dp), intent(in) :: states(:)
     type(trace_row_t), intent(inout) :: row
-    associate (unused => self)
-    end associate
     call row%add('bristle[m]', states(1), 'mean deflection of the bristles, the state of the friction law')
   end subroutine add_columns
 end module bristle_law

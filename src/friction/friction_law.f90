@@ -46,8 +46,6 @@ contains
   !> Prepare the law before the first evaluation of the force. The default does nothing.
   subroutine nothing_to_prepare(self)
     class(friction_law_t), intent(inout) :: self
-    associate (unused_self => self)
-    end associate
   end subroutine nothing_to_prepare
 
   !> Friction force on the pin divided by the normal force [-], positive along the tangent t = (-n_y, n_x). That of a set-valued
@@ -69,8 +67,6 @@ contains
   !> The default, 0, is for laws without such static friction.
   pure real(dp) function no_static_speed(self)
     class(friction_law_t), intent(in) :: self
-    associate (unused_self => self)
-    end associate
     no_static_speed = 0
   end function no_static_speed
 
@@ -80,8 +76,6 @@ contains
     class(friction_law_t), intent(in) :: self
     real(dp), intent(in) :: sliding_speed
     real(dp) :: slope
-    associate (unused_self => self, unused_speed => sliding_speed)
-    end associate
     slope = 0
   end function friction_ratio_slope
 
@@ -95,8 +89,6 @@ contains
   !> limit.
   pure real(dp) function no_limit(self)
     class(friction_law_t), intent(in) :: self
-    associate (unused_self => self)
-    end associate
     no_limit = huge(no_limit)
   end function no_limit
 
@@ -119,8 +111,6 @@ contains
     real(dp), intent(in) :: sliding_speed
     real(dp), intent(in) :: states(self%n_states)
     real(dp), intent(out) :: slopes(1 + self%n_states, 1 + self%n_states)
-    associate (unused => states)
-    end associate
     slopes = 0
     slopes(1, 1) = self%friction_ratio_slope(sliding_speed)
   end subroutine steady_slopes
@@ -130,8 +120,6 @@ contains
     class(friction_law_t), intent(in) :: self
     real(dp), intent(in) :: states(:)           !! (most_friction_states); 0 without contact
     type(trace_row_t), intent(inout) :: row
-    associate (unused_self => self, unused_states => states, unused_row => row)
-    end associate
   end subroutine no_columns
 
   !> Declare the coefficient of sliding friction.

@@ -58,8 +58,6 @@ contains
     type(working_gas_t), intent(out) :: gas
     type(error_t), allocatable, intent(out) :: error
     type(valve_gas_t) :: valves
-    associate (unused => tolerance, never => allocated(error))
-    end associate
     valves%cylinder = new_cylinder(self%bore, crank_length, rod_length, 1 + 1/self%dead_space)
     valves%suction_pressure = self%suction_pressure
     valves%discharge_pressure = self%discharge_pressure
@@ -71,8 +69,6 @@ contains
 
   pure real(dp) function fastest_piston(self)
     class(compressor_t), intent(in) :: self
-    associate (unused => self)
-    end associate
     fastest_piston = 12
   end function fastest_piston
 

@@ -27,8 +27,6 @@ contains
   pure subroutine timing(self, period, half_closed)
     class(four_stroke_t), intent(in) :: self
     real(dp), intent(out) :: period, half_closed
-    associate (unused => self)
-    end associate
     period = 4*pi
     half_closed = pi
   end subroutine timing

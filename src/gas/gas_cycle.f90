@@ -235,8 +235,6 @@ contains
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t_to
     real(dp) :: y(1), t
-    associate (unused_problem => problem)
-    end associate
     do while (self%next < ubound(self%value, 1))
       t = real(self%next, dp)/ubound(self%value, 1)
       if (t > t_to) exit

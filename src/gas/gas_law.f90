@@ -38,24 +38,18 @@ contains
   !> Period of the pressure [revolutions].
   pure integer function one_revolution(self) result(revolutions)
     class(gas_law_t), intent(in) :: self
-    associate (unused => self)
-    end associate
     revolutions = 1
   end function one_revolution
 
   !> Mean piston speed above which no such machine is built [m/s].
   pure real(dp) function fastest_piston(self)
     class(gas_law_t), intent(in) :: self
-    associate (unused => self)
-    end associate
     fastest_piston = 40
   end function fastest_piston
 
   !> Heat released in a cycle [J]; 0: none is known.
   pure real(dp) function heat_of_cycle(self)
     class(gas_law_t), intent(in) :: self
-    associate (unused => self)
-    end associate
     heat_of_cycle = 0
   end function heat_of_cycle
 

@@ -1,4 +1,5 @@
-!> Parameters of a cylinder whose pressure has been measured as a function of the crank angle.
+!> Parameters of a cylinder whose pressure has been measured as a function of the crank angle, or is set from outside during a
+!> run.
 module measured_pressure
   use kinds, only: dp
   use constants, only: degree
@@ -17,6 +18,8 @@ module measured_pressure
   integer, parameter :: measured_pressure_periods(2) = [360, 720]   !! allowed periods [degrees]
 
   type, extends(gas_law_t) :: measured_pressure_t
+    character(len=:), allocatable :: kind    !! 'table' or 'external'
+    real(dp) :: pressure = 0                 !! of kind external at the start [Pa]
     type(measured_curve_t) :: curve          !! crank angle [degrees], pressure [Pa], within one period
     integer :: period_deg = 720
     real(dp) :: offset_deg = 0               !! crank angle for angle 0 of the table [degrees]
@@ -25,6 +28,7 @@ module measured_pressure
     procedure :: parameters
     procedure :: prepare
     procedure :: revolutions
+    procedure :: is_external
     procedure :: description
   end type measured_pressure_t
 
@@ -33,8 +37,12 @@ contains
   subroutine parameters(self, list)
     class(measured_pressure_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
+    call list%word('kind', self%kind, 'table, external', 'table', &
+      'external: the pressure is an input, which a program that embeds this one sets during the run')
+    call list%add('pressure', self%pressure, 'pressure (absolute) at the start, for kind = ''external'' alone', 'Pa', &
+      '> 0 and <= 1e10', default='101325.0', usual='1e4 to 3e7')
     call self%curve%parameters(list, 'table', &
-      'CSV file with columns crank_angle[deg],pressure[bar] (absolute), path relative to the case file', &
+      'CSV file with columns crank_angle[deg],pressure[bar] (absolute), path relative to the case file', '', &
       example='pressure.csv')
     call list%add('period_deg', self%period_deg, &
       'period of the table: 720 (four-stroke) or 360 degrees', '>= 360 and <= 720', '720')
@@ -53,12 +61,12 @@ contains
     real(dp), intent(in) :: tolerance
     type(working_gas_t), intent(out) :: gas
     type(error_t), allocatable, intent(out) :: error
-    associate (unused => tolerance, never => allocated(error))
-    end associate
     gas%cylinder = new_cylinder(self%bore, crank_length, rod_length, 2.0_dp)
     gas%cylinder%dead_volume = 0
     if (self%compression_ratio > 1) gas%cylinder%dead_volume = gas%cylinder%displacement/(self%compression_ratio - 1)
     gas%crankcase_pressure = self%crankcase_pressure
+    gas%held_pressure = self%pressure
+    if (self%is_external()) return
     gas%revolutions = self%revolutions()
     allocate (gas%curve, source=new_periodic_cubic((self%curve%x + self%offset_deg)*degree, self%curve%y, self%period_deg*degree))
   end subroutine prepare
@@ -66,11 +74,20 @@ contains
   pure integer function revolutions(self)
     class(measured_pressure_t), intent(in) :: self
     revolutions = self%period_deg/360
+    if (self%is_external()) revolutions = 1
   end function revolutions
+
+  !> Whether the pressure is an input.
+  pure logical function is_external(self)
+    class(measured_pressure_t), intent(in) :: self
+    is_external = .false.
+    if (allocated(self%kind)) is_external = self%kind == 'external'
+  end function is_external
 
   function description(self) result(text)
     class(measured_pressure_t), intent(in) :: self
     character(len=:), allocatable :: text
-    text = 'measured pressure, repeated every '//integer_text(self%period_deg)//' degrees'
+    text = 'pressure set from outside'
+    if (.not. self%is_external()) text = 'measured pressure, repeated every '//integer_text(self%period_deg)//' degrees'
   end function description
 end module measured_pressure

@@ -1,5 +1,5 @@
 !> The gas in the cylinder of a running machine: the cycle of an engine and its present part, the gas of a compressor and the state
-!> of its valves, or a measured pressure.
+!> of its valves, a measured pressure, or one that is set from outside.
 module working_gas
   use kinds, only: dp
   use constants, only: degree
@@ -16,8 +16,9 @@ module working_gas
   !> Events of a cycle: the crank passes from one part to the next, forwards or backwards.
   integer, parameter :: n_cycle_events = 2
 
-  !> Exactly one of the last three components is allocated. The second derivative of a measured pressure is discontinuous at its
-  !> points. There are no events for this: the error control detects it and reduces the order of the method.
+  !> At most one of the last three components is allocated; without them the pressure is `held_pressure`. The second derivative of
+  !> a measured pressure is discontinuous at its points. There are no events for this: the error control detects it and reduces the
+  !> order of the method.
   type :: working_gas_t
     integer :: n_events = 0          !! number of event functions, set by `start`
     integer :: revolutions = 1       !! period of the pressure [revolutions]
@@ -26,6 +27,7 @@ module working_gas
     real(dp) :: cycle_start = 0      !! that angle at which the present cycle began [rad]
     type(cylinder_t) :: cylinder
     real(dp) :: crankcase_pressure = 0   !! [Pa]
+    real(dp) :: held_pressure = 0        !! constant until it is set anew [Pa]
     type(gas_cycle_t), allocatable :: cycle
     type(valve_gas_t), allocatable :: valves
     type(monotone_cubic_t), allocatable :: curve   !! measured pressure [Pa] over the crank angle [rad]
@@ -33,6 +35,7 @@ module working_gas
     procedure :: start
     procedure :: declare
     procedure :: longest_turn
+    procedure :: is_external
     procedure, non_overridable :: pressure
     procedure, non_overridable :: force
     procedure :: force_slope
@@ -77,6 +80,12 @@ contains
     if (allocated(self%curve)) longest_turn = min(max(self%curve%finest(), 0.25_dp*degree), 5*degree)
   end function longest_turn
 
+  !> Whether the pressure is set from outside.
+  pure logical function is_external(self)
+    class(working_gas_t), intent(in) :: self
+    is_external = .not. (allocated(self%cycle) .or. allocated(self%valves) .or. allocated(self%curve))
+  end function is_external
+
   !> Pressure at a crank angle [Pa].
   pure real(dp) function pressure(self, crank_angle)
     class(working_gas_t), intent(in) :: self
@@ -85,8 +94,10 @@ contains
       pressure = self%cycle%pressure(self%sense*crank_angle, self%part, self%cycle_start)
     else if (allocated(self%valves)) then
       pressure = self%valves%pressure(crank_angle)
-    else
+    else if (allocated(self%curve)) then
       pressure = self%curve%value(crank_angle)
+    else
+      pressure = self%held_pressure
     end if
   end function pressure
 
@@ -119,8 +130,10 @@ contains
       force_slope = self%sense*self%cycle%pressure_slope(self%sense*crank_angle, self%part, self%cycle_start)
     else if (allocated(self%valves)) then
       force_slope = self%valves%pressure_slope(crank_angle)
-    else
+    else if (allocated(self%curve)) then
       force_slope = self%curve%slope(crank_angle)
+    else
+      force_slope = 0
     end if
     force_slope = self%cylinder%area*force_slope
   end function force_slope

@@ -2,7 +2,7 @@
 !> of the last cycle, NAME.summary.csv and NAME.resolved.nml.
 module bearing_run
   use kinds, only: dp
-  use error_handling, only: error_t, fail, keep_first, status_case_file, status_command_line
+  use error_handling, only: error_t, fail, status_command_line
   use film_cells, only: film_cells_t, supply_grooves, supply_holes, supply_circumferential, new_film_cells
   use bearing_size, only: bearing_t
   use film_history, only: film_history_t, film_duty_t

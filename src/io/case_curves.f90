@@ -35,7 +35,7 @@ contains
       into%drive%table)
     if (.not. allocated(into%measured)) return
     associate (gas => into%measured)
-      if (all(gas%period_deg /= measured_pressure_periods)) return   ! refused by the rules
+      if (gas%is_external() .or. all(gas%period_deg /= measured_pressure_periods)) return   ! without table, or refused by the rules
       call provide(values, into%file, 'cylinder_pressure', 'table', crank_angle, pressure, gas%curve, gas%period_deg)
     end associate
   end subroutine provide_curves
@@ -55,7 +55,8 @@ contains
     logical :: is_read
 
     if (curve%file == '') then
-      call values%refuse(group, key, 'must be the name of a file')
+      call values%refuse(group, key, trim(merge('must be the name of a file', 'required                  ', &
+        values%is_given(group, key))))
       return
     end if
     path = path_beside(case_file, curve%file)

@@ -2,7 +2,7 @@
 !> or group and key, value as written, and what is allowed.
 module case_file
   use error_handling, only: error_t, fail, status_case_file
-  use text_tools, only: lowercase, printable, case_name, likely_word
+  use text_tools, only: lowercase, printable, case_name, likely_word, joined
   use text_file, only: read_text_file
   use joint_places, only: places, n_places, in_order, joint_group
   use case_definition, only: case_t
@@ -18,7 +18,7 @@ module case_file
   use problem_list, only: behind_file
   implicit none
   private
-  public :: read_case, parse_case, read_case_values, complete_case, template
+  public :: read_case, parse_case, read_case_values, parse_values, apply_override, complete_case, template
 
   integer, parameter :: largest_file = 1   !! MB; case files are a few kilobytes long
 
@@ -62,6 +62,7 @@ contains
     if (.not. allocated(error)) call parse_values(text, path, overrides, values, is_bearing)
   end subroutine read_case_values
 
+  !> The values of a case file's text and of overrides; see `read_case_values`. `path` gives its name in messages.
   subroutine parse_values(text, path, overrides, values, is_bearing)
     character(len=*), intent(in) :: text, path, overrides(:)
     type(case_values_t), intent(out) :: values
@@ -219,7 +220,8 @@ contains
           wanted = ''
           place = lowercase(entry%tokens(1)%text)
           if (found /= '') wanted = 'given twice'
-          if (.not. any(places%name == place)) wanted = 'must be one of '//place_names()//likely_word(place, place_names())
+          if (.not. any(places%name == place)) &
+            wanted = 'must be one of '//joined(places(in_order)%name)//likely_word(place, joined(places(in_order)%name))
         end if
         if (wanted /= '') then
           call fail(error, list%at(entry%line)//'&'//entry%group//' place = '//printable(place, 48)//': '//wanted, &
@@ -239,16 +241,6 @@ contains
     character(len=*), intent(in) :: name
     has_places = find_group(values%groups, trim(places(in_order(2))%name)//'.'//name) > 0
   end function has_places
-
-  !> The names of all places, separated by commas.
-  pure function place_names() result(text)
-    character(len=:), allocatable :: text
-    integer :: i
-    text = trim(places(in_order(1))%name)
-    do i = 2, n_places
-      text = text//', '//trim(places(in_order(i))%name)
-    end do
-  end function place_names
 
   !> Apply an override GROUP.KEY=VALUE to the values; texts need no quotes. GROUP=none removes everything that the file and earlier
   !> overrides have set in that group.

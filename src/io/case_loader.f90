@@ -67,8 +67,6 @@ contains
     logical, intent(in) :: is_model
     character(len=*), intent(in), optional :: place, instead_of
     integer :: of_place
-    associate (unused => says, unused_group => present(instead_of))
-    end associate
     self%at = find_group(self%values%groups, name)
     if (present(place)) then
       of_place = find_group(self%values%groups, place//'.'//name)
@@ -86,8 +84,6 @@ contains
   subroutine load_choice(self, key, default, says)
     class(loader_t), intent(inout) :: self
     character(len=*), intent(in) :: key, default, says
-    associate (unused => default, unused_too => says)
-    end associate
     if (self%sets) self%law_name = self%values%values(place_of(self, key))%text
     if (allocated(self%chosen)) deallocate (self%chosen)
   end subroutine load_choice

@@ -7,7 +7,7 @@ module case_notes
   use joint_case, only: joint_case_t
   use joint_places, only: places, n_places, in_order, name_prefix, joint_group
   use chain_motion, only: body_piston
-  use case_schema, only: find_group, shown_group, real_kind
+  use case_schema, only: find_group, shown_group
   use case_values, only: case_values_t
   use number_text, only: short_text
   use text_tools, only: replaced

@@ -370,6 +370,10 @@ contains
       if (.not. allocated(c%measured)) return
       call forbid(allocated(c%combustion), 'cylinder_pressure', 'table', &
         'cannot be combined with the group combustion: one pressure acts on the piston')
+      call forbid(c%measured%is_external() .and. c%measured%curve%is_wanted(), 'cylinder_pressure', 'table', &
+        'must not be given with kind = ''external''')
+      call forbid(c%measured%is_external() .and. c%run%is_until_periodic(), 'cylinder_pressure', 'kind', &
+        'must be table with &run until = ''periodic'': a pressure from outside need not repeat')
       call forbid(all(c%measured%period_deg /= measured_pressure_periods), 'cylinder_pressure', 'period_deg', 'must be 360 or 720')
     end subroutine check_gas
 

@@ -135,7 +135,7 @@ contains
     what = ''
     if (starts_from_it .and. status == 0) then
       what = 'replaces the results of the run from which it goes on; another folder with --out keeps both'
-    else if (file_length(self%base//'.csv.part') >= 0 .or. status == 0 .and. index(summary, newline//'status,"done"') == 0) then
+    else if (file_length(self%base//'.csv.part') >= 0 .or. status == 0 .and. index(summary, newline//'status,done,') == 0) then
       what = 'discards the results of an earlier run that was stopped'//reached(path)
     end if
     if (what /= '' .and. .not. self%is_quiet) call tell(printable(self%case%file, 200)//': '//what)

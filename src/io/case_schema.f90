@@ -156,8 +156,6 @@ contains
     class(law_t), intent(in) :: law
     character(len=*), intent(in), optional :: variant
     class(law_t), allocatable :: copy
-    associate (unused => present(variant))
-    end associate
     self%law_name = name
     call add_word(self%keys(self%present_choice)%words, self%law_name)
     allocate (copy, source=law)
@@ -173,8 +171,6 @@ contains
     logical, intent(inout), optional :: switch
     character(len=:), allocatable, intent(inout), optional :: text
     integer :: place
-    associate (unused => present(reals) .or. present(whole) .or. present(switch) .or. present(text))
-    end associate
     place = find_key(self%keys, self%groups(self%n_groups), trim(key%name))
     if (place == 0) then
       call add_key(self, key, self%groups(self%n_groups)%name)

@@ -8,7 +8,7 @@ module case_text
   use case_values, only: case_values_t, value_t
   implicit none
   private
-  public :: template_text, resolved_text
+  public :: template_text, resolved_text, value_text
 
   character(len=*), parameter :: newline = achar(10)
 
@@ -112,23 +112,30 @@ contains
     type(key_t), intent(in) :: key
     type(value_t), intent(in) :: value
     character(len=:), allocatable :: line
-    integer :: element
-    line = '  '//trim(key%name)//' = '
-    select case (key%kind)
-    case (real_kind)
-      line = line//real_literal(value%reals(1))
-      do element = 2, key%count
-        line = line//', '//real_literal(value%reals(element))
-      end do
-    case (integer_kind)
-      line = line//integer_text(value%whole)
-    case (logical_kind)
-      line = line//trim(merge('.true. ', '.false.', value%switch))
-    case default
-      line = line//quoted(value%text, '''')
-    end select
+    line = '  '//trim(key%name)//' = '//value_text(key, value)
     if (key%unit /= '') line = line//'  ! '//trim(key%unit)
   end function resolved_line
+
+  !> The value of a key as it is written in a case.
+  function value_text(key, value) result(text)
+    type(key_t), intent(in) :: key
+    type(value_t), intent(in) :: value
+    character(len=:), allocatable :: text
+    integer :: element
+    select case (key%kind)
+    case (real_kind)
+      text = real_literal(value%reals(1))
+      do element = 2, key%count
+        text = text//', '//real_literal(value%reals(element))
+      end do
+    case (integer_kind)
+      text = integer_text(value%whole)
+    case (logical_kind)
+      text = trim(merge('.true. ', '.false.', value%switch))
+    case default
+      text = quoted(value%text, '''')
+    end select
+  end function value_text
 
   !> A real that cannot be taken for a whole number: 0.0508, 250.0, 2e-5.
   pure function real_literal(value) result(text)

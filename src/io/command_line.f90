@@ -7,7 +7,7 @@ module command_line
   use case_schema, only: key_table_t, case_schema_of, find_group, is_listed
   implicit none
   private
-  public :: command_line_t, parse_command_line, program_arguments, help_text
+  public :: command_line_t, parse_command_line, program_arguments, help_text, option_t, options
 
   !> The contents of the command line.
   type :: command_line_t
@@ -22,6 +22,8 @@ module command_line
     character(len=:), allocatable :: reference    !! page of the manual to print: case, bearing, study, oils, results or a group
                                                   !! of cases; empty: none
     character(len=:), allocatable :: kind         !! of a short template; empty: the complete one
+    character(len=:), allocatable :: completion   !! shell whose completion script is printed; empty: none
+    logical :: manual = .false.                   !! print the page of the manual
     logical :: check = .false., template = .false., quiet = .false., help = .false., version = .false.
     character(len=:), allocatable :: progress     !! auto, always, never
     character(len=:), allocatable :: cases(:)     !! paths of case files or study files, padded with blanks
@@ -38,13 +40,14 @@ module command_line
     logical :: may_take_value = .false.   !! in the form --NAME=VALUE alone
   end type option_t
 
-  type(option_t), parameter :: options(16) = [ &
+  type(option_t), parameter :: options(18) = [ &
     option_t('out', 'o', .true.), option_t('set', 's', .true.), option_t('accuracy', 'a', .true.), &
     option_t('jobs', 'j', .true.), option_t('progress', '', .true.), option_t('check', '', .false.), &
     option_t('certify', '', .false.), option_t('name', '', .true.), &
     option_t('template', '', .false., .true.), option_t('quiet', 'q', .false.), option_t('help', 'h', .false.), &
     option_t('version', 'V', .false.), option_t('fresh', '', .false.), option_t('rows', '', .true.), &
-    option_t('reference', '', .true.), option_t('from', '', .true.)]
+    option_t('reference', '', .true.), option_t('from', '', .true.), option_t('completion', '', .true.), &
+    option_t('man', '', .false.)]
 
   character(len=*), parameter :: standard_input = '/dev/stdin'
   integer, parameter :: most_jobs = 1024
@@ -66,6 +69,7 @@ contains
     line%reference = ''
     line%name = ''
     line%kind = ''
+    line%completion = ''
     allocate (character(len=len(arguments)) :: line%overrides(0), line%cases(0))
     only_cases = .false.
     i = 0
@@ -89,9 +93,9 @@ contains
       end if
     end do
     if (allocated(error) .or. line%help .or. line%version) return
-    if (line%template .or. line%reference /= '') then
+    if (line%template .or. line%manual .or. line%reference//line%completion /= '') then
       if (line%option_count > 1 .or. size(line%cases) > 0) then
-        call refuse('--template and --reference are not combined with other options or with files')
+        call refuse('--template, --reference, --completion and --man are not combined with other options or with files')
       else if (line%sweep .and. line%kind /= '') then
         call refuse('gudgeon sweep --template has no kinds')
       end if
@@ -216,8 +220,14 @@ contains
       case ('reference')
         line%reference = value
         call case_schema_of(table)
-        if (all(value /= ['case   ', 'bearing', 'study  ', 'oils   ', 'results']) .and. find_group(table%groups, value) == 0) &
-          wanted = 'must be case, bearing, study, oils, results or a group of cases'
+        if (all(value /= ['case   ', 'bearing', 'study  ', 'oils   ', 'results', 'schema ']) .and. &
+            find_group(table%groups, value) == 0) &
+          wanted = 'must be case, bearing, study, oils, results, schema or a group of cases'
+      case ('completion')
+        line%completion = value
+        if (all(value /= ['bash', 'zsh ', 'fish'])) wanted = 'must be bash, zsh or fish'
+      case ('man')
+        line%manual = .true.
       case ('quiet')
         line%quiet = .true.
       case ('certify')
@@ -319,7 +329,9 @@ contains
       '      --template            print a complete, commented case file (sweep: study file) with every key'//n// &
       '      --template=KIND       print a short case that runs; KIND is one of '//template_kinds//n// &
       '      --reference SUBJECT   print a reference page in Markdown; SUBJECT is case, bearing, study,'//n// &
-      '                            oils, results or a group of cases'//n// &
+      '                            oils, results, a group of cases, or schema: a JSON Schema of cases'//n// &
+      '      --completion SHELL    print what completes this command line in bash, zsh or fish'//n// &
+      '      --man                 print the manual page'//n// &
       '      --progress WHEN       show progress on standard error: auto (on a terminal), always or never'//n// &
       '  -q, --quiet               print errors only'//n// &
       '      --fresh               sweep: discard the results of an earlier sweep (default: continue it)'//n// &

@@ -2,8 +2,8 @@
 !> and a row of two numbers for each point. Empty lines and lines that begin with # are ignored.
 module curve_file
   use kinds, only: dp
-  use text_tools, only: printable, integer_text, replaced, next_line
-  use units, only: find_head_unit, head_units
+  use text_tools, only: printable, integer_text, replaced, next_row
+  use number_units, only: find_head_unit, head_units
   use value_reader, only: read_real
   implicit none
   private
@@ -42,17 +42,13 @@ contains
     message = ''
     line = 0
     at = 1
-    if (index(text, char(239)//char(187)//char(191)) == 1) at = 4   ! byte order mark
     n = min(most_rows, 1 + count([(text(n:n) == achar(10), n=1, len(text))]))
     allocate (x(n), y(n), lines(n))
     n = 0
     has_header = .false.
-    do while (at <= len(text) .and. message == '')
-      call next_line(text, at, row)
-      if (index(row, achar(13), back=.true.) == len(row)) row = row(:len(row) - 1)
-      row = trim(adjustl(row))
-      line = line + 1
-      if (row == '' .or. index(row, '#') == 1) cycle
+    do while (message == '')
+      call next_row(text, at, line, row)
+      if (row == '') exit
       if (.not. has_header) then
         call read_pair(row, [x_is, y_is], read_unit, factors, message)
         has_header = .true.

@@ -4,7 +4,7 @@ module duty_file
   use error_handling, only: error_t, fail, status_case_file
   use film_history, only: film_duty_t
   use text_file, only: read_text_file
-  use text_tools, only: printable, integer_text, next_line
+  use text_tools, only: printable, integer_text, next_row, joined
   use value_reader, only: read_real
   implicit none
   private
@@ -37,11 +37,9 @@ contains
     line = 0
     n = 0
     at = 1
-    do while (at <= len(text) .and. message == '')
-      call next_line(text, at, row)
-      if (index(row, achar(13), back=.true.) == len(row)) row = row(:len(row) - 1)
-      line = line + 1
-      if (row == '' .or. index(adjustl(row), '#') == 1) cycle
+    do while (message == '')
+      call next_row(text, at, line, row)
+      if (row == '') exit
       if (columns == 0) then
         call read_header(row, needs_load, column_of, columns, message)
       else
@@ -83,7 +81,7 @@ contains
       columns = columns + 1
       k = findloc(names == field, .true., 1)
       if (k == 0) then
-        message = printable(field, 40)//': no column of this table; columns are '//list_of_names()
+        message = printable(field, 40)//': no column of this table; columns are '//joined(names)
       else if (column_of(k) > 0) then
         message = printable(field, 40)//': this column is given twice'
       end if
@@ -94,15 +92,6 @@ contains
       if (column_of(k) == 0 .and. message == '') message = 'the column '//trim(names(k))//' is missing'
     end do
   end subroutine read_header
-
-  pure function list_of_names() result(text)
-    character(len=:), allocatable :: text
-    integer :: k
-    text = trim(names(1))
-    do k = 2, size(names)
-      text = text//', '//trim(names(k))
-    end do
-  end function list_of_names
 
   subroutine read_row(row, column_of, columns, values, message)
     character(len=*), intent(in) :: row

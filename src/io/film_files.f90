@@ -154,7 +154,7 @@ contains
     if (is_named) then
       path = path_beside(case%file, film%table_file)
     else
-      path = path_for(key, makes_folder)
+      path = path_for(case, key, makes_folder)
     end if
   end subroutine find_file
 
@@ -182,19 +182,25 @@ contains
   end function place_of
 
   !> Path of a stored table; empty if there is no cache folder.
-  function path_for(key, makes_folder) result(path)
+  function path_for(case, key, makes_folder) result(path)
+    type(case_t), intent(in) :: case
     character(len=*), intent(in) :: key
     logical, intent(in) :: makes_folder
     character(len=:), allocatable :: path
     type(checksum_t) :: sum
     integer :: status
-    call get_variable('XDG_CACHE_HOME', path)
-    if (index(path, '/') /= 1) then   ! relative paths are to be ignored
-      call get_variable('HOME', path)
+    if (allocated(case%cache)) then
+      path = case%cache
       if (path == '') return
-      path = path//'/.cache'
+    else
+      call get_variable('XDG_CACHE_HOME', path)
+      if (index(path, '/') /= 1) then   ! relative paths are to be ignored
+        call get_variable('HOME', path)
+        if (path == '') return
+        path = path//'/.cache'
+      end if
+      path = path//'/gudgeon'
     end if
-    path = path//'/gudgeon'
     status = 0
     if (makes_folder) call make_directory(path, status)
     call sum%add(key)

@@ -6,7 +6,7 @@ module namelist_reader
   use text_tools, only: printable, integer_text
   use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, word_is_next, &
     slash_of_unit, digits, shown
-  use units, only: split_number
+  use number_units, only: split_number
   implicit none
   private
   public :: namelist_t, entry_t, token_t, read_namelist, read_values
@@ -190,14 +190,14 @@ contains
   subroutine read_index(scan, n)
     type(scanner_t), intent(inout) :: scan
     integer, intent(out) :: n
-    character(len=:), allocatable :: in_domain
+    character(len=:), allocatable :: content
     integer :: length
     n = 0
     length = index(scan%text(scan%at:min(scan%at + 20, len(scan%text))), ')')
     if (length == 0) return
-    in_domain = trim(adjustl(scan%text(scan%at + 1:scan%at + length - 2)))
-    if (len(in_domain) < 1 .or. len(in_domain) > 4 .or. verify(in_domain, digits) > 0) return
-    read (in_domain, *) n
+    content = trim(adjustl(scan%text(scan%at + 1:scan%at + length - 2)))
+    if (len(content) < 1 .or. len(content) > 4 .or. verify(content, digits) > 0) return
+    read (content, *) n
     scan%at = scan%at + length
   end subroutine read_index
 

@@ -5,7 +5,7 @@ module result_file
   use, intrinsic :: iso_c_binding, only: c_long
   use error_handling, only: error_t, fail, status_output
   use text_tools, only: printable
-  use posix_files, only: open_for_writing, open_file, lock_file, to_append, write_all, truncate_file, reserve_file, &
+  use posix_files, only: open_for_writing, write_all, truncate_file, reserve_file, &
     synchronise_file, close_file, rename_file, remove_file, error_text, error_interrupted, error_locked, error_no_entry, &
     error_is_directory
   implicit none
@@ -27,7 +27,6 @@ module result_file
     integer, private :: status = 0                      !! error number of the first write that failed
   contains
     procedure :: open => open_result
-    procedure :: reopen
     procedure :: append
     procedure :: require_space
     procedure :: reserve
@@ -55,23 +54,6 @@ contains
     call open_for_writing(path//'.part', self%descriptor, status)
     if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine open_result
-
-  !> Continue a file with the final name `path` after its first `length` bytes. The existing file has the name `present`, which is
-  !> `path` or its temporary name.
-  subroutine reopen(self, path, present, length, error)
-    class(result_file_t), intent(out) :: self
-    character(len=*), intent(in) :: path, present
-    integer(c_long), intent(in) :: length
-    type(error_t), allocatable, intent(out) :: error
-    integer :: status
-    self%path = path
-    self%written = length
-    call open_file(present, to_append, self%descriptor, status)
-    if (status == 0) call lock_file(self%descriptor, status)
-    if (status == 0) call truncate_file(self%descriptor, length, status)
-    if (status == 0 .and. present /= path//'.part') call rename_file(present, path//'.part', status)
-    if (status /= 0) call fail_with_file(self%path, status, error)
-  end subroutine reopen
 
   !> Add whole rows; `text` must end with an end of line.
   subroutine append(self, text)

@@ -10,7 +10,7 @@ module run_summary
   use run_figures, only: pin_figures_t, elastic_figures_t
   use piston_guide, only: n_corners, corner_names
   use period_watch, only: period_watch_t
-  use joint_places, only: places, n_places, in_order, name_prefix
+  use joint_places, only: n_places, in_order, name_prefix
   use archard_wear, only: of_pin, of_bore
   use case_definition, only: case_t
   use joint_case, only: joint_case_t

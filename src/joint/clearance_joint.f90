@@ -14,7 +14,6 @@ module clearance_joint
   use ideal_chain, only: ideal_rod
   use chain_loads, only: loads_t, bearing_moment
   use archard_wear, only: wear_law_t
-  use contact_arc, only: contact_arc_t
   use joint_evaluation, only: joint_evaluation_t, joint_rates_t, most_element_states, find_polar, find_sliding
   use load_element, only: load_element_t, n_motions, n_slopes, n_kinds, of_contact, of_friction, &
     of_film
@@ -55,11 +54,11 @@ module clearance_joint
     integer :: n_states = 0                 !! number of their states, one element after the other
     integer :: n_events = 0                 !! number of event functions of the joint
     logical :: integrates_friction = .false.  !! the work of friction is integrated
-    logical :: has_own_rates = .false.      !! they have states, or integrate the work of friction
+    logical :: has_own_rates = .false.      !! elements have states, or the work of friction is integrated
     logical :: limits_states = .false.      !! there are states that must not reach a magnitude
     logical :: needs_ideal_motion(0:n_phases - 1) = .false.   !! in each phase: the film needs the motion of an ideal mechanism
     logical :: has_own_gap = .false.        !! the gap is not that of a round pin in a round bore
-    logical :: has_slopes = .true.          !! the slopes of all of them are in closed form
+    logical :: has_slopes = .true.          !! the slopes of all elements are in closed form
     logical :: reports_film = .false.       !! report the results of the film in the summary
     ! state
     type(coordinates_t) :: at               !! indices of the eccentricity in the state
@@ -139,9 +138,7 @@ contains
   end subroutine add
 
   !> Claim the eccentricity, and what the elements need, in the state vector. The scale of the eccentricity is the clearance, that
-  !> of its rate the clearance divided by the time in which the crank turns by one radian. Measured (scripts/bench/compare_adams.sh,
-  !> simulation IV, c = 20 um): the error of the eccentricity at the end is 4e-5 c at the relative tolerance 1e-4, 4e-9 c at 1e-6,
-  !> and 1e-14 c at 1e-12; in the coordinates (q, A, x) rounding alone causes 4e-12 c.
+  !> of its rate the clearance divided by the time in which the crank turns by one radian (errors: data/manual/choices.md).
   !>
   !> Where the crank hardly turns the pin has a speed scale of its own, `own_speed`. The scale of the rate is then a hundredth
   !> of the speed that crosses the clearance, since a pin that starts at rest is slow at first and may remain slow.

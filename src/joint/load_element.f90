@@ -57,11 +57,11 @@ module load_element
     real(dp) :: kinks(2) = 0                !! eccentricities beyond which the loads change their form; 0: none [m]
     logical :: is_beyond(2) = .false.       !! |e| is beyond these
     logical :: may_stick = .false.          !! friction is set-valued
-    integer :: sliding = 0                  !! then: sign of the sliding speed, 0 while the surfaces stick
+    integer :: sliding = 0                  !! with set-valued friction: sign of the sliding speed, 0 while they stick
     real(dp) :: holding_ratio = 0           !! largest friction over normal force while they stick [-]
     real(dp) :: static_speed = 0            !! see friction_law_t [m/s]
     logical :: may_lose_force = .false.     !! the damper of the contact may cancel its elastic force
-    logical :: force_is_lost = .false.      !! it does so: in contact, but no force acts
+    logical :: force_is_lost = .false.      !! the surfaces touch, but the damper cancels the force
     type(slice_t) :: events                 !! numbers of its events among those of the joint, set by the joint
     ! limits of validity of a contact
     real(dp) :: fastest_impact = huge(1.0_dp), deepest = huge(1.0_dp)   !! speed [m/s], penetration [m]

@@ -89,7 +89,7 @@ contains
     normal_force = self%dry_contact_t%normal_force(joint)*contact_weight(self, joint)
   end function normal_force
 
-  !> Those of both forces, weighted, and those of the weights.
+  !> The slopes of the loads of contact and film, weighted, and those of the weights.
   pure subroutine find_slopes(self, joint, of_loads, of_rates)
     class(weighted_contact_t), intent(in) :: self
     type(joint_evaluation_t), intent(in) :: joint

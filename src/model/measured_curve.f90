@@ -26,7 +26,7 @@ contains
     class(parameter_list_t), intent(inout) :: list
     character(len=*), intent(in) :: name, says
     character(len=*), intent(in), optional :: default, example
-    call list%text(name, self%file, says, default, example=example)
+    call list%text(name, self%file, says, default, example=example, is_path=.true.)
     call list%text(name//'_digest', self%digest, &
       'digest of that file, written by resolved cases; a file with other content is refused; '''': any file', '')
   end subroutine parameters

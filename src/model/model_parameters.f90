@@ -32,6 +32,7 @@ module model_parameters
     character(len=170) :: description = ''
     character(len=12) :: family = ''         !! keys of the group with the same family are alternatives, of which one may be given
     character(len=32) :: beside = ''         !! key of the family that may be given together with this one, as a bound
+    logical :: is_path = .false.             !! a text that names a file, relative to the case file
     logical :: only_here = .false.           !! must not be given if the selected law does not have it
   end type key_t
 
@@ -98,17 +99,12 @@ contains
     logical, intent(in) :: is_model
     character(len=*), intent(in), optional :: place
     character(len=*), intent(in), optional :: instead_of   !! group that a case cannot have together with this one
-    associate (unused => self, unused_name => name, unused_text => says, unused_switch => is_model, &
-               unused_place => present(place), unused_group => present(instead_of))
-    end associate
   end subroutine pass_group
 
   !> The key of the present group that names a law; the laws follow.
   subroutine pass_choice(self, key, default, says)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, default, says
-    associate (unused => self, unused_key => key, unused_word => default, unused_text => says)
-    end associate
   end subroutine pass_choice
 
   !> A law that can be selected by the last choice under this name, with arbitrary values of its parameters. If only one `variant`
@@ -118,8 +114,6 @@ contains
     character(len=*), intent(in) :: name
     class(law_t), intent(in) :: law
     character(len=*), intent(in), optional :: variant
-    associate (unused => self, unused_name => name, unused_law => law, unused_variant => present(variant))
-    end associate
   end subroutine pass_law
 
   !> Declare a real. It is required if it has no default.
@@ -196,16 +190,17 @@ contains
   end subroutine word
 
   !> Declare a text; with `many`, several texts are joined by commas. It is required if it has no default.
-  subroutine text(self, key, value, says, default, many, example)
+  subroutine text(self, key, value, says, default, many, example, is_path)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: key, says
     character(len=:), allocatable, intent(inout) :: value
     character(len=*), intent(in), optional :: default, example
-    logical, intent(in), optional :: many
+    logical, intent(in), optional :: many, is_path   !! is_path: the name of a file
     type(key_t) :: new
     if (self%passes) return
     new = described(key, text_kind, says, default=default, example=example)
     if (present(many)) new%count = merge(1000, 1, many)
+    if (present(is_path)) new%is_path = is_path
     call self%visit(new, text=value)
   end subroutine text
 
@@ -243,8 +238,6 @@ contains
   pure subroutine no_conflict(self, key, wanted)
     class(law_t), intent(in) :: self
     character(len=:), allocatable, intent(out) :: key, wanted
-    associate (unused_self => self)
-    end associate
     key = ''
     wanted = ''
   end subroutine no_conflict

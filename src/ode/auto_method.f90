@@ -64,8 +64,7 @@ contains
   end subroutine start
 
   !> Largest number of additional evaluations by Radau in a mode before Adams takes over again. It is larger at tight tolerances,
-  !> where the steps of Radau's highest formula grow slowly after a start (measured on all cases at 1e-9, 1e-10 and 1e-12: 4 to 7 %
-  !> fewer evaluations than with 80; elastic engines 11 %).
+  !> where the steps of Radau's highest formula grow slowly after a start (data/manual/choices.md).
   pure real(dp) function most_loss(self)
     class(auto_t), intent(in) :: self
     real(dp), parameter :: tight = 5e-9_dp   !! relative tolerance

@@ -140,8 +140,6 @@ contains
     real(dp), intent(in) :: f(:)         !! (n)
     real(dp), intent(inout) :: y(:)      !! (n)
     real(dp), intent(out) :: change      !! its largest change, in tolerances
-    associate (unused_self => self, unused_time => t, unused_rates => f, unused_state => y)
-    end associate
     change = 0
   end subroutine leave_as_it_is
 
@@ -149,8 +147,6 @@ contains
   pure logical function never(self, t)
     class(ode_method_t), intent(in) :: self
     real(dp), intent(in) :: t
-    associate (unused_self => self, unused_time => t)
-    end associate
     never = .false.
   end function never
 
@@ -162,8 +158,6 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     logical, intent(out) :: landed
-    associate (unused_problem => problem)
-    end associate
     call self%interpolate(t, y)
     landed = .true.
   end subroutine land_on

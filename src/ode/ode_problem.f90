@@ -108,8 +108,6 @@ contains
     class(ode_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
-    associate (unused_self => self, unused_t => t, unused_y => y)
-    end associate
     g = -1
     g_rate = 0
   end subroutine no_events
@@ -121,8 +119,6 @@ contains
     real(dp), intent(in) :: t_old, y_old(:), t, y(:)
     integer, intent(out) :: verdict
     real(dp), intent(out) :: fraction
-    associate (unused_self => self, unused_t_old => t_old, unused_y_old => y_old, unused_t => t, unused_y => y)
-    end associate
     verdict = step_admitted
     fraction = 1
   end subroutine admit_every_step
@@ -134,8 +130,6 @@ contains
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
     integer, intent(out) :: action
-    associate (unused_self => self, unused_index => index, unused_t => t, unused_y => y)
-    end associate
     action = event_stop
   end subroutine stop_at_event
 
@@ -143,8 +137,6 @@ contains
   pure logical function never_on_step_end(self, index)
     class(ode_problem_t), intent(in) :: self
     integer, intent(in) :: index
-    associate (unused_self => self, unused_index => index)
-    end associate
     never_on_step_end = .false.
   end function never_on_step_end
 
@@ -153,8 +145,6 @@ contains
   pure real(dp) function no_kink(self, t, y)
     class(ode_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
-    associate (unused_self => self, unused_t => t, unused_y => y)
-    end associate
     no_kink = huge(no_kink)
   end function no_kink
 end module ode_problem

@@ -42,6 +42,7 @@ module ode_solver
     real(dp), private :: t_end = 0
     integer, private :: max_steps = 0
     integer, private :: event = 0               !! event at t, 0: none
+    logical, private :: falls = .false.         !! its function fell
     type(event_watch_t), private :: watch
     real(dp), private :: t_place = 0            !! time of the first of several events without progress in time
     integer, private :: in_place = 0            !! number of these events
@@ -49,6 +50,7 @@ module ode_solver
     procedure :: begin
     procedure :: go_to
     procedure :: cut
+    procedure :: restart
     procedure :: state
     procedure :: finish
   end type integration_t
@@ -193,10 +195,9 @@ contains
     class(observer_t), intent(inout) :: observer
     real(dp) :: chatter_time, g(max_events), rate(max_events)
     integer :: action
-    logical :: falls
     call observer%event_accepted(problem, self%event, self%t, self%y)
     call problem%events(self%t, self%y, g, rate)
-    falls = rate(self%event) < 0
+    self%falls = rate(self%event) < 0
     call problem%handle_event(self%event, self%t, self%y, action)
     call observer%event_handled(problem, self%event, self%t, self%y)
     if (action == event_stop) self%status = integration_stopped
@@ -211,11 +212,12 @@ contains
     self%is_over = is_at_end(self%t, self%t_end) .or. self%status /= step_done
     if (self%is_over) return
     call method%start(problem, self%t, self%y, .false., self%status)
-    call self%watch%begin(problem, self%t, self%y, self%event, falls)
+    call self%watch%begin(problem, self%t, self%y, self%event, self%falls)
     self%is_over = self%status /= step_done
   end subroutine handle_event
 
-  !> End a kept step at a time inside its final part, and restart there: after this the problem may have been changed.
+  !> End a kept step at a time inside its final part. After this, or where no step is kept, (t, y) is the state reached, and the
+  !> problem may be changed; then call `restart`.
   subroutine cut(self, problem, method, observer, t)
     class(integration_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -223,7 +225,10 @@ contains
     class(observer_t), intent(inout) :: observer
     real(dp), intent(in) :: t
     logical :: landed
-    if (.not. self%is_kept) return
+    if (.not. self%is_kept) then
+      self%y = self%state(method)
+      return
+    end if
     self%t = t
     call method%land_on(problem, t, self%y, landed)
     if (.not. landed) call method%interpolate(t, self%y)
@@ -231,11 +236,19 @@ contains
     self%is_kept = .false.
     call method%count_time(t)
     call observer%step_accepted(method, problem, t)
-    call method%start(problem, t, self%y, .false., self%status)
-    call self%watch%begin(problem, t, self%y, 0, .false.)
-    self%is_over = self%status /= step_done
-    if (.not. self%is_over) call look_around(self, method, observer)
+    call look_around(self, method, observer)
   end subroutine cut
+
+  !> Start again at (t, y), after `cut`.
+  subroutine restart(self, problem, method)
+    class(integration_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    class(ode_method_t), intent(inout) :: method
+    if (self%is_over) return
+    call method%start(problem, self%t, self%y, .false., self%status)
+    call self%watch%begin(problem, self%t, self%y, self%event, self%falls)
+    self%is_over = self%status /= step_done
+  end subroutine restart
 
   !> The state at time t while nothing is kept.
   pure function state(self, method) result(y)
@@ -342,8 +355,6 @@ contains
     class(ode_method_t), intent(inout) :: method
     class(ode_problem_t), intent(in) :: problem
     real(dp), intent(in) :: t_to
-    associate (unused_self => self, unused_method => method, unused_problem => problem, unused_t => t_to)
-    end associate
   end subroutine ignore_step
 
   !> Called when the problem has handled an event. An observer may then change the discrete state of the problem, or y.
@@ -353,8 +364,6 @@ contains
     integer, intent(in) :: index
     real(dp), intent(in) :: t
     real(dp), intent(inout) :: y(:)
-    associate (unused_self => self, unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
-    end associate
   end subroutine change_nothing
 
   subroutine ignore_event(self, problem, index, t, y)
@@ -362,7 +371,5 @@ contains
     class(ode_problem_t), intent(in) :: problem
     integer, intent(in) :: index
     real(dp), intent(in) :: t, y(:)
-    associate (unused_self => self, unused_problem => problem, unused_index => index, unused_t => t, unused_y => y)
-    end associate
   end subroutine ignore_event
 end module ode_solver

@@ -84,6 +84,7 @@ module case_definition
     character(len=:), allocatable :: name    !! file name without folder and .nml: the NAME of its results
     character(len=:), allocatable :: file    !! path as given by the user, for messages
     character(len=:), allocatable :: title
+    character(len=:), allocatable :: cache   !! folder that keeps film tables; empty: none; not allocated: that of the user
     character(len=:), allocatable :: notes   !! on values that are not of usual sizes, one line each; not allocated: none
     type(mechanism_case_t) :: mechanism
     type(drive_case_t) :: drive
@@ -248,7 +249,7 @@ contains
     call list%add('piston_tilt_rate', self%piston_tilt_rate, 'rate of piston_tilt', 'rad/s', default='0.0', usual='0 to 200')
     call list%text('from', self%from, &
       'start from the state in this file, a NAME.state.nml, path relative to the case file; crank_speed remains the held '// &
-      'speed and the natural size of speeds, the other values are those of the file', '')
+      'speed and the natural size of speeds, the other values are those of the file', '', is_path=.true.)
     call list%add('goes_on', self%goes_on, &
       '.true.: time, energies, wear and extremes go on from those of that file; .false.: they begin at 0 with its motion', '.true.')
   end subroutine initial_parameters

@@ -10,6 +10,8 @@ module cycle_answers
   use cycle_statistics, only: cycle_t
   use cycle_watch, only: cycle_watch_t
   use period_watch, only: period_watch_t
+  use run_extremes, only: run_extremes_t
+  use archard_wear, only: of_pin, of_bore
   use run_length, only: longest_period
   implicit none
   private
@@ -32,13 +34,14 @@ module cycle_answers
 
   !> Indices into `cycle_quantities`.
   integer, parameter :: q_start = 1, q_duration = 2, q_revolutions = 3, q_change = 4, q_settled = 5, &
-    q_film = 6, q_film_angle = 7, q_ratio = 8, q_force = 9, q_share = 10, q_film_power = 11, q_friction_power = 12, &
-    q_joint_fmep = 13, q_pressure = 14, q_pressure_angle = 15, q_flow = 16, &
-    q_speed = 17, q_fluctuation = 18, q_piston_speed = 19, q_gas_pressure = 20, q_gas_angle = 21, &
-    q_indicated = 22, q_brake = 23, q_imep = 24, q_bmep = 25, q_fmep = 26, &
-    q_energy = 36, q_rest = 37
+    q_film = 6, q_film_angle = 7, q_ratio = 8, q_force = 9, q_share = 10, q_asperity_share = 11, q_film_power = 12, &
+    q_friction_power = 13, q_moment = 14, q_joint_fmep = 15, q_pressure = 16, q_pressure_angle = 17, q_flow = 18, &
+    q_pin_wear = 19, q_bore_wear = 20, &
+    q_speed = 21, q_fluctuation = 22, q_piston_speed = 23, q_gas_pressure = 24, q_gas_angle = 25, &
+    q_indicated = 26, q_brake = 27, q_imep = 28, q_bmep = 29, q_fmep = 30, &
+    q_energy = 40, q_rest = 41
   !> Parts of the work, in the order of their quantities from `q_first_work` on.
-  integer, parameter :: q_first_work = 27, parts(*) = [by_gas, by_drive, by_damping, of_contact, of_friction, of_film, &
+  integer, parameter :: q_first_work = 31, parts(*) = [by_gas, by_drive, by_damping, of_contact, of_friction, of_film, &
     of_asperities, by_guide, by_elastic]
 
   !> All quantities; those of a joint get its place as a prefix.
@@ -55,12 +58,19 @@ module cycle_answers
     quantity_t('cycle_max_eccentricity_ratio', '1', 'largest eccentricity in the cycle over the clearance'), &
     quantity_t('cycle_max_force', 'N', 'largest force at the pin in the cycle'), &
     quantity_t('cycle_contact_share', '1', 'share of the cycle in contact'), &
+    quantity_t('cycle_asperity_load_share', '1', &
+      'load of the asperities over the whole force, both integrated over the cycle; with `report`'), &
     quantity_t('cycle_mean_film_power', 'W', 'mean power that the film takes from the bodies in the cycle'), &
     quantity_t('cycle_mean_friction_power', 'W', 'the same of the friction of contact and asperities'), &
+    quantity_t('cycle_mean_friction_moment', 'N.m', &
+      'these losses in the cycle over the angle that the pin turns through in its bearing, in either sense'), &
     quantity_t('cycle_joint_fmep', 'Pa', 'these losses in the cycle over the displacement of the cylinder'), &
     quantity_t('cycle_max_film_pressure', 'Pa', 'largest pressure in the film in the cycle, with `report`'), &
     quantity_t('cycle_max_film_pressure_angle', 'deg', 'crank angle then'), &
     quantity_t('cycle_mean_film_side_flow', 'm3/s', 'mean oil flow out of both ends of the bearing in the cycle'), &
+    quantity_t('cycle_wear_depth_rate_pin', 'm/h', &
+      'largest depth by which a bin of the pin has worn in the cycle, in an hour of such cycles; without `extrapolation`'), &
+    quantity_t('cycle_wear_depth_rate_bore', 'm/h', 'the same on the bore'), &
     quantity_t('cycle_mean_crank_speed', 'rad/s', 'angle that the crank turns through in the cycle over its duration'), &
     quantity_t('cycle_speed_fluctuation', '1', 'largest minus smallest crank speed in the cycle, over the mean'), &
     quantity_t('cycle_mean_piston_speed', 'm/s', 'two strokes of the ideal mechanism in the mean time of a revolution'), &
@@ -86,10 +96,11 @@ module cycle_answers
 contains
 
   !> The answers of a run that has ended; none if it has no whole cycle. The scene must tell the parts of the work apart.
-  function find_answers(scene, cycles, periods) result(answers)
+  function find_answers(scene, cycles, periods, extremes) result(answers)
     type(scene_t), intent(in) :: scene
     type(cycle_watch_t), intent(in) :: cycles
     type(period_watch_t), intent(in) :: periods
+    type(run_extremes_t), intent(in) :: extremes
     type(answer_t), allocatable :: answers(:)
     type(cycle_t) :: cycle
     real(dp) :: displacement   !! swept in all cycles of the gas in this cycle [m^3]
@@ -159,7 +170,7 @@ contains
 
     subroutine add_joint(i)
       integer, intent(in) :: i
-      real(dp) :: film, friction
+      real(dp) :: film, friction, worn(2)
       associate (joint => scene%joints(i), pin => cycle%pin(scene%joints(i)%place))
         call add(q_film, pin%min_film_thickness, i)
         call add(q_film_angle, degrees(pin%thinnest_angle), i)
@@ -171,7 +182,12 @@ contains
         if (joint%has_kind(of_film)) call add(q_film_power, -film/cycle%duration, i)
         if (joint%has_kind(of_friction) .or. joint%has_kind(of_asperities)) &
           call add(q_friction_power, -friction/cycle%duration, i)
+        if (pin%turning > 0) call add(q_moment, -(film + friction)/pin%turning, i)
         if (displacement > 0) call add(q_joint_fmep, -(film + friction)/displacement, i)
+        worn = extremes%wear_growth(scene, joint%place, revolutions)*3600/cycle%duration
+        if (all(worn >= 0)) call add(q_pin_wear, worn(of_pin), i)
+        if (all(worn >= 0)) call add(q_bore_wear, worn(of_bore), i)
+        if (pin%load_integral > 0) call add(q_asperity_share, pin%asperity_integral/pin%load_integral, i)
         if (.not. (joint%reports_film .and. joint%has_kind(of_film))) return
         if (pin%max_film_pressure > 0) then
           call add(q_pressure, pin%max_film_pressure, i)

@@ -23,6 +23,9 @@ module cycle_statistics
     real(dp) :: thinnest_angle = 0                    !! crank angle at the smallest film thickness [rad]
     real(dp) :: max_film_pressure = 0                 !! [Pa] if results of the film are requested
     real(dp) :: pressure_angle = 0                    !! crank angle at that pressure [rad]
+    real(dp) :: turning = 0                           !! angle that the pin turns through in its bearing, in either sense [rad]
+    real(dp) :: asperity_integral = 0, load_integral = 0   !! integrals of the load of the asperities and of the whole force, if
+                                                           !! results of the film are requested [N s]
     real(dp) :: film_volume = 0                       !! volume of oil that left the film at its ends, if they are requested [m^3]
   end type pin_cycle_t
 
@@ -73,6 +76,9 @@ contains
       where (one%max_film_pressure > total%max_film_pressure) total%pressure_angle = one%pressure_angle
       total%max_film_pressure = max(total%max_film_pressure, one%max_film_pressure)
       total%film_volume = total%film_volume + one%film_volume
+      total%turning = total%turning + one%turning
+      total%asperity_integral = total%asperity_integral + one%asperity_integral
+      total%load_integral = total%load_integral + one%load_integral
       total%min_film_thickness = min(total%min_film_thickness, one%min_film_thickness)
       total%max_penetration = max(total%max_penetration, one%max_penetration)
       total%contact_time = total%contact_time + one%contact_time

@@ -53,6 +53,8 @@ module cycle_watch
     procedure :: lower_to_peaks
     procedure :: record_peaks
     procedure :: record_film
+    procedure :: record_turn
+    procedure :: record_asperities
     procedure :: search_machine
     procedure :: last_cycle
     procedure :: film_change
@@ -153,6 +155,25 @@ contains
       end if
     end associate
   end subroutine record_film
+
+  !> Account for an angle [rad] that a pin has turned through in its bearing.
+  pure subroutine record_turn(self, pin, angle)
+    class(cycle_watch_t), intent(inout) :: self
+    integer, intent(in) :: pin
+    real(dp), intent(in) :: angle
+    self%present%pin(pin)%turning = self%present%pin(pin)%turning + angle
+  end subroutine record_turn
+
+  !> Account for integrals over time of the magnitudes of the load of the asperities and of the whole force at a pin [N s].
+  pure subroutine record_asperities(self, pin, by_asperities, of_force)
+    class(cycle_watch_t), intent(inout) :: self
+    integer, intent(in) :: pin
+    real(dp), intent(in) :: by_asperities, of_force
+    associate (c => self%present%pin(pin))
+      c%asperity_integral = c%asperity_integral + by_asperities
+      c%load_integral = c%load_integral + of_force
+    end associate
+  end subroutine record_asperities
 
   !> Search the last step, up to t, where the scene is evaluated, for the largest pressure of the gas and for the extremes of the
   !> crank speed in the present revolution.

@@ -9,6 +9,7 @@ module pin_record
   use inside_step, only: evaluate_inside
   use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks
   use cycle_watch, only: cycle_watch_t
+  use load_element, only: of_asperities
   use wear_record, only: wear_record_t
   use trace_sink, only: trace_event_t
   use film_figures, only: film_figures_t
@@ -23,11 +24,13 @@ module pin_record
     type(trace_event_t), private :: contact    !! present or last contact
     logical, private :: reports_film = .false.
     real(dp), private :: film_time = 0         !! time up to which the results of its film have been integrated [s]
+    real(dp), private :: turn(3) = 0           !! time [s], angle [rad] and speed [rad/s] of the pin relative to its bearing there
     type(wear_record_t), allocatable :: wear   !! not allocated: wear is not counted
   contains
     procedure, non_overridable :: prepare
     procedure, non_overridable :: declare
     procedure, non_overridable :: count_from
+    procedure, non_overridable :: follow_turn
     procedure, non_overridable :: search
     procedure, non_overridable :: record_values
     procedure, non_overridable :: record_contact
@@ -95,7 +98,7 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
-    logical, intent(in) :: is_end   !! t is the end of the step, or of its final part, to which wear is counted at once
+    logical, intent(in) :: is_end   !! t is the end of the step, or of its final part; else that of a revolution inside it
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
     real(dp) :: known(n_peaks), largest(n_peaks)
@@ -117,10 +120,15 @@ contains
     figures%peak_evaluations = figures%peak_evaluations + (self%evaluations - before)
     call add_values(self, touches, largest, figures)
     if (present(cycles)) call cycles%record_peaks(self%pin, touches, largest, angle_at(self%thinnest_time))
+    if (present(cycles) .and. self%joint > 0) call follow_turn(self, scene, t, now, cycles)
     if (self%reports_film) call sum_film(self, method, scene, t, now, figures, cycles)
-    if (.not. (allocated(self%wear) .and. is_end)) return
+    if (.not. allocated(self%wear)) return
     before = self%wear%evaluations
-    call self%wear%follow(method, scene, t)
+    if (is_end) then
+      call self%wear%follow(method, scene, t)
+    else
+      call self%wear%look_ahead(method, scene, t)
+    end if
     figures%evaluations = figures%evaluations + (self%wear%evaluations - before)
 
   contains
@@ -135,6 +143,35 @@ contains
       angle_at = scene%crank_angle(time, y)
     end function angle_at
   end subroutine search
+
+  !> Add the angle that the pin turns through in its bearing since the last call, in either sense, to the present revolution. Where
+  !> it turns back, that angle is taken from the cubic through angles and speeds at both ends.
+  subroutine follow_turn(self, scene, t, now, cycles)
+    class(pin_record_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    type(cycle_watch_t), intent(inout), optional :: cycles
+    real(dp) :: turn(3), span, rise, middle, share, farthest
+    associate (joint => scene%joints(self%joint), it => now%joint(self%joint))
+      turn = [t, scene%chain%body_angle(now%motion, joint%site%pin_body), it%pin_angular_speed - it%bearing_speed]
+      if (joint%bearing_turns) turn(2) = turn(2) - scene%chain%body_angle(now%motion, joint%site%bearing)
+    end associate
+    span = turn(1) - self%turn(1)
+    rise = turn(2) - self%turn(2)
+    if (present(cycles) .and. span > 0) then
+      farthest = 0
+      if (self%turn(3)*turn(3) < 0) then   ! speed of the cubic: v0 (1 - s)^2 + 2 middle s (1 - s) + v1 s^2
+        middle = 3*rise/span - self%turn(3) - turn(3)
+        share = self%turn(3)/(self%turn(3) - middle + sign(sqrt(middle**2 - self%turn(3)*turn(3)), self%turn(3)))
+        farthest = span*share*(self%turn(3)*(1 - share + share**2/3) + middle*share*(1 - 2*share/3) + turn(3)*share**2/3)
+        call cycles%record_turn(self%pin, abs(farthest) + abs(rise - farthest))
+      else
+        call cycles%record_turn(self%pin, abs(rise))
+      end if
+    end if
+    self%turn = turn
+  end subroutine follow_turn
 
   !> Integrate the power, the side flow and the pressure of the film up to t, with Gauss's rule of three points.
   subroutine sum_film(self, method, scene, t, now, figures, cycles)
@@ -161,8 +198,10 @@ contains
         f%neglected_shear_loss = f%neglected_shear_loss + weight(i)*span*film%neglected_power
         f%film_volume = f%film_volume + weight(i)*span*film%side_flow
         f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
-        if (present(cycles)) call cycles%record_film(self%pin, film%max_pressure, halfway%motion%crank_angle, &
-          weight(i)*span*film%side_flow)
+        if (.not. present(cycles)) cycle
+        call cycles%record_film(self%pin, film%max_pressure, halfway%motion%crank_angle, weight(i)*span*film%side_flow)
+        if (joint%has_kind(of_asperities)) call cycles%record_asperities(self%pin, weight(i)*span*halfway%joint(k)%normal_force, &
+          weight(i)*span*norm2(halfway%joint(k)%force))
       end do
       film = joint%film_figures(now%joint(k))
       f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)

@@ -32,6 +32,7 @@ module run_extremes
     procedure :: begin
     procedure :: begin_revolution
     procedure :: end_revolution
+    procedure :: wear_growth
     procedure :: search
     procedure :: add_row
     procedure :: add_point
@@ -88,7 +89,10 @@ contains
     do i = 1, self%n_pins
       call self%pins(i)%begin(scene, t, now)
       call self%pins(i)%count_from(t)
-      if (in_domain) call self%pins(i)%record_values(scene, now, self%figures, cycles)
+      if (present(cycles) .and. allocated(self%pins(i)%wear)) call self%pins(i)%wear%mark_revolution(cycles%ended)
+      if (.not. in_domain) cycle
+      call self%pins(i)%record_values(scene, now, self%figures, cycles)
+      if (self%pins(i)%joint > 0) call self%pins(i)%follow_turn(scene, t, now)
     end do
     if (.not. (in_domain .and. self%guide%is_present)) return
     call self%guide%stand_at(t, now)
@@ -101,12 +105,30 @@ contains
     call self%guide%begin_revolution()
   end subroutine begin_revolution
 
-  !> Add the extremes of the skirt in a revolution that ends to its results.
+  !> Add the extremes of the skirt in a revolution that ends to its results, and mark the wear so far.
   subroutine end_revolution(self, cycles)
     class(run_extremes_t), intent(inout) :: self
     type(cycle_watch_t), intent(inout) :: cycles
+    integer :: i
     call self%guide%end_revolution(cycles)
+    do i = 1, self%n_pins
+      if (allocated(self%pins(i)%wear)) call self%pins(i)%wear%mark_revolution(cycles%ended + 1)
+    end do
   end subroutine end_revolution
+
+  !> Largest depths by which a bin of the pin and one of the bore at a place have worn in the last revolutions [m]; negative where
+  !> wear is not counted.
+  pure function wear_growth(self, scene, place, revolutions) result(depth)
+    class(run_extremes_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: place, revolutions
+    real(dp) :: depth(2)
+    integer :: i
+    depth = -1
+    do i = 1, self%n_pins
+      if (self%pins(i)%pin == place .and. allocated(self%pins(i)%wear)) depth = self%pins(i)%wear%growth(scene, revolutions)
+    end do
+  end function wear_growth
 
   !> Search for peaks between the last point recorded (or the beginning of a step after an event) and t, where the scene is
   !> evaluated.

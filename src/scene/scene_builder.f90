@@ -18,18 +18,15 @@ module scene_builder
   private
   public :: build_scene, assemble_scene, simulated_time, latest_end, longest_turn, sample_interval, settings_for
 
-  !> Larger tolerances are replaced by this one: they would save nothing (1500 extreme scenes take as many evaluations at 8e-4 as at
-  !> 1e-4), and the accumulated errors of the steps would exceed the allowed error of results.
+  !> Larger tolerances are replaced by this one: they would save nothing (data/manual/choices.md), and the accumulated errors of
+  !> the steps would exceed the allowed error of results.
   real(dp), parameter :: loosest_tolerance = 1e-3_dp
 
   real(dp), parameter :: gas_margin = 0.1_dp   !! tolerance of the gas cycle, relative to that of the run
 
   !> Errors of the crank speed and of the work persist, and with them errors of the energy: they accumulate over thousands of steps,
   !> whereas errors of the pin decay in its film or its contacts. These components are therefore held to a smaller fraction of the
-  !> tolerance, but not below rounding. Measured without it: the ideal twin of simulation VI, whose steps are the longest, loses
-  !> 1375 tolerances of its energy in 100 revolutions, all of it in smooth steps of full size and 0.2 % in steps cut by gas events;
-  !> with it the loss is 1.2 tolerances, for 47 % more evaluations. In scenes with clearance, where the motion of the pin limits the
-  !> steps, the cost does not change.
+  !> tolerance, but not below rounding (gain and cost: data/manual/choices.md).
   real(dp), parameter :: lasting_share = 0.01_dp   !! for crank speed and work
   real(dp), parameter :: angle_share = 0.1_dp      !! for the crank angle, whose errors persist too but influence the energy less
   real(dp), parameter :: finest_tolerance = 1e-13_dp

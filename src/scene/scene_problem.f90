@@ -75,6 +75,7 @@ module scene_problem
     real(dp) :: start_angle = 0     !! crank angle at t = 0 [rad]
     real(dp) :: start_speed = 0     !! crank speed at t = 0; constant if it is prescribed without run-up [rad/s]
     real(dp) :: span = 1            !! duration of the simulation [s]
+    real(dp) :: torque_work = 0     !! `work_of_torque` beyond that of the present torque since the start [J]
     type(layout_t) :: layout        !! layout of the state vector
     type(coordinates_t) :: crank    !! indices of the crank angle in the state vector
     logical :: runs_up = .false.    !! the prescribed speed is run up to start_speed
@@ -114,6 +115,7 @@ module scene_problem
     procedure :: crank_angle
     procedure :: crank_speed
     procedure :: work
+    procedure :: work_of_torque
     procedure :: measure_joint
     procedure, non_overridable :: set_layout
     procedure :: measure_works
@@ -533,7 +535,7 @@ contains
     if (self%measures_loss) then
       joint_loss = y(self%measures%last)
     else
-      joint_loss = self%chain%drive%torque*(self%crank_angle(t, y) - self%start_angle) - self%work(y)
+      joint_loss = self%work_of_torque(t, y) - self%work(y)
     end if
   end function joint_loss
 
@@ -596,6 +598,13 @@ contains
     real(dp), intent(in) :: y(:)
     work = y(self%work_at)
   end function work
+
+  !> Work of a torque that is constant between the changes of an input [J].
+  pure real(dp) function work_of_torque(self, t, y) result(work)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    work = self%chain%drive%torque*(self%crank_angle(t, y) - self%start_angle) + self%torque_work
+  end function work_of_torque
 
   !> Natural size of the crank speed [rad/s]: the starting speed; from rest, one radian in the time simulated. If a run ends during
   !> its run-up, the largest speed that it reaches.

@@ -119,7 +119,7 @@ contains
       if (self%parts(i)%at > 0) then
         works(i) = y(self%parts(i)%at)
       else if (i /= self%other_part) then
-        works(i) = self%chain%drive%torque*(self%crank_angle(t, y) - self%start_angle)
+        works(i) = self%work_of_torque(t, y)
       end if
     end do
     if (self%other_part > 0) works(self%other_part) = self%work(y) - sum(works)

@@ -6,9 +6,10 @@ module simulation
   use case_definition, only: case_t
   use ode_method, only: ode_method_t, step_statistics_t, left_domain
   use ode_methods, only: new_method
-  use ode_solver, only: integrate, integration_t, silent_observer_t, integration_done, integration_stopped, &
+  use ode_solver, only: integration_t, integration_done, integration_stopped, &
     integration_interrupted, step_limit_reached, evaluation_limit_reached
   use scene_problem, only: scene_t, evaluation_t
+  use scene_inputs, only: inputs, inputs_of, input_value, change_input
   use inside_step, only: evaluate_inside
   use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, crank_creeps
   use scene_builder, only: build_scene, simulated_time, latest_end, longest_turn, sample_interval, settings_for
@@ -57,6 +58,10 @@ module simulation
     logical, private :: ideal_joint = .false., has_cycles = .false.
     logical, private :: has_ended = .false.   !! the integration has ended; perhaps the exponent is being measured
     integer, private :: status = integration_done
+    integer, allocatable :: inputs(:)          !! inputs of the scene, as indices into `inputs` of scene_inputs
+    real(dp), allocatable, private :: input(:)      !! their values from the next advance on
+    logical, private :: has_new_input = .false.
+    real(dp), private :: ramp_end = huge(1.0_dp)    !! an input changes linearly until this time [s]
     type(run_report_t), private :: report
     type(measurement_t), allocatable, private :: measurement   !! of the Lyapunov exponent, after the integration
   contains
@@ -65,6 +70,9 @@ module simulation
     procedure :: evaluate_row
     procedure :: state
     procedure :: stop
+    procedure :: set_input
+    procedure :: wanted_input
+    procedure :: is_complete
     procedure :: expected_end
     procedure :: finish
   end type run_t
@@ -101,6 +109,7 @@ contains
     type(cycle_watch_t), allocatable, intent(inout), optional :: cycles
     real(dp), allocatable :: y(:)
     real(dp) :: t
+    integer :: i
 
     self%case = case
     self%ideal_joint = ideal_joint
@@ -146,6 +155,8 @@ contains
       call recorder%begin(scene, t, y)
       self%t = t
       call self%integration%begin(scene, self%method, t, y, recorder%rows%end_time, case%integrator%max_steps)
+      call inputs_of(scene, self%inputs)
+      self%input = [(input_value(scene, self%inputs(i), t, y), i=1, size(self%inputs))]
     end associate
   end subroutine begin
 
@@ -156,10 +167,16 @@ contains
     class(run_t), intent(inout) :: self
     real(dp), intent(in) :: t
     integer, intent(in) :: most_steps
+    real(dp) :: until
     if (.not. (self%has_ended .or. self%is_over)) then
-      call self%integration%go_to(self%scene, self%method, self%recorder, t, most_steps)
-      self%t = self%integration%t
-      if (self%integration%is_kept) self%t = t
+      do
+        call accept_inputs(self, t)
+        until = min(t, self%ramp_end)
+        call self%integration%go_to(self%scene, self%method, self%recorder, until, most_steps)
+        self%t = self%integration%t
+        if (self%integration%is_kept) self%t = until
+        if (self%integration%is_over .or. most_steps > 0 .or. .not. until < t .or. self%t < until) exit
+      end do
       if (self%integration%is_over) call conclude(self)
       if (most_steps > 0) return
     end if
@@ -170,7 +187,52 @@ contains
     end do
   end subroutine advance
 
-  !> The values of a row at the time reached. If the state there is not `in_domain` the model, there are none.
+  !> Set input i of the run, which changes at the beginning of the next advance: to this value and held there, or linearly to this
+  !> value at the end of that advance. The value that it has changes nothing.
+  subroutine set_input(self, i, value)
+    class(run_t), intent(inout) :: self
+    integer, intent(in) :: i          !! index into self%inputs
+    real(dp), intent(in) :: value     !! in the unit of the input
+    if (abs(value - self%input(i)) > 0) self%has_new_input = .true.
+    self%input(i) = value
+  end subroutine set_input
+
+  !> The value of input i that it has from the next advance on.
+  pure real(dp) function wanted_input(self, i)
+    class(run_t), intent(in) :: self
+    integer, intent(in) :: i
+    wanted_input = self%input(i)
+  end function wanted_input
+
+  !> Change the inputs that have new values, and end a linear change that has reached its end, before an advance to time t.
+  subroutine accept_inputs(self, t)
+    class(run_t), intent(inout) :: self
+    real(dp), intent(in) :: t   !! [s]
+    real(dp) :: until
+    integer :: i
+    if (.not. self%has_new_input .and. self%t < self%ramp_end) return
+    until = min(t, self%recorder%rows%end_time)
+    call self%integration%cut(self%scene, self%method, self%recorder, self%t)
+    if (self%integration%is_over) return
+    self%ramp_end = huge(1.0_dp)
+    associate (y => self%integration%y)
+      do i = 1, size(self%inputs)
+        call change_input(self%scene, self%inputs(i), self%input(i), self%t, y, until)
+        if (inputs(self%inputs(i))%is_ramp .and. abs(input_value(self%scene, self%inputs(i), self%t, y) - self%input(i)) > 0) &
+          self%ramp_end = until
+      end do
+    end associate
+    self%has_new_input = .false.
+    call self%integration%restart(self%scene, self%method)
+  end subroutine accept_inputs
+
+  !> Whether the run has reached its end, rather than being stopped by a limit, by a failure or from outside.
+  pure logical function is_complete(self)
+    class(run_t), intent(in) :: self
+    is_complete = self%is_over .and. self%status == integration_done
+  end function is_complete
+
+  !> The values of a row at the time reached. If the state there is not in the domain of the model, there are none.
   subroutine evaluate_row(self, values, in_domain)
     class(run_t), intent(inout) :: self
     real(dp), intent(out) :: values(:)   !! in the order of the list
@@ -201,10 +263,14 @@ contains
     call self%recorder%declare(list, self%scene)
   end subroutine state
 
-  !> End the run here, as interrupted.
+  !> End the run here, as interrupted: at the time of the pause, also inside a step.
   subroutine stop(self)
     class(run_t), intent(inout) :: self
     if (self%is_over) return
+    if (self%integration%is_kept) then
+      call self%integration%cut(self%scene, self%method, self%recorder, self%t)
+      call self%integration%restart(self%scene, self%method)
+    end if
     if (.not. self%has_ended) call conclude(self)
     self%status = integration_interrupted
     self%is_over = .true.
@@ -268,7 +334,8 @@ contains
     report%figures = self%recorder%extremes%figures
     report%wear = self%recorder%wear(self%scene)
     allocate (report%answers(0))
-    if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, self%recorder%periods)
+    if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, &
+      self%recorder%periods, self%recorder%extremes)
     if (self%has_cycles) call move_alloc(self%recorder%cycles, cycles)
     if (allocated(self%recorder%films)) report%films = self%recorder%films%fields(self%scene)
     associate (case => self%case, scene => self%scene, t => self%integration%t, y => self%integration%y)
@@ -288,7 +355,7 @@ contains
   end subroutine finish
 
   !> Energy residual, relative to the largest energy, from which the user of a completed run is told: 1e-3, which is visible in
-  !> results, or a hundred tolerances, which at most 1 in 1000 extreme scenes reach. A residual up to 1e-10 may be rounding.
+  !> results, or a hundred tolerances, which hardly any scene reaches. A residual up to 1e-10 may be rounding.
   pure real(dp) function remarkable_residual(tolerance)
     real(dp), intent(in) :: tolerance      !! relative
     remarkable_residual = max(1e-10_dp, min(1e-3_dp, 100*tolerance))
@@ -312,9 +379,8 @@ contains
   end subroutine judge_turns
 
   !> Largest energy residual of a completed run, relative to the largest energy: ten tolerances for each revolution, since local
-  !> errors add up, and at least a thousand tolerances. Of 1767 extreme scenes that ended, half stay below 0.003 tolerances and 99.5
-  !> % below 46; 10^4 revolutions of simulation V reach 1250 (tests/README.md). The limit is never above 5 %, which makes any result
-  !> useless, and never below 1e-10, which may be rounding.
+  !> errors add up, and at least a thousand tolerances, which hardly any scene reaches (data/manual/choices.md). The limit is
+  !> never above 5 %, which makes any result useless, and never below 1e-10, which may be rounding.
   pure real(dp) function energy_limit(tolerance, crank_travel)
     real(dp), intent(in) :: tolerance      !! relative
     real(dp), intent(in) :: crank_travel   !! [rad]

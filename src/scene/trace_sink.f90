@@ -69,14 +69,10 @@ contains
   subroutine accept_row(self, values)
     class(trace_sink_t), intent(inout) :: self
     real(dp), intent(in), contiguous :: values(:)
-    associate (unused_self => self, unused_values => values)
-    end associate
   end subroutine accept_row
 
   subroutine accept_event(self, event)
     class(trace_sink_t), intent(inout) :: self
     type(trace_event_t), intent(in) :: event
-    associate (unused_self => self, unused_event => event)
-    end associate
   end subroutine accept_event
 end module trace_sink

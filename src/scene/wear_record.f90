@@ -8,6 +8,7 @@ module wear_record
   use contact_arc, only: contact_arc_t
   use clearance_joint, only: clearance_joint_t, phase_contact
   use scene_problem, only: scene_t, evaluation_t
+  use run_length, only: longest_period
   implicit none
   private
   public :: wear_record_t, wear_profile_t
@@ -47,9 +48,16 @@ module wear_record
     type(worn_surface_t), private :: earlier(2)    !! before it, extrapolated
     real(dp), private :: turns = 0             !! turns of the crank that `earlier` stands for
     real(dp), private :: step_ratios(2) = 0    !! largest change of depth over the clearance, and over the mean penetration
+    real(dp), allocatable, private :: before(:, :)   !! load path of each bin before the last change of the bore, as it was [N m]
+    real(dp), allocatable, private :: marks(:, :, :) !! the same at the ends of revolutions, (bin, surface, mod(k, ...)) [N m]
+    real(dp), allocatable, private :: ahead(:, :)    !! load path at the end of a revolution inside the present step [N m]
+    integer, private :: last_mark = 0                !! revolution marked last
   contains
     procedure :: prepare
     procedure :: follow
+    procedure :: look_ahead
+    procedure :: mark_revolution
+    procedure :: growth
     procedure :: declare
     procedure :: begin_at
     procedure :: change_bore
@@ -70,6 +78,9 @@ contains
       call self%surface(k)%prepare(scene%joints(joint)%wear%bins)
       call self%earlier(k)%prepare(scene%joints(joint)%wear%bins)
     end do
+    associate (bins => scene%joints(joint)%wear%bins)
+      allocate (self%before(bins, 2), self%marks(bins, 2, 0:longest_period), source=0.0_dp)
+    end associate
   end subroutine prepare
 
   !> Declare the wear so far of a joint of the scene, and shape its bore by it. The load path of a bin is the integral of the force
@@ -107,6 +118,7 @@ contains
       self%surface(i)%load_path = 0
       self%earlier(i)%load_path = 0
     end do
+    self%before = 0
   end subroutine begin_at
 
   !> Change the shape of the bore of a joint by the wear since the last change.
@@ -121,14 +133,18 @@ contains
   subroutine shape_bore(self, joint)
     type(wear_record_t), intent(in) :: self
     type(clearance_joint_t), intent(inout) :: joint
-    call joint%slots(joint%acting(phase_contact))%element%wear_bore(depth_by_load(self, joint)*self%earlier(of_bore)%load_path)
+    call joint%slots(joint%acting(phase_contact))%element%wear_bore(depth_by_load(self, joint, of_bore)* &
+      self%earlier(of_bore)%load_path)
   end subroutine shape_bore
 
-  !> Depth of wear in a bin of the bore over its load path [1/N].
-  pure real(dp) function depth_by_load(self, joint)
-    type(wear_record_t), intent(in) :: self
+  !> Depth of wear in a bin over its load path [1/N].
+  pure real(dp) function depth_by_load(self, joint, surface)
+    class(wear_record_t), intent(in) :: self
     type(clearance_joint_t), intent(in) :: joint
-    depth_by_load = joint%wear%rate(of_bore)/(joint%bearing%radius*joint%bearing%length*self%surface(of_bore)%width())
+    integer, intent(in) :: surface   !! of_pin or of_bore
+    associate (radius => merge(joint%pin_radius, joint%bearing%radius, surface == of_pin))
+      depth_by_load = joint%wear%rate(surface)/(radius*joint%bearing%length*self%surface(surface)%width())
+    end associate
   end function depth_by_load
 
   !> Multiply the wear since the last change of the bore by the extrapolation. This is reduced if the change of depth would exceed
@@ -139,13 +155,14 @@ contains
     type(clearance_joint_t), intent(in) :: joint
     real(dp) :: factor, change, lengths(2)
     integer :: k
-    change = depth_by_load(self, joint)*maxval(self%surface(of_bore)%load_path)
+    change = depth_by_load(self, joint, of_bore)*maxval(self%surface(of_bore)%load_path)
     lengths = joint%bearing%clearance
     if (self%total > 0) lengths(2) = self%depth_sum/self%total
     factor = joint%wear%extrapolation
     if (change > 0) factor = max(1.0_dp, min(factor, minval([1, 2]*joint%wear%greatest_step_ratio*lengths/change)))
     if (change > 0) self%step_ratios = max(self%step_ratios, factor*change/lengths)
     do k = 1, size(self%surface)
+      self%before(:, k) = self%before(:, k) + self%surface(k)%load_path
       self%earlier(k)%load_path = self%earlier(k)%load_path + factor*self%surface(k)%load_path
       self%surface(k)%load_path = 0
     end do
@@ -192,6 +209,56 @@ contains
     end if
     self%time = t
   end subroutine follow
+
+  !> Find the wear at the end of a revolution at t, inside the last step. It is counted only when the step ends, so that it does not
+  !> depend on whether revolutions are followed.
+  subroutine look_ahead(self, method, scene, t)
+    class(wear_record_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(wear_record_t) :: copy
+    copy = self
+    call copy%follow(method, scene, t)
+    self%evaluations = copy%evaluations
+    self%ahead = load_path(copy)
+  end subroutine look_ahead
+
+  !> Mark the wear at the end of revolution k: that found ahead inside a step, or that counted so far.
+  subroutine mark_revolution(self, k)
+    class(wear_record_t), intent(inout) :: self
+    integer, intent(in) :: k
+    self%last_mark = k
+    if (.not. allocated(self%ahead)) self%ahead = load_path(self)
+    self%marks(:, :, mod(k, size(self%marks, 3))) = self%ahead
+    deallocate (self%ahead)
+  end subroutine mark_revolution
+
+  !> Largest depth by which a bin of the pin and one of the bore has worn in the last revolutions [m]. All of them, and the one
+  !> before, must be marked.
+  pure function growth(self, scene, revolutions) result(depth)
+    class(wear_record_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: revolutions   !! up to `longest_period`
+    real(dp) :: depth(2)
+    integer :: k
+    associate (n => size(self%marks, 3))
+      do k = 1, size(depth)
+        depth(k) = depth_by_load(self, scene%joints(self%joint), k)*maxval(self%marks(:, k, mod(self%last_mark, n)) - &
+          self%marks(:, k, mod(self%last_mark - revolutions, n)))
+      end do
+    end associate
+  end function growth
+
+  !> Load path of each bin so far, without extrapolation, (bin, surface) [N m].
+  pure function load_path(self)
+    class(wear_record_t), intent(in) :: self
+    real(dp) :: load_path(size(self%before, 1), 2)
+    integer :: k
+    do k = 1, size(self%surface)
+      load_path(:, k) = self%before(:, k) + self%surface(k)%load_path
+    end do
+  end function load_path
 
   !> Largest angle by which the line of centres may turn in an interval [rad]: two bins, or one if the worn bore acts; where the
   !> surfaces touch along a wide arc, half of the standard deviation of the load along it, since the load of a bin then changes

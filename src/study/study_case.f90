@@ -1,6 +1,8 @@
 !> The base case of a study with the values of one run. Everything is read and checked once; a run only converts its own values.
 module study_case
+  use kinds, only: dp
   use error_handling, only: error_t, fail, status_case_file
+  use number_text, only: short_text
   use case_definition, only: case_t
   use model_parameters, only: integer_kind, word_kind
   use case_schema, only: find_group
@@ -15,7 +17,7 @@ module study_case
   private
   public :: study_case_t
 
-  !> The values of the base case, modified for each run. Each thread has its own copy.
+  !> The values of the base case, modified for each run. Each process has its own copy.
   type :: study_case_t
     type(case_t) :: case                             !! case of the present run
     type(case_values_t) :: values                    !! its values, and all defaults
@@ -27,6 +29,8 @@ module study_case
   contains
     procedure :: prepare
     procedure :: set_values
+    procedure :: set_number
+    procedure :: load
     procedure :: convert
     procedure :: check
   end type study_case_t
@@ -89,8 +93,28 @@ contains
       call self%convert(i, trim(texts(i)), error)
       if (allocated(error)) return
     end do
-    call load_case(self%values, self%case, self%groups)
+    call self%load()
   end subroutine set_values
+
+  !> Set a number of parameter i; `load` puts the numbers set since the last call into the case.
+  pure subroutine set_number(self, i, element, number)
+    class(study_case_t), intent(inout) :: self
+    integer, intent(in) :: i, element   !! element: of an array, from 1 on
+    real(dp), intent(in) :: number      !! whole where the key is
+    associate (value => self%values%values(self%places(i)))
+      value%reals(element) = number
+      value%whole = nint(number)
+      value%given(element) = .true.
+      value%written(element) = short_text(number)
+    end associate
+  end subroutine set_number
+
+  !> Put the values into the case.
+  subroutine load(self)
+    class(study_case_t), intent(inout) :: self
+    call self%values%problems%clear()
+    call load_case(self%values, self%case, self%groups)
+  end subroutine load
 
   !> Convert the value of parameter i, which `set_values` sets in the case. Error: a text that is not a value of its key; the
   !> message does not name the key.

@@ -8,11 +8,9 @@
 !>   the power 1.5 of the penetration) the independent variable is x = sqrt(t - t_start), with dy/dx = 2 x f: order and step size
 !>   then rise as from a smooth start;
 !> - while order and step size rise after a start, a step may grow as far as its error at the present order allows, up to 64 times,
-!>   instead of only twice: the published doubling needs 20 steps from the first step of order 1 to the step size of free flight;
+!>   instead of only twice;
 !> - later a step may also grow by a quarter instead of only by doubling; the order may rise at varying step size too, except while
-!>   stability limits the step, where the higher order only reduces the limit. Measured together (scripts/bench/compare_adams.sh,
-!>   evaluations at 1e-6 ... 1e-12): dry contact -23 ... -36 %, film scenes -12 ... -18 %, the standard battery +13 % at 1e-3, -22 %
-!>   at 1e-12;
+!>   stability limits the step, where the higher order only reduces the limit (gain and cost of both: data/manual/choices.md);
 !> - steps are shortened where the problem says that f is about to lose its smoothness;
 !> - trial states outside the model, and steps that the problem refuses, are rejected like errors;
 !> - the interpolant also matches y at the beginning of the step, so that it and its derivative are continuous;
@@ -118,8 +116,7 @@ module adams
 
     !> Restore phi and psi to the beginning of the step and shorten it. After three failures in a row by error, or because the state
     !> leaves the model, the order is reduced to one: earlier points are then far away compared with the step, formulas of
-    !> neighbouring orders are nearly equal to the trapezoidal rule, and their difference is no error estimate (in a collapsing
-    !> film, steps with errors of 10^4 tolerances were accepted).
+    !> neighbouring orders are nearly equal to the trapezoidal rule, and their difference is no error estimate.
     pure module subroutine retreat(self, errors, outcome, fraction, failures)
       class(adams_t), intent(inout) :: self
       type(error_estimates_t), intent(in) :: errors
@@ -136,17 +133,16 @@ module adams
     end subroutine estimate_errors
 
     !> Shorten a step that ends near the instant at which f loses its smoothness. Error estimates of high order do not detect a
-    !> branch point ahead. Measured for dry contact, whose force ends with the power 1.5 of the remaining time: limiting a step to a
-    !> sixth of that time halves the rejections and costs 9 % less at equal error.
+    !> branch point ahead. The force of dry contact ends with the power 1.5 of the remaining time: a step is limited to a sixth of
+    !> that time (data/manual/choices.md).
     pure module subroutine shorten_before_kink(self)
       class(adams_t), intent(inout) :: self
     end subroutine shorten_before_kink
 
     !> Count what limited the step. It was stability if h rho is near the limit of the order although the fastest mode, with the
     !> rate rho, has decayed. rho is |f_new - f_predicted|/|y_new - y_predicted| (as in Hairer & Wanner 1996, IV.2), or 0 if the
-    !> correction is within rounding. `bound`, with a wider criterion, prevents the order from rising; in the films at 1e-6 this
-    !> saves 40 % of the evaluations. The integral of rho dt estimated in this way agrees for the films with that of the eigenvalues
-    !> (1.04e4, 2.14e5, 2.49e6) within 1 %.
+    !> correction is within rounding. `bound`, with a wider criterion, prevents the order from rising (gain, and the exactness of
+    !> rho: data/manual/choices.md).
     pure module subroutine count_limit(self, errors)
       class(adams_t), intent(inout) :: self
       type(error_estimates_t), intent(in) :: errors

@@ -235,9 +235,8 @@ contains
 
   !> The Jacobian of a trial is evaluated at three quarters of the step, on the extrapolated polynomial of the last step: the
   !> stiffness of a film changes within a step, and with a Jacobian among the stages Newton's method contracts faster than with that
-  !> of the beginning. Measured on seven film scenes: 25 to 30 % fewer evaluations and Jacobians at equal errors of 1e-4 to 1e-8; 17
-  !> to 20 % at half of the step or at its end. After a start, and if f is not defined at that point (all derivatives are 0), the
-  !> Jacobian at the beginning is used.
+  !> of the beginning (gain: data/manual/choices.md). After a start, and if f is not defined at that point (all derivatives are
+  !> 0), the Jacobian at the beginning is used.
   subroutine find_jacobian(self, problem)
     class(radau_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem

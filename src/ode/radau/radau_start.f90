@@ -53,7 +53,7 @@ contains
   end procedure first_level
 
   !> The tolerance used: at most `loosest`. With larger ones the errors of the stages make Newton's method alternate between both
-  !> sides of a kink of a film's force, and the cost increases (simulation V: 14,000 to 240,000 evaluations at 1e-2, 8,500 at 1e-3).
+  !> sides of a kink of a film's force, and the cost increases (data/manual/choices.md).
   pure real(dp) function working_tolerance(self)
     class(radau_t), intent(in) :: self
     real(dp), parameter :: loosest = 1e-3_dp
@@ -63,9 +63,8 @@ contains
   !> Tolerances of each formula. For s stages the error estimate is of order s and the formula of order 2s-1; the tolerance of the
   !> estimate is therefore 0.1 tolerance^((s+1)/2s) (Hairer & Wanner). In a stiff film this order is not reached, which matters at
   !> tight tolerances: there the exponent is at least 3/4, which keeps the error of the smooth simulations near the tolerance. The
-  !> required remainder of Newton's iteration is six times that of Hairer & Wanner, who estimate it from the steps alone. Measured
-  !> on 18 film scenes at tolerances of 1e-4 to 1e-8: with the slower contraction and this goal 7 % fewer evaluations at errors 4 %
-  !> smaller; with twice the goal 9 % fewer, but worse where strong damping ends.
+  !> required remainder of Newton's iteration is six times that of Hairer & Wanner, who estimate it from the steps alone
+  !> (data/manual/choices.md).
   pure subroutine set_tolerances(self)
     class(radau_t), intent(inout) :: self
     real(dp) :: tolerance, exponent_of, s

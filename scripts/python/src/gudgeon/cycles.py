@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from gudgeon.results import MissingResult, Run
 from scipy import fft, interpolate, signal
+
+from gudgeon.results import MissingResult, Run
 
 TURN = 2 * np.pi
 FEWEST_ROWS = 36  # in a revolution: the work of the gas in simulation IV is off by 1e-4; with 12 by 10 %

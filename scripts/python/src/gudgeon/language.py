@@ -9,11 +9,12 @@ import re
 import sys
 from collections.abc import Iterable
 
-from gudgeon.portuguese import TEXTS, UNTRANSLATED
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure as Drawing
 from matplotlib.text import Text
 from matplotlib.ticker import Formatter, NullFormatter
+
+from gudgeon.portuguese import TEXTS, UNTRANSLATED
 
 LANGUAGES = ("en", "pt")
 

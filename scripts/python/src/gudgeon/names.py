@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+
 from gudgeon.program import release_program
 from gudgeon.results import MissingResult
 

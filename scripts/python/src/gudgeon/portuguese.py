@@ -294,6 +294,11 @@ TEXTS = {
     "cylinder pressure": "pressão no cilindro",
     "rod speed": "velocidade da biela",
     "energy": "energia",
+    "eccentricity ratio": "razão de excentricidade",
+    "film force": "força do filme",
+    "film force [N]": "força do filme [N]",
+    "rod angle": "ângulo da biela",
+    "piston position": "posição do pistão",
     "frame force x": "força na base x",
     "frame force y": "força na base y",
     # two runs compared

@@ -9,9 +9,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
+
 from gudgeon.program import CHECKOUT, MissingResult, release_program
 
 COLUMN = re.compile(r"^(?P<name>\w+)\[(?P<unit>.*)\]$")
@@ -125,12 +127,17 @@ def read_summary(path: Path) -> dict[str, tuple[str, str]]:
 
 
 def read_case(path: Path) -> dict[str, dict[str, object]]:
-    """Reads a NAME.resolved.nml as the program writes it: group -> key -> number, list of numbers, logical or text.
+    """Reads a NAME.resolved.nml: see `parse_case`."""
+    return parse_case(path.read_text(encoding="utf-8"))
+
+
+def parse_case(text: str) -> dict[str, dict[str, object]]:
+    """Reads a resolved case as the program writes it: group -> key -> number, list of numbers, logical or text.
 
     A group that belongs to one joint has a prefix, as in crank_pin.joint; the first key of the group names the joint."""
     case: dict[str, dict[str, object]] = {}
     name = ""
-    for line in path.read_text(encoding="utf-8").splitlines():
+    for line in text.splitlines():
         if line.startswith("&"):
             name = line[1:].strip()
             case.setdefault(name, {})
@@ -184,6 +191,13 @@ def load_run(path: Path) -> Run:
     summary = read_summary(beside(".summary.csv")) if beside(".summary.csv").exists() and not ideal else {}
     case = read_case(beside(".resolved.nml")) if beside(".resolved.nml").exists() else {}
     return Run(name, trace, units, events, summary, case)
+
+
+def drawable(run: Any) -> Run:
+    """A run that has been carried out in this process (`gudgeon.Case.run`), as pictures and pages need it."""
+    summary = {name: (str(value), run.summary.units[name]) for name, value in run.summary.items()}
+    case = parse_case(run.case.to_nml(complete=True)) if run.case is not None else {}
+    return Run(run.name, run.to_pandas(), run.units, events_of("piston_pin", run.events), summary, case)
 
 
 def case_files() -> dict[str, Path]:
@@ -376,9 +390,3 @@ def file_of(word: str | Path, kind: str, folder: Path | None = None, run_missing
     if not path.exists():
         raise MissingResult(f"{path} is missing: the run has not written it")
     return path
-
-
-def load(word: str | Path) -> Run:
-    """A run from its files: a name, which is looked for in results/, or the path of its trace. Raises MissingResult if there is none."""
-    results, name = located(word, run_missing=False)
-    return results[name]

@@ -6,6 +6,12 @@ from dataclasses import dataclass
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+from matplotlib.figure import Figure as Drawing
+from SALib.analyze import morris as morris_analysis
+from SALib.analyze import sobol as sobol_analysis
+from SALib.sample import morris as morris_sample
+from SALib.sample import sobol as sobol_sample
+
 from gudgeon.names import of_column, of_parameter, plain_unit, prefixed
 from gudgeon.plots.style import (
     BLACK,
@@ -20,11 +26,6 @@ from gudgeon.plots.style import (
     add_legend,
 )
 from gudgeon.study import Parameter, Runs
-from matplotlib.figure import Figure as Drawing
-from SALib.analyze import morris as morris_analysis
-from SALib.analyze import sobol as sobol_analysis
-from SALib.sample import morris as morris_sample
-from SALib.sample import sobol as sobol_sample
 
 METHODS = ("morris", "sobol")
 

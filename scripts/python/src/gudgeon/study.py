@@ -10,6 +10,7 @@ from pathlib import Path
 import f90nml
 import numpy as np
 import pandas as pd
+
 from gudgeon.results import MissingResult, read_table
 
 

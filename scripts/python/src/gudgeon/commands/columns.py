@@ -32,6 +32,8 @@ def run(options: argparse.Namespace) -> int:
     wanted = options.columns or columns.available(runs[0])
     if wanted == ["all"]:
         wanted = [name for name in runs[0].trace.columns if name not in ("time", "crank_angle")]
+    for name in wanted:   # columns without a translation keep their names
+        language.current.keep(name.replace("_", " "))
     drawing = columns.draw(runs, wanted, options.over, options.cycle)
     save(drawing, options, places[0][0].directory, f"{runs[0].name}_columns")
     return 0

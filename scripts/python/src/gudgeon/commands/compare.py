@@ -6,6 +6,7 @@
 
 import argparse
 
+from gudgeon import language
 from gudgeon.commands import add_output, add_results, number, save
 from gudgeon.plots import compare
 from gudgeon.results import located
@@ -26,5 +27,7 @@ def run(options: argparse.Namespace) -> int:
     found = compare.agree(a, b, options.columns or compare.shared_columns(a, b), options.agreement)
     print(compare.report(found, options.agreement))
     names = compare.different_names(*(results.path(name) for results, name in places))
+    for name in names:
+        language.current.keep(name)
     save(compare.draw(a, b, names, found, options.agreement), options, places[0][0].directory, f"compare_{a.name}_{b.name}")
     return 0

@@ -17,6 +17,7 @@ equal crank angles. The most accurate input is a run with `&run until = 'periodi
 import argparse
 
 import pandas as pd
+
 from gudgeon.commands import add_output, add_results, number, save
 from gudgeon.cycles import orders, whole_cycles, work
 from gudgeon.plots import cycles as pictures

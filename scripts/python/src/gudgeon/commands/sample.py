@@ -12,9 +12,10 @@ import argparse
 from pathlib import Path
 
 import numpy as np
+from scipy.stats import qmc
+
 from gudgeon import study
 from gudgeon.results import default_folder
-from scipy.stats import qmc
 
 DESIGNS = {"sobol": qmc.Sobol, "latin_hypercube": qmc.LatinHypercube}
 

@@ -15,6 +15,7 @@ import argparse
 from pathlib import Path
 
 import pandas as pd
+
 from gudgeon import sensitivity, study
 from gudgeon.commands import Refused, add_output, save
 from gudgeon.program import release_program

@@ -15,6 +15,7 @@ from pathlib import Path
 import f90nml
 import numpy as np
 import pandas as pd
+
 from gudgeon import language
 from gudgeon.commands import Refused, add_output, save
 from gudgeon.plots import contact_laws as contact_study

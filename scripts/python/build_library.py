@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Builds the shared library and the program of the Python package: fpm compiles the sources, one line of gfortran links them.
+
+    scripts/python/build_library.py [FOLDER]     FOLDER/libgudgeon.so; FOLDER: build/library of the checkout
+
+fpm links a shared library without the flags that it needs; therefore it only compiles here, from a folder with a manifest of its
+own. OpenMP stays out of the library, so that a host may have its own; -frecursive keeps local arrays out of static memory.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+COMPILE = (
+    "-O3 -flto=auto -fno-ipa-modref -fno-tree-vectorize --param max-inline-insns-auto=150"
+    " -fPIC -fno-semantic-interposition -frecursive"
+)
+MANIFEST = """name = "gudgeon"
+[build]
+auto-executables = false
+auto-tests = false
+auto-examples = false
+[library]
+source-dir = "src"
+"""
+
+
+def sources() -> Path:
+    """The Fortran sources: of the checkout, or of the source distribution."""
+    inside = HERE / "fortran"
+    return inside if inside.is_dir() else HERE.parent.parent / "src"
+
+
+def build(folder: Path) -> Path:
+    """Build the library in a folder and return its path. Raises RuntimeError with the messages of the compiler."""
+    for tool in ("gfortran", "fpm"):
+        if shutil.which(tool) is None:
+            raise RuntimeError(f"building gudgeon needs {tool}: install gfortran (fpm comes with pip install fpm)")
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "fpm.toml").write_text(MANIFEST)
+    shutil.rmtree(folder / "src", ignore_errors=True)
+    (folder / "src").mkdir()
+    names = sorted(path for path in sources().iterdir() if path.is_dir())
+    for path in names:
+        (folder / "src" / path.name).symlink_to(path, target_is_directory=True)
+    listed = "\n".join(sorted(str(path) for path in sources().rglob("*.f90")))
+    listing = folder / "sources.txt"
+    if not listing.is_file() or listing.read_text() != listed:  # fpm would link objects of files that are gone
+        shutil.rmtree(folder / "build", ignore_errors=True)
+        listing.write_text(listed)
+    run(["fpm", "build", "--directory", str(folder), "--flag", COMPILE], folder)
+    objects = found_objects(folder)
+    library = folder / "libgudgeon.so"
+    if library.is_file() and all(os.path.getmtime(path) < library.stat().st_mtime for path in objects):
+        return library
+    link = ["-shared", f"-Wl,--version-script={HERE / 'exports.map'}", "-Wl,-z,defs", "-Wl,-rpath,$ORIGIN"]
+    run(["gfortran", *COMPILE.split(), *link, *objects, "-o", f"{library}.part"], folder)
+    os.replace(f"{library}.part", library)
+    return library
+
+
+def build_program(folder: Path) -> Path:
+    """Link the program from the objects of a library that has been built in the folder."""
+    program, objects = folder / "gudgeon", found_objects(folder)
+    if program.is_file() and all(os.path.getmtime(path) < program.stat().st_mtime for path in objects):
+        return program
+    modules = str(Path(next((folder / "build").rglob("version_number.mod"))).parent)
+    needed = [path for path in objects if "_api_" not in Path(path).name]
+    run(["gfortran", *COMPILE.split(), f"-I{modules}", str(sources() / "main.f90"), *needed, "-o", f"{program}.part"], folder)
+    os.replace(f"{program}.part", program)
+    return program
+
+
+def found_objects(folder: Path) -> list[str]:
+    """The objects of the last build."""
+    newest = max((folder / "build").rglob("*.o"), key=os.path.getmtime).parent
+    return sorted(str(path) for path in newest.glob("*.o"))
+
+
+def run(command: list[str], folder: Path) -> None:
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise RuntimeError(f"{' '.join(command[:4])} ... failed:\n{done.stdout[-4000:]}{done.stderr[-4000:]}")
+
+
+if __name__ == "__main__":
+    try:
+        print(build(Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else HERE.parent.parent / "build" / "library"))
+    except RuntimeError as error:
+        sys.exit(f"build_library: {error}")

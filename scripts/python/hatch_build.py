@@ -1,0 +1,26 @@
+"""Build hook of hatchling: compiles the shared library and the program into the package."""
+
+import shutil
+import sys
+import sysconfig
+import tempfile
+from pathlib import Path
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import build_library
+
+
+class Hook(BuildHookInterface):
+    def initialize(self, version, build_data):
+        package = Path(self.root) / "src" / "gudgeon"
+        top = Path(self.root).parent.parent
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = top / "build" / "library" if (top / "fpm.toml").is_file() else Path(temporary)
+            shutil.copy(build_library.build(folder), package / "libgudgeon.so")
+            (package / "bin").mkdir(exist_ok=True)
+            shutil.copy(build_library.build_program(folder), package / "bin" / "gudgeon")
+        build_data["pure_python"] = False
+        build_data["tag"] = "py3-none-" + sysconfig.get_platform().replace("-", "_").replace(".", "_")
+        build_data["artifacts"] += ["src/gudgeon/libgudgeon.so", "src/gudgeon/bin/gudgeon"]

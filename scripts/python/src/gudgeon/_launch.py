@@ -1,0 +1,10 @@
+"""The command `gudgeon`: the program of the package."""
+
+import os
+import sys
+from pathlib import Path
+
+
+def main() -> None:
+    program = Path(__file__).parent / "bin" / "gudgeon"
+    os.execv(program, ["gudgeon", *sys.argv[1:]])

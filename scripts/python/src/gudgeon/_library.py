@@ -1,0 +1,116 @@
+"""The shared library, loaded when it is first needed: its functions with their types, and texts from it."""
+
+from __future__ import annotations
+
+import ctypes as c
+import os
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+_handle, _text, _size, _int = c.c_void_p, c.c_char_p, c.c_size_t, c.c_int
+
+
+class Key(c.Structure):
+    """`struct gudgeon_key`: a key of case files."""
+
+    _fields_ = [(name, _int) for name in ("kind", "count", "required", "is_path")] + [
+        (name, c.c_char * size)
+        for name, size in (
+            [(name, 32) for name in ("group", "name")]
+            + [("unit", 16)]
+            + [(name, 32) for name in ("range", "usual", "default", "example", "choice")]
+            + [("words", 512), ("laws", 512), ("meaning", 256)]
+        )
+    ]
+
+
+class Group(c.Structure):
+    """`struct gudgeon_group`: a group of case files."""
+
+    _fields_ = [("is_model", _int), ("name", c.c_char * 32), ("place", c.c_char * 32), ("meaning", c.c_char * 256)]
+
+
+_naming = [_text, _size]
+_FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
+    "case_new": (_handle, [_text, _size, _text, _text]),
+    "case_copy": (_handle, [_handle]),
+    "case_free": (None, [_handle]),
+    "case_set": (_int, [_handle, _text, _text]),
+    "case_set_number": (_int, [_handle, _int, _int, c.c_double]),
+    "case_accuracy": (_int, [_handle, _text]),
+    "case_check": (_int, [_handle]),
+    "case_get": (_size, [_handle, _text, _text, _size]),
+    "case_given": (_int, [_handle, _int]),
+    "case_text": (_size, [_handle, _text, _size]),
+    "case_notes": (_size, [_handle, _text, _size]),
+    "case_cache": (_int, [_handle, _text]),
+    "case_columns": (_int, [_handle]),
+    "case_column": (_int, [_handle, _int, *_naming * 3]),
+    "run_new": (_handle, [_handle, _int, c.c_double, _int]),
+    "run_advance": (_int, [_handle, c.c_double, c.c_int64]),
+    "run_finish": (_int, [_handle]),
+    "run_certify": (_int, [_handle]),
+    "run_save": (_int, [_handle, _text]),
+    "run_free": (None, [_handle]),
+    "run_copy": (_handle, [_handle]),
+    "run_assign": (_int, [_handle, _handle]),
+    "run_time": (c.c_double, [_handle]),
+    "run_end": (c.c_double, [_handle]),
+    "inputs": (_int, [_handle]),
+    "input": (_int, [_handle, _int, c.POINTER(c.c_double), *_naming * 2]),
+    "input_set": (_int, [_handle, _int, c.c_double]),
+    "columns": (_int, [_handle]),
+    "column": (_int, [_handle, _int, *_naming * 3]),
+    "rows": (c.POINTER(c.c_double), [_handle, c.POINTER(c.c_int64)]),
+    "values": (_int, [_handle, c.POINTER(c.c_double)]),
+    "events": (c.c_int64, [_handle]),
+    "event": (_int, [_handle, c.c_int64, c.POINTER(c.c_double), c.POINTER(_int), *_naming]),
+    "quantities": (_int, [_handle]),
+    "quantity": (_int, [_handle, _int, c.POINTER(c.c_double), *_naming * 3]),
+    "keys": (_int, []),
+    "key": (_int, [_int, _int, c.POINTER(Key)]),
+    "groups": (_int, [_int, c.POINTER(Group)]),
+    "template": (_size, [_text, _text, _size]),
+    "schema": (_size, [_text, _size]),
+    "message": (_size, [_handle, _text, _size]),
+    "version": (_size, [_text, _size]),
+}
+
+
+def path() -> Path:
+    """The library of the package, or of the checkout in which the package is; the environment variable GUDGEON_LIBRARY names another."""
+    own = Path(__file__).with_name("libgudgeon.so")
+    built = Path(__file__).resolve().parents[4] / "build" / "library" / own.name   # by build_library.py
+    return Path(os.environ.get("GUDGEON_LIBRARY") or (built if built.exists() and not own.exists() else own))
+
+
+@cache
+def library() -> Any:
+    """The functions of the library."""
+    loaded = c.CDLL(str(path()))
+
+    class Functions:
+        """Functions by their names without gudgeon_."""
+
+    for name, (result, arguments) in _FUNCTIONS.items():
+        function = getattr(loaded, f"gudgeon_{name}")
+        function.restype, function.argtypes = result, arguments
+        setattr(Functions, name, staticmethod(function))
+    return Functions
+
+
+def text_from(function: Callable[..., int], *arguments: Any, guess: int = 4096) -> str:
+    """The text that a function copies into a buffer."""
+    buffer = c.create_string_buffer(guess)
+    length = function(*arguments, buffer, guess)
+    if length >= guess:
+        buffer = c.create_string_buffer(length + 1)
+        function(*arguments, buffer, length + 1)
+    return buffer.value.decode()
+
+
+def message(handle: int) -> str:
+    """The last message of a handle."""
+    return text_from(library().message, handle)

@@ -1,0 +1,151 @@
+"""Many runs of a case with varied values, in threads."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .case import Case, CaseError, Value, _find
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from .run import Run
+
+QUANTITIES = (
+    "simulated_time", "crank_revolutions", "mean_crank_speed", "max_pin_force", "contacts", "contact_time_fraction",
+    "min_film_thickness", "max_penetration", "friction_work", "max_film_pressure", "max_energy_residual_relative",
+)  # fmt: skip
+
+
+def sweep(
+    case: Case,
+    design: Mapping[str, Sequence[Value]] | pd.DataFrame | Any,
+    *,
+    names: Sequence[str] | None = None,
+    keep: Iterable[str] | None = None,
+    reduce: Callable[[Run], Mapping[str, Any]] | None = None,
+    workers: int | str | None = None,
+    progress: Callable[[float], None] | None = None,
+    store: str | Path | None = None,
+    errors: str = "keep",
+) -> pd.DataFrame:
+    """Run a case for each row of a design, and return a row for each run, in the order of the design.
+
+    design: a dict of sequences (all combinations), a DataFrame, or an array with `names` for its columns; keep: quantities of the
+    summary (default: those of a study that the run has); reduce: a function of the run, whose results become columns: only with it
+    rows are made; workers: number of threads, or "processes" if `reduce` is Python that takes long; store: a parquet file that keeps
+    the rows, from which an interrupted sweep goes on; errors: "raise", or "keep" (the column status then says what was wrong). A
+    KeyboardInterrupt has the rows so far in `table`.
+    """
+    import pandas as pd
+
+    table = _table(design, names)
+    for name in table.columns:
+        _find(name)
+    base = case.copy()
+    if reduce is None:
+        base["output.columns"] = "none"
+    wanted = list(keep) if keep is not None else None
+    done: dict[int, dict[str, Any]] = {}
+    if store is not None and Path(store).is_file():
+        done = _stored(Path(store), table)
+    rows = [row for row in range(len(table)) if row not in done]
+    count = workers if isinstance(workers, int) else os.cpu_count() or 1
+    chunk = max(1, min(50, math.ceil(len(rows) / (4 * count))))
+    chunks = [rows[i : i + chunk] for i in range(0, len(rows), chunk)]
+    columns = list(table.columns)
+    values = [list(row) for row in table.itertuples(index=False, name=None)]
+
+    def result() -> pd.DataFrame:
+        return pd.DataFrame([{**dict(zip(columns, values[row])), **done[row]} for row in sorted(done)], index=sorted(done))
+
+    pool = (ProcessPoolExecutor if workers == "processes" else ThreadPoolExecutor)(count)
+    waiting: dict[Future[list[dict[str, Any]]], list[int]] = {}
+    try:
+        waiting = {pool.submit(_chunk, base, columns, part, [values[row] for row in part], wanted, reduce): part for part in chunks}
+        while waiting:
+            finished, _ = wait(waiting, timeout=0.1, return_when=FIRST_COMPLETED)
+            for future in finished:
+                part = waiting.pop(future)
+                done.update(zip(part, future.result()))
+                failed = next((row for row in part if done[row]["status"] != "done"), None)
+                if errors == "raise" and failed is not None:
+                    raise RuntimeError(f"row {failed}: {done[failed]['status']}")
+            if finished and store is not None:
+                result().to_parquet(store)
+            if finished and progress is not None:
+                progress(len(done) / len(table))
+    except BaseException as error:
+        error.table = result()  # type: ignore[attr-defined]
+        raise
+    finally:
+        for future in waiting:
+            future.cancel()
+        pool.shutdown(wait=False, cancel_futures=True)
+    return result()
+
+
+def _table(design: Any, names: Sequence[str] | None) -> pd.DataFrame:
+    import pandas as pd
+
+    if isinstance(design, pd.DataFrame):
+        return design.reset_index(drop=True)
+    if isinstance(design, Mapping):
+        return pd.DataFrame(list(product(*design.values())), columns=list(design))
+    if names is None and getattr(getattr(design, "dtype", None), "names", None):
+        return pd.DataFrame.from_records(design)
+    if names is None:
+        raise TypeError("an array needs the names of its columns")
+    return pd.DataFrame(design, columns=list(names))
+
+
+def _stored(path: Path, table: pd.DataFrame) -> dict[int, dict[str, Any]]:
+    """The rows that a stored sweep has. Raises ValueError if they are those of another design."""
+    import pandas as pd
+
+    found = pd.read_parquet(path)
+    if not found[list(table.columns)].equals(table.loc[found.index]):
+        raise ValueError(f"{path} has the results of another design")
+    rest = [name for name in found.columns if name not in table.columns]
+    return {int(row): dict(zip(rest, values)) for row, values in zip(found.index, found[rest].itertuples(index=False, name=None))}
+
+
+def _chunk(
+    base: Case, columns: Sequence[str], rows: Sequence[int], values: Sequence[Sequence[Value]], keep: Sequence[str] | None,
+    reduce: Callable[[Run], Mapping[str, Any]] | None,
+) -> list[dict[str, Any]]:  # fmt: skip
+    """The results of several rows, of which the later ones cost less: only their numbers change."""
+    from .run import advance, from_handle
+
+    case = base.copy()
+    found = []
+    for row, its in zip(rows, values):
+        try:
+            for name, value in zip(columns, its):
+                case[name] = value
+            number = case._begin(False, None)
+        except (CaseError, KeyError, TypeError, ValueError) as error:
+            found.append({"status": str(error).splitlines()[0]})
+            if not isinstance(error, CaseError):
+                raise
+            continue
+        advance(number, 1e300, None, None)
+        run = from_handle(case.copy() if reduce is not None else case, number)
+        result: dict[str, Any] = {"status": run.status}
+        if keep is None:
+            result.update({name: run.summary[name] for name in QUANTITIES if name in run.summary})
+        else:
+            result.update({name: run.summary.get(name, math.nan) for name in keep})
+        if reduce is not None:
+            try:
+                result.update(reduce(run))
+            except Exception as error:
+                raise RuntimeError(f"reduce, row {row}: {error!r}") from error
+        found.append(result)
+    return found

@@ -1,0 +1,406 @@
+"""The results of a run: columns as NumPy arrays, events, summary; as tables of pandas and xarray; to and from files."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import _library
+from ._library import library
+from .case import Case, Column, _columns, _meant
+
+if TYPE_CHECKING:
+    import numpy as np
+    import pandas as pd
+    import xarray as xr
+
+STEPS_BETWEEN_LOOKS = 2000  # of a run, after which interruptions are looked for
+EVENT_COLUMNS = ["time", "crank_angle", "event", "normal_speed", "duration", "max_penetration", "max_normal_force", "joint"]
+
+
+class RunError(RuntimeError):
+    """The integration could not go on; `run` has the results so far."""
+
+    def __init__(self, text: str, run: Run) -> None:
+        super().__init__(text)
+        self.run = run
+
+
+class Summary(Mapping[str, Any]):
+    """The quantities of a run: numbers, or words. `units` are their units."""
+
+    def __init__(self, rows: Sequence[tuple[str, str, str]]) -> None:
+        self._values = {name: _number(text) for name, text, _ in rows}
+        self.units = {name: unit for name, _, unit in rows}
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._values:
+            raise KeyError(f"no quantity {name}{_meant(name, list(self._values))}")
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __repr__(self) -> str:
+        width = max(map(len, self), default=0)
+        return "\n".join(f"{name:{width}}  {value} {self.units[name] if self.units[name] != '1' else ''}" for name, value in self.items())
+
+    def _repr_html_(self) -> str:
+        return _table((name, value, self.units[name]) for name, value in self.items())
+
+
+class Certificate(Summary):
+    """How accurate a run is, by runs with a hundredth of its tolerance and with another method."""
+
+    @property
+    def digits(self) -> float:
+        """Digits that agree until `until`; not a number if the run cannot be certified."""
+        return self._values.get("certified_digits", math.nan)
+
+    @property
+    def until(self) -> float:
+        """The time until which the trace is certified [s]."""
+        return self._values.get("certified_until", math.nan)
+
+
+class Run:
+    """The results of a run. `run["pin_force_x"]` or `run.pin_force_x` is a column, a read-only array without a copy."""
+
+    def __init__(
+        self, case: Case | None, columns: Sequence[Column], rows: np.ndarray, events: Sequence[Sequence[Any]] | None,
+        summary: Sequence[tuple[str, str, str]], name: str,
+    ) -> None:  # fmt: skip
+        self.case, self.name = case, name
+        self._columns, self._rows, self._events = list(columns), rows, events
+        self._index = {column.name: i for i, column in enumerate(columns)}
+        self.summary = Summary(summary)
+        self.twin: Run | None = None
+        self.certificate: Certificate | None = None
+
+    # columns
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._index:
+            raise KeyError(f"no column {name}{_meant(name, self.names)}")
+        return self._rows[:, self._index[name]]
+
+    def __getattr__(self, name: str) -> np.ndarray:
+        if name.startswith("_") or name not in self._index:
+            raise AttributeError(f"no column {name}")
+        return self[name]
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __dir__(self) -> list[str]:
+        return [*object.__dir__(self), *self.names]
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the columns, in their order."""
+        return [column.name for column in self._columns]
+
+    @property
+    def units(self) -> dict[str, str]:
+        return {column.name: column.unit for column in self._columns}
+
+    @property
+    def meanings(self) -> dict[str, str]:
+        return {column.name: column.meaning for column in self._columns}
+
+    @property
+    def status(self) -> str:
+        """'done', or why the run ended early."""
+        return str(self.summary["status"])
+
+    @property
+    def notes(self) -> list[str]:
+        """What is implausible, or beyond a model."""
+        return [str(value) for name, value in self.summary.items() if name.startswith("note_")]
+
+    @property
+    def events(self) -> pd.DataFrame:
+        """Beginnings and ends of contacts."""
+        import pandas as pd
+
+        return pd.DataFrame(self._events or [], columns=EVENT_COLUMNS)
+
+    def at(self, time: float | None = None, *, crank_angle_deg: float | None = None) -> dict[str, float]:
+        """All columns at a time [s], or at the first passage of a crank angle [degrees], linear between rows."""
+        import numpy as np
+
+        if (time is None) == (crank_angle_deg is None):
+            raise TypeError("give a time or a crank angle")
+        along = self["time"] if time is not None else np.degrees(self["crank_angle"])
+        where = time if time is not None else crank_angle_deg
+        assert where is not None
+        past = np.flatnonzero((along[:-1] - where) * (along[1:] - where) <= 0)
+        if not len(past):
+            raise ValueError(f"{where} is not within the run: {along.min()} to {along.max()}")
+        i = past[0]
+        share = (where - along[i]) / (along[i + 1] - along[i]) if along[i + 1] != along[i] else 0.0
+        values = self._rows[i] * (1 - share) + self._rows[i + 1] * share
+        return dict(zip(self.names, map(float, values)))
+
+    def cycle(self, i: int = -1, revolutions: int | None = None) -> Run:
+        """The rows of one whole cycle: of the last one, or by number from 0. A cycle has the revolutions that the gas takes to
+        repeat, or those given."""
+        import numpy as np
+
+        if revolutions is None:
+            revolutions = int(self.summary.get("cycle_revolutions", 1))
+        travel = np.abs(self["crank_angle"] - self["crank_angle"][0]) / (2 * math.pi * revolutions) + 1e-9
+        whole = int(travel[-1])
+        if not -whole <= i < whole:
+            raise IndexError(f"the run has {whole} whole cycles")
+        chosen = (travel >= i % whole) & (travel <= i % whole + 1 + 1e-9)
+        return Run(self.case, self._columns, self._rows[chosen], None, [], f"{self.name}, cycle {i % whole}")
+
+    # tables and files
+
+    def to_pandas(self) -> pd.DataFrame:
+        import pandas as pd
+
+        return pd.DataFrame(self._rows, columns=self.names)
+
+    def to_xarray(self) -> xr.Dataset:
+        """A dataset over time, with units and meanings as attributes."""
+        import xarray as xr
+
+        data = {
+            c.name: ("time", self[c.name], {"units": c.unit, "long_name": c.meaning}) for c in self._columns if c.name != "time"
+        }
+        words = {name: value for name, value in self.summary.items() if name in ("status", "version")}
+        return xr.Dataset(data, {"time": ("time", self["time"], {"units": "s"})}, {"case": self.name, **words})
+
+    def to_parquet(self, path: str | Path) -> None:
+        self.to_pandas().to_parquet(path)
+
+    def save(self, folder: str | Path, name: str | None = None) -> Path:
+        """Write the files of the command line: NAME.csv, NAME.events.csv, NAME.summary.csv, NAME.resolved.nml, ..."""
+        handle = self.__dict__.get("_owner")
+        if handle is None or self.case is None:
+            raise ValueError("only a whole run can be saved")
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        base = folder / (name or self.name)
+        if library().run_save(handle.number, str(base).encode()):
+            raise OSError(_library.message(handle.number))
+        self.case.to_nml(f"{base}.resolved.nml", complete=True)
+        if self.twin is not None:
+            self.twin.save(folder, f"{base.name}.ideal")
+            Path(f"{base}.ideal.resolved.nml").unlink()
+        return base
+
+    # pictures
+
+    def plot(self, *names: str, over: str = "time", cycle: int | None = None, ax: Any = None) -> Any:
+        """Columns over time, or over the crank angle in degrees. Returns the axes of matplotlib."""
+        import matplotlib.pyplot as plt
+        import numpy as np
+
+        run = self if cycle is None else self.cycle(cycle)
+        x = np.degrees(run["crank_angle"]) if over == "crank_angle" else run[over]
+        ax = ax or plt.gca()
+        for name in names:
+            ax.plot(x, run[name], label=f"{name} [{self.units[name]}]")
+        ax.set_xlabel("crank angle [deg]" if over == "crank_angle" else f"{over} [{self.units[over]}]")
+        ax.legend()
+        return ax
+
+    def report(self, path: str | Path | None = None) -> Path:
+        """Write the page of the run, as `gudgeon-plot report` does: animation, plots, case, summary, warnings. By default NAME.html."""
+        from .report.page import page
+        from .results import drawable
+
+        path = Path(path or f"{self.name}.html")
+        path.write_text(page(drawable(self), drawable(self.twin) if self.twin else None), encoding="utf-8")
+        return path
+
+    def __repr__(self) -> str:
+        return f"<Run {self.name}: {self.summary.get('status', '')}, {len(self)} rows, {len(self._columns)} columns>"
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        chosen = [name for name in self.summary if name.startswith("cycle_")][:10] or list(self.summary)[:10]
+        rows = [(name, self.summary[name], self.summary.units[name]) for name in chosen]
+        name = next((name for name in ("piston_acceleration", *self.names[1:]) if name in self._index), None)
+        picture = _polyline(self["time"], self[name]) if name and len(self) > 1 else ""
+        return f"<b>{escape(self.name)}</b>: {escape(str(self.summary.get('status', '')))}{picture}<br>{escape(name or '')}{_table(rows)}"
+
+
+class _Owner:
+    """Keeps the memory of a run of the library while its rows are in use."""
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+
+    def __del__(self) -> None:
+        library().run_free(self.number)
+
+
+def from_handle(case: Case, number: int) -> Run:
+    """The run of a handle, which is finished here. The run owns the handle from now on."""
+    import numpy as np
+
+    owner = _Owner(number)
+    library().run_finish(number)
+    columns = _columns(library().columns(number), library().column, number)
+    count = ctypes.c_int64()
+    address = library().rows(number, count)
+    if count.value * len(columns):
+        buffer = (ctypes.c_double * (count.value * len(columns))).from_address(ctypes.addressof(address.contents))
+        buffer._owner = owner  # type: ignore[attr-defined]
+        rows = np.frombuffer(buffer).reshape(count.value, len(columns))
+        rows.flags.writeable = False
+    else:
+        rows = np.empty((0, len(columns)))
+    run = Run(case, columns, rows, _events(number), _quantities(number), case.name)
+    run.__dict__["_owner"] = owner
+    return run
+
+
+def _events(number: int) -> list[list[Any]] | None:
+    count = library().events(number)
+    if count < 0:
+        return None
+    values, ends, place = (ctypes.c_double * 6)(), ctypes.c_int(), ctypes.create_string_buffer(20)
+    found = []
+    for i in range(count):
+        library().event(number, i, values, ends, place, 20)
+        t, angle, speed, *rest = values
+        kind = "contact_ends" if ends.value else "contact_begins"
+        found.append([t, angle, kind, speed, *(rest if ends.value else [math.nan] * 3), place.value.decode()])
+    return found
+
+
+def _quantities(number: int) -> list[tuple[str, str, str]]:
+    value, name, unit = ctypes.c_double(), ctypes.create_string_buffer(100), ctypes.create_string_buffer(20)
+    text = ctypes.create_string_buffer(4000)
+    found = []
+    for i in range(library().quantities(number)):
+        library().quantity(number, i, value, name, 100, unit, 20, text, 4000)
+        found.append((name.value.decode(), text.value.decode(), unit.value.decode()))
+    return found
+
+
+def carry_out(
+    case: Case, until: float | None, end: float | None, progress: Callable[[float], None] | bool | None, timeout: float | None,
+    certify: bool, ideal_twin: bool,
+) -> Run:  # fmt: skip
+    """`Case.run`."""
+    number = case._begin(False, end)
+    tell = _bar if progress is True else progress or None
+    try:
+        status = advance(number, 1e300 if until is None else until, tell, timeout)
+    except BaseException as error:  # the run so far goes with it
+        error.run = from_handle(case.copy(), number)  # type: ignore[attr-defined]
+        raise
+    run = from_handle(case.copy(), number)
+    if status == 4 or status == 0 and run.status != "done":
+        raise RunError(run.status, run)
+    if certify:
+        before = library().quantities(number)
+        library().run_certify(number)
+        rows = _quantities(number)
+        run.summary = Summary(rows)
+        run.certificate = Certificate(rows[before:])
+    if ideal_twin:
+        twin = case._begin(True, end)
+        advance(twin, 1e300 if until is None else until, None, None)
+        run.twin = from_handle(case.copy(), twin)
+    return run
+
+
+def advance(number: int, to: float, tell: Callable[[float], None] | None, timeout: float | None) -> int:
+    """Advance a run of the library in slices, between which Python looks for interruptions. Returns -1 at a pause, 0 at its end, 4 if
+    it cannot go on."""
+    began = time.monotonic()
+    while True:
+        status = library().run_advance(number, to, STEPS_BETWEEN_LOOKS)
+        now = library().run_time(number)
+        if tell is not None:
+            tell(min(1.0, now / max(library().run_end(number), 1e-300)))
+        if status != -1 or now >= to:
+            return int(status)
+        if timeout is not None and time.monotonic() - began > timeout:
+            raise TimeoutError(f"the run took more than {timeout} s")
+
+
+def _bar(share: float) -> None:
+    """Progress in one line, on a terminal alone."""
+    import sys
+
+    if sys.stderr.isatty():
+        print(f"\r{share:4.0%} {'#' * round(40 * share)}", end="\n" if share >= 1 else "", file=sys.stderr, flush=True)
+
+
+def load(path: str | Path) -> Run:
+    """A run from its files: `load("results/sim_I")`, or a name that is looked for in `results/`."""
+    import numpy as np
+    import pandas as pd
+
+    base = Path(str(path).removesuffix(".csv"))
+    if not Path(f"{base}.csv").is_file():
+        base = Path("results") / base
+    with open(f"{base}.csv") as file:
+        columns = [Column(*(part.rstrip("]") for part in name.split("[")), "") for name in file.readline().strip().split(",")]
+        rows = np.loadtxt(file, delimiter=",", ndmin=2)
+    rows.flags.writeable = False
+    table = pd.read_csv(f"{base}.summary.csv", dtype=str, keep_default_na=False)
+    events = None
+    if Path(f"{base}.events.csv").is_file():
+        events = pd.read_csv(f"{base}.events.csv").values.tolist()
+    case = None
+    if (resolved := Path(f"{base}.resolved.nml")).is_file():
+        case = Case.from_text(resolved.read_text(), base.name, "/")
+    return Run(case, columns, rows, events, table.values.tolist(), base.name)
+
+
+def compare(a: Run, b: Run, *names: str) -> pd.DataFrame:
+    """How far two runs are apart in these columns, or in all that both have: largest and root mean square difference, and the range
+    of `a`. Rows of `b` are interpolated at the times of `a`."""
+    import numpy as np
+    import pandas as pd
+
+    rows = []
+    for name in names or [name for name in a.names if name in b.names and name != "time"]:
+        inside = a["time"] <= b["time"][-1]
+        apart = np.interp(a["time"][inside], b["time"], b[name]) - a[name][inside]
+        rows.append((name, a.units[name], np.abs(apart).max(), math.sqrt(np.mean(apart**2)), np.ptp(a[name])))
+    return pd.DataFrame(rows, columns=["column", "unit", "largest", "rms", "range"]).set_index("column")
+
+
+def _number(text: str) -> Any:
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text.replace('""', '"')
+
+
+def _table(rows: Any) -> str:
+    from html import escape
+
+    cells = "".join(f"<tr>{''.join(f'<td>{escape(str(cell))}</td>' for cell in row)}</tr>" for row in rows)
+    return f"<table>{cells}</table>"
+
+
+def _polyline(x: Any, y: Any) -> str:
+    """A small picture without axes."""
+    import numpy as np
+
+    chosen = np.linspace(0, len(x) - 1, min(len(x), 400)).astype(int)
+    across = 300 * (x[chosen] - x[0]) / (np.ptp(x) or 1)
+    up = 58 - 56 * (y[chosen] - y.min()) / (np.ptp(y) or 1)
+    points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(across, up))
+    return f'<br><svg width="300" height="60"><polyline points="{points}" fill="none" stroke="currentColor"/></svg>'

@@ -1,0 +1,272 @@
+!> An instance of a functional mock-up unit, as FMI 2.0 and 3.0 see it. Its case is in the folder of its resources. Value
+!> references: outputs have the indices of the columns from 0 on (0 is the time), inputs 1000 and their index in `inputs` from 0 on,
+!> parameters 10000 + 2 k + e for element e = 0, 1 of key k, from 0 on. The run is built when the first output is asked for, or at
+!> the end of the initialisation, and again if a parameter changes before that.
+module fmi_instance
+  use kinds, only: dp
+  use error_handling, only: status_integration
+  use text_file, only: read_whole
+  use text_tools, only: integer_text
+  use scene_inputs, only: inputs
+  use case_handle, only: case_handle_t
+  use run_handle, only: run_handle_t, begin_run, copy_run
+  use text_lock, only: lock_texts, unlock_texts
+  implicit none
+  private
+  public :: fmi_instance_t, fmi_ok, fmi_discard, fmi_error, decoded
+
+  integer, parameter :: fmi_ok = 0, fmi_discard = 2, fmi_error = 3   !! statuses of FMI
+  integer, parameter :: of_inputs = 1000, of_parameters = 10000     !! first value references
+
+  type :: fmi_instance_t
+    character(len=:), allocatable :: message       !! of the last error
+    type(case_handle_t) :: case
+    character(len=:), allocatable :: folder        !! resources
+    character(len=:), allocatable :: identity      !! GUID or instantiation token
+    type(run_handle_t), pointer :: run => null()
+    real(dp) :: start = 0, stop = 0                !! times of the master [s]; stop 0: the case's end
+    real(dp) :: last = 0                           !! last time that was reached [s]
+    logical :: is_running = .false.                !! initialisation is over
+    real(dp), private :: held(size(inputs)) = 0    !! values of inputs set before there was a run
+    logical, private :: is_held(size(inputs)) = .false.
+  contains
+    procedure :: read
+    procedure :: setup
+    procedure :: build
+    procedure :: forget
+    procedure :: get
+    procedure :: set
+    procedure :: step
+    procedure :: assign
+  end type fmi_instance_t
+
+contains
+
+  !> Read the case. Error: `message` is set; an identity other than that of the unit, or a case that cannot be read.
+  subroutine read(self, folder, identity, is_right)
+    class(fmi_instance_t), intent(inout) :: self
+    character(len=*), intent(in) :: folder, identity
+    logical, intent(out) :: is_right
+    character(len=:), allocatable :: text
+    integer :: status
+    is_right = .false.
+    self%folder = folder
+    self%identity = identity
+    call read_whole(folder//'/identity', text, status)
+    if (status == 0 .and. text /= identity) status = -1
+    if (status /= 0) then
+      self%message = 'the identity is not that of this unit, or its resources are missing: '//folder
+      return
+    end if
+    call read_whole(folder//'/case.nml', text, status)
+    self%case = case_handle_t()
+    call self%case%read(text, 'case', folder)
+    call self%case%set_cache(folder)
+    call self%case%check(status)
+    is_right = status == 0
+    if (.not. is_right) self%message = self%case%message
+  end subroutine read
+
+  !> Times of the experiment, and the tolerance where the master gives one (0: it does not).
+  subroutine setup(self, start, stop, tolerance, status)
+    class(fmi_instance_t), intent(inout) :: self
+    real(dp), intent(in) :: start, stop, tolerance
+    integer, intent(out) :: status
+    integer :: key
+    status = fmi_ok
+    self%start = start
+    self%last = start
+    self%stop = stop
+    if (tolerance > 0) then
+      key = self%case%values%place_of('integrator', 'relative_tolerance')
+      call lock_texts()
+      call self%case%set_number(key, 1, tolerance, status)
+      call unlock_texts()
+      if (status /= 0) self%message = self%case%message
+      if (status /= 0) status = fmi_error
+    end if
+    call self%forget()
+  end subroutine setup
+
+  !> Build the run, unless there is one.
+  subroutine build(self, status)
+    class(fmi_instance_t), intent(inout) :: self
+    integer, intent(out) :: status
+    integer :: i
+    status = fmi_ok
+    if (associated(self%run)) return
+    call lock_texts()
+    call begin_run(self%case, .false., merge(self%stop - self%start, 0.0_dp, self%stop > self%start), .true., self%run, status)
+    call unlock_texts()
+    if (status /= 0) then
+      self%message = self%case%message
+      status = fmi_error
+      return
+    end if
+    do i = 1, size(self%run%run%inputs)
+      if (self%is_held(self%run%run%inputs(i))) call self%run%set_input(i, self%held(self%run%run%inputs(i)))
+    end do
+  end subroutine build
+
+  !> The run is no longer that of the case.
+  subroutine forget(self)
+    class(fmi_instance_t), intent(inout) :: self
+    if (associated(self%run)) deallocate (self%run)
+    nullify (self%run)
+    self%is_running = .false.
+  end subroutine forget
+
+  !> The value of a reference.
+  subroutine get(self, reference, value, status)
+    class(fmi_instance_t), intent(inout) :: self
+    integer, intent(in) :: reference
+    real(dp), intent(out) :: value
+    integer, intent(out) :: status
+    integer :: place, key
+    value = 0
+    status = fmi_ok
+    if (reference >= of_parameters) then
+      key = (reference - of_parameters)/2 + 1
+      call self%case%number(key, mod(reference, 2) + 1, value, status)
+      if (status /= 0) call refuse(self, reference, status)
+      return
+    end if
+    call self%build(status)
+    if (status /= fmi_ok) return
+    if (reference >= of_inputs) then
+      place = findloc(self%run%run%inputs, reference - of_inputs + 1, 1)
+      if (place == 0) call refuse(self, reference, status)
+      if (place > 0) value = self%run%run%wanted_input(place)
+    else if (reference < size(self%run%now)) then
+      call self%run%look(status)
+      if (status /= 0) self%message = 'the state is outside the model'
+      if (status /= 0) status = fmi_error
+      value = self%run%now(reference + 1)
+      if (reference == 0) value = value + self%start
+    else
+      call refuse(self, reference, status)
+    end if
+  end subroutine get
+
+  subroutine refuse(self, reference, status)
+    class(fmi_instance_t), intent(inout) :: self
+    integer, intent(in) :: reference
+    integer, intent(out) :: status
+    status = fmi_error
+    call lock_texts()
+    self%message = 'the value reference '//integer_text(reference)//' cannot be used here'
+    call unlock_texts()
+  end subroutine refuse
+
+  !> Set an input, or a parameter before the end of the initialisation.
+  subroutine set(self, reference, value, status)
+    class(fmi_instance_t), intent(inout) :: self
+    integer, intent(in) :: reference
+    real(dp), intent(in) :: value
+    integer, intent(out) :: status
+    integer :: place, key
+    status = fmi_ok
+    if (reference >= of_parameters .and. .not. self%is_running) then
+      key = (reference - of_parameters)/2 + 1
+      call lock_texts()
+      call self%case%set_number(key, mod(reference, 2) + 1, value, status)
+      call unlock_texts()
+      if (status /= 0) self%message = self%case%message
+      if (status /= 0) status = fmi_error
+      call self%forget()
+    else if (reference >= of_inputs .and. reference < of_inputs + size(inputs) .and. abs(value) <= huge(value)) then
+      place = reference - of_inputs + 1
+      self%held(place) = value
+      self%is_held(place) = .true.
+      if (.not. associated(self%run)) return
+      place = findloc(self%run%run%inputs, place, 1)
+      if (place > 0) call self%run%set_input(place, value)
+      if (place == 0) call refuse(self, reference, status)
+    else
+      call refuse(self, reference, status)
+    end if
+  end subroutine set
+
+  !> Go on from a time by a step. `status` is fmi_discard if the run ends before, or cannot go on; `last` is the time reached.
+  subroutine step(self, from, by, status)
+    class(fmi_instance_t), intent(inout) :: self
+    real(dp), intent(in) :: from, by   !! [s]
+    integer, intent(out) :: status
+    real(dp), parameter :: rounding = 1e-9_dp
+    if (.not. self%is_running .or. abs(from - self%last) > rounding*max(by, abs(from)*1e-3_dp) .or. by < 0) then
+      self%message = 'a step must begin where the last one has ended'
+      status = fmi_error
+      return
+    end if
+    call self%run%advance(from + by - self%start, 0, status)
+    self%last = from + by
+    if (status == status_integration) then
+      call lock_texts()
+      call self%run%finish(status)
+      call unlock_texts()
+      self%message = self%run%message
+      status = fmi_discard
+    else if (self%run%run%t + self%start < from + by - rounding*by) then
+      self%message = 'the run has reached its end'
+      status = fmi_discard
+    else
+      status = fmi_ok
+    end if
+    if (status == fmi_discard) self%last = self%run%run%t + self%start
+  end subroutine step
+
+  !> Become a copy of another instance.
+  subroutine assign(self, from)
+    class(fmi_instance_t), intent(inout) :: self
+    type(fmi_instance_t), intent(in) :: from
+    self%case = from%case
+    self%start = from%start
+    self%stop = from%stop
+    self%last = from%last
+    self%held = from%held
+    self%is_held = from%is_held
+    if (.not. associated(from%run)) then
+      call self%forget()
+    else
+      if (.not. associated(self%run)) allocate (self%run)
+      call copy_run(from%run, self%run)
+    end if
+    self%is_running = from%is_running
+  end subroutine assign
+
+  !> The path of a URI file:///path or file:/path, with %20 and the like decoded; any other text is a path itself.
+  subroutine decoded(uri, path)
+    character(len=*), intent(in) :: uri
+    character(len=:), allocatable, intent(out) :: path
+    character(len=*), parameter :: digits = '0123456789abcdef', capitals = '0123456789ABCDEF'
+    integer :: i, high, low
+    if (index(uri, 'file:') /= 1) then
+      path = uri
+    else
+      path = ''
+      i = 6
+      if (index(uri, 'file://') == 1) i = 8
+      do while (i <= len(uri))
+        high = 0
+        low = 0
+        if (uri(i:i) == '%' .and. i + 2 <= len(uri)) then
+          high = max(index(digits, uri(i + 1:i + 1)), index(capitals, uri(i + 1:i + 1)))
+          low = max(index(digits, uri(i + 2:i + 2)), index(capitals, uri(i + 2:i + 2)))
+        end if
+        if (high*low > 0) then
+          path = path//achar(16*(high - 1) + low - 1)
+          i = i + 3
+        else
+          path = path//uri(i:i)
+          i = i + 1
+        end if
+      end do
+    end if
+    i = len(path)
+    do while (i > 1)
+      if (path(i:i) /= '/') exit
+      i = i - 1
+    end do
+    path = path(:i)
+  end subroutine decoded
+end module fmi_instance

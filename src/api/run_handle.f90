@@ -1,0 +1,248 @@
+!> A run that another program advances: with its rows and events in memory, and its summary.
+module run_handle
+  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+  use kinds, only: dp
+  use error_handling, only: error_t, fail, status_integration
+  use text_tools, only: next_line
+  use case_definition, only: case_t
+  use joint_places, only: n_places
+  use trace_columns, only: column_list_t, choose_columns
+  use film_files, only: provide_tables, write_film_file
+  use wear_file, only: write_wear_file
+  use result_file, only: write_text
+  use trace_files, only: trace_files_t
+  use simulation, only: run_t, run_report_t
+  use scene_inputs, only: input_t, inputs
+  use run_summary, only: summary_table
+  use certificate, only: certificate_t, make_certificate, certificate_summary, certificate_table
+  use run_progress, only: clock
+  use row_store, only: row_store_t
+  use case_handle, only: case_handle_t
+  use c_texts, only: handle_t
+  implicit none
+  private
+  public :: run_handle_t, begin_run, copy_run, summary_row_t
+
+  !> A quantity of the summary.
+  type :: summary_row_t
+    character(len=:), allocatable :: name, unit, text
+    real(dp) :: value = 0   !! not a number if it is a word
+  end type summary_row_t
+
+  type, extends(handle_t) :: run_handle_t
+    type(run_t) :: run
+    type(row_store_t) :: rows
+    type(column_list_t) :: list
+    type(summary_row_t), allocatable :: summary(:)   !! allocated when the run is finished
+    integer :: status = 0                            !! of the finished run
+    real(dp), allocatable :: now(:)                  !! all columns at the time `seen`
+    real(dp) :: seen = -huge(1.0_dp)                 !! [s]
+    type(case_t), private :: case
+    logical, private :: is_twin = .false.
+    real(dp), private :: began = 0                   !! time of `clock` [s]
+    type(run_report_t), private :: report
+    character(len=:), allocatable, private :: table, certificate_table   !! NAME.summary.csv, NAME.certificate.csv
+  contains
+    procedure :: advance
+    procedure :: look
+    procedure :: set_input
+    procedure :: finish
+    procedure :: certify
+    procedure :: save
+    procedure :: has_events
+  end type run_handle_t
+
+contains
+
+  !> Begin the run of a case, which ends at a time [s], or as its case says if that is 0. Error: a wrong case, or one whose scene
+  !> cannot be built; the handle of the case keeps the message.
+  subroutine begin_run(of, is_twin, end_time, without_rows, new, status)
+    type(case_handle_t), intent(inout) :: of
+    logical, intent(in) :: is_twin
+    real(dp), intent(in) :: end_time
+    logical, intent(in) :: without_rows    !! values are asked for at pauses, and no rows are kept
+    type(run_handle_t), pointer, intent(out) :: new
+    integer, intent(out) :: status
+    type(error_t), allocatable :: error
+    nullify (new)
+    call of%check(status)
+    if (status /= 0) return
+    allocate (new)
+    new%began = clock()
+    new%is_twin = is_twin
+    new%case = of%case
+    new%list = of%list
+    if (end_time > 0) then
+      new%case%integrator%revolutions = 0
+      new%case%integrator%crank_revolutions = 0
+      new%case%integrator%end_time = end_time
+    end if
+    if (without_rows) new%case%output%start_time = huge(1.0_dp)
+    if (is_twin .and. size(of%list%id) > 0) call choose_columns(of%case, .true., new%list, error)
+    if (.not. allocated(error)) call provide_tables(new%case, .false., .false., error)
+    if (.not. allocated(error)) call new%run%begin(new%case, is_twin, new%list, new%rows, error)
+    call of%keep(error, status)
+    if (status == 0) then
+      allocate (new%now(size(new%list%id)))
+    else
+      deallocate (new)
+    end if
+  end subroutine begin_run
+
+  !> Make a run a copy of another one; both then go on independently of each other.
+  subroutine copy_run(from, to)
+    type(run_handle_t), intent(in) :: from
+    type(run_handle_t), target, intent(inout) :: to
+    to = from
+    to%run%recorder%sink => to%rows
+  end subroutine copy_run
+
+  !> Go on to a time [s], or through a number of steps (0: no limit). `status` is -1 at a pause, 0 at the end of the run, 4 if it
+  !> cannot go on. No function with a result of deferred length is called.
+  subroutine advance(self, to, most_steps, status)
+    class(run_handle_t), intent(inout) :: self
+    real(dp), intent(in) :: to
+    integer, intent(in) :: most_steps
+    integer, intent(out) :: status
+    if (.not. (self%run%is_over .or. allocated(self%summary))) call self%run%advance(max(to, self%run%t), most_steps)
+    self%seen = -huge(1.0_dp)
+    status = -1
+    if (self%run%is_over) status = merge(0, status_integration, self%run%is_complete())
+  end subroutine advance
+
+  !> Evaluate all columns at the present time, once for each time. Error: the state is outside the model.
+  subroutine look(self, status)
+    class(run_handle_t), intent(inout) :: self
+    integer, intent(out) :: status
+    logical :: in_domain
+    status = 0
+    if (.not. abs(self%seen - self%run%t) > 0) return
+    call self%run%evaluate_row(self%now, in_domain)
+    if (in_domain) self%seen = self%run%t
+    if (.not. in_domain) status = status_integration
+  end subroutine look
+
+  !> Set an input of the run.
+  subroutine set_input(self, i, value)
+    class(run_handle_t), intent(inout) :: self
+    integer, intent(in) :: i
+    real(dp), intent(in) :: value
+    call self%run%set_input(i, value)
+  end subroutine set_input
+
+  !> End the run here, unless it has reached its end, and make its summary.
+  subroutine finish(self, status)
+    class(run_handle_t), intent(inout) :: self
+    integer, intent(out) :: status
+    type(error_t), allocatable :: error
+    type(case_t) :: case
+    integer :: i
+    if (.not. allocated(self%summary)) then
+      call self%run%finish(self%report, error)
+      case = self%case
+      do i = 1, merge(n_places, 0, self%is_twin)
+        case%joints(i)%kind = 'ideal'
+      end do
+      if (self%is_twin .and. allocated(case%notes)) deallocate (case%notes)
+      self%table = summary_table(case, self%report, clock() - self%began, self%is_twin)
+      call read_table(self%table, self%summary)
+      call self%keep(error, self%status)
+    end if
+    status = self%status
+  end subroutine finish
+
+  !> The rows of a summary as text, without its first line.
+  subroutine read_table(table, rows)
+    character(len=*), intent(in) :: table
+    type(summary_row_t), allocatable, intent(out) :: rows(:)
+    type(summary_row_t), allocatable :: found(:)
+    character(len=:), allocatable :: line
+    integer :: at, n, first, last, ios
+    allocate (found(count([(table(at:at) == achar(10), at=1, len(table))])))
+    at = index(table, achar(10)) + 1
+    n = 0
+    do while (at <= len(table))
+      call next_line(table, at, line)
+      if (line == '') cycle
+      n = n + 1
+      first = index(line, ',')
+      last = index(line, ',', back=.true.)
+      associate (row => found(n))
+        row%name = line(:first - 1)
+        row%unit = line(last + 1:)
+        row%text = line(first + 1:last - 1)
+        if (index(row%text, '"') == 1) row%text = row%text(2:len(row%text) - 1)
+        row%value = ieee_value(1.0_dp, ieee_quiet_nan)
+        if (verify(row%text, '+-.0123456789eE') > 0 .or. scan(row%text, '0123456789') == 0) cycle
+        read (row%text, *, iostat=ios) row%value
+        if (ios /= 0) row%value = ieee_value(1.0_dp, ieee_quiet_nan)
+      end associate
+    end do
+    rows = found(:n)
+  end subroutine read_table
+
+  !> Estimate the accuracy of a finished run, as --certify does; the summary has its rows afterwards. Error: the run is not done.
+  subroutine certify(self, status)
+    class(run_handle_t), intent(inout) :: self
+    integer, intent(out) :: status
+    type(error_t), allocatable :: error
+    type(certificate_t) :: certificate
+    if (.not. allocated(self%summary) .or. self%is_twin .or. allocated(self%certificate_table)) then
+      status = 2
+      self%message = 'only a finished run can be certified, once'
+      return
+    end if
+    status = self%status
+    if (status /= 0) return
+    call make_certificate(self%case, self%report, .false., certificate, error)
+    if (allocated(error)) certificate%reason = error%message
+    self%certificate_table = ''
+    if (.not. allocated(certificate%reason)) self%certificate_table = certificate_table(certificate)
+    self%table = self%table//certificate_summary(certificate)
+    call read_table(self%table, self%summary)
+    call self%keep(error, status)
+  end subroutine certify
+
+  !> Whether the command line would write a list of events.
+  pure logical function has_events(self)
+    class(run_handle_t), intent(in) :: self
+    has_events = self%case%has_contact() .and. .not. self%is_twin
+  end function has_events
+
+  !> Write the files of the command line for a finished run, except those of its case and its state: PATH.csv, PATH.summary.csv,
+  !> ... Error: a file cannot be written.
+  subroutine save(self, path, status)
+    class(run_handle_t), intent(inout) :: self
+    character(len=*), intent(in) :: path   !! folder and name
+    integer, intent(out) :: status
+    type(trace_files_t) :: files
+    type(error_t), allocatable :: error
+    integer :: i
+    if (.not. allocated(self%summary)) then
+      status = 2
+      self%message = 'only a finished run can be saved'
+      return
+    end if
+    call files%open(path, self%list, self%case%output%digits, self%has_events(), error)
+    if (.not. allocated(error)) then
+      do i = 1, self%rows%rows
+        call files%accept_row(self%rows%values(:, i))
+      end do
+      do i = 1, self%rows%events
+        call files%accept_event(self%rows%event(i))
+      end do
+      call files%file%conclude()
+      call files%close(error)
+    end if
+    if (.not. allocated(error) .and. allocated(self%report%films)) &
+      call write_film_file(path//'.film.csv', self%report%films, error)
+    if (.not. allocated(error) .and. allocated(self%report%wear)) then
+      if (size(self%report%wear) > 0) call write_wear_file(path//'.wear.csv', self%report%wear, error)
+    end if
+    if (.not. allocated(error) .and. allocated(self%certificate_table)) then
+      if (self%certificate_table /= '') call write_text(path//'.certificate.csv', self%certificate_table, error)
+    end if
+    if (.not. allocated(error)) call write_text(path//'.summary.csv', self%table, error)
+    call self%keep(error, status)
+  end subroutine save
+end module run_handle

@@ -1,0 +1,202 @@
+/* The C interface as a host uses it: two cases, a paused run with saved states and inputs, a refused case, many instances.
+ *
+ *     test_c CASES       CASES: the folder with the shipped cases */
+#include "gudgeon.h"
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int passed, failed;
+static const char *folder;
+
+static void check(int holds, const char *what) {
+  if (holds) passed++;
+  else failed++, printf("FAILED: %s\n", what);
+}
+
+static gudgeon_case *read_case(const char *name) {
+  char path[500];
+  char *text = malloc(100000);
+  snprintf(path, sizeof path, "%s/%s.nml", folder, name);
+  FILE *file = fopen(path, "r");
+  if (!file) return printf("cannot read %s\n", path), exit(1), NULL;
+  size_t length = fread(text, 1, 100000, file);
+  fclose(file);
+  gudgeon_case *it = gudgeon_case_new(text, length, name, folder);
+  free(text);
+  return it;
+}
+
+static double quantity(const gudgeon_run *run, const char *wanted, char *word) {
+  char name[100], unit[20], text[500];
+  double value;
+  for (int i = 0; i < gudgeon_quantities(run); i++) {
+    gudgeon_quantity(run, i, &value, name, sizeof name, unit, sizeof unit, text, sizeof text);
+    if (strcmp(name, wanted)) continue;
+    if (word) strcpy(word, text);
+    return value;
+  }
+  return NAN;
+}
+
+/* A run with pauses has the rows of one without, bit for bit; a state that is put back gives the same values again. */
+static void pauses(void) {
+  gudgeon_case *it = read_case("friction/coulomb_static");
+  check(gudgeon_case_set(it, "integrator.revolutions", "2") == 0, "a key is set");
+  gudgeon_run *whole = gudgeon_run_new(it, 0, 0, 0), *parts = gudgeon_run_new(it, 0, 0, 0);
+  check(gudgeon_run_advance(whole, HUGE_VAL, 0) == 2, "a time that is not finite is refused");
+  check(gudgeon_run_advance(whole, 1e300, 0) == 0, "a run reaches its end");
+  int columns = gudgeon_columns(parts);
+  double *now = calloc(columns, sizeof *now), *again = calloc(columns, sizeof *now), end = gudgeon_run_end(parts);
+  for (int i = 1; i <= 50; i++) {
+    check(gudgeon_run_advance(parts, end * i / 51, 0) == -1, "a run pauses");
+    gudgeon_run *saved = gudgeon_run_copy(parts);
+    gudgeon_run_advance(parts, end * (i + 1) / 51.5, 0);
+    gudgeon_values(parts, now);
+    gudgeon_run_assign(parts, saved);
+    check(fabs(gudgeon_run_time(parts) - end * i / 51) < 1e-15, "a state is put back");
+    gudgeon_run_advance(parts, end * (i + 1) / 51.5, 0);
+    gudgeon_values(parts, again);
+    check(!memcmp(now, again, columns * sizeof *now), "a state that is put back goes on as before");
+    gudgeon_run_free(saved);
+  }
+  while (gudgeon_run_advance(parts, 1e300, 20) == -1) continue;
+  check(gudgeon_run_finish(whole) == 0 && gudgeon_run_finish(parts) == 0, "runs are finished");
+  int64_t n, m;
+  const double *a = gudgeon_rows(whole, &n), *b = gudgeon_rows(parts, &m);
+  check(n == m && n > 1000 && !memcmp(a, b, n * columns * sizeof *a), "pauses change nothing");
+  check(gudgeon_events(whole) == gudgeon_events(parts) && gudgeon_events(whole) > 0, "events are the same");
+  char word[500];
+  quantity(whole, "status", word);
+  check(!strcmp(word, "done"), "the summary says that the run is done");
+  check(quantity(whole, "max_pin_force", NULL) == quantity(parts, "max_pin_force", NULL), "summaries are the same");
+  gudgeon_run_free(whole), gudgeon_run_free(parts), gudgeon_case_free(it), free(now), free(again);
+}
+
+/* A torque that is set to its own value changes nothing; one that changes is felt. */
+static void torques(void) {
+  gudgeon_case *it = read_case("sim_II");
+  gudgeon_case_set(it, "drive.kind", "free");
+  gudgeon_case_set(it, "integrator.end_time", "0.05");
+  gudgeon_run *a = gudgeon_run_new(it, 0, 0, 0), *b = gudgeon_run_new(it, 0, 0, 0), *c = gudgeon_run_new(it, 0, 0, 0);
+  char name[40], unit[20];
+  double value;
+  check(gudgeon_inputs(b) == 1 && gudgeon_input(b, 0, &value, name, 40, unit, 20) == 0 && !strcmp(name, "drive.torque"),
+        "the torque of a free crank is an input");
+  gudgeon_run_advance(a, 1e300, 0);
+  for (int i = 1; i < 40; i++) {
+    gudgeon_input_set(b, 0, value);
+    gudgeon_input_set(c, 0, value + 20);
+    gudgeon_run_advance(b, 0.05 * i / 40, 0);
+    gudgeon_run_advance(c, 0.05 * i / 40, 0);
+  }
+  gudgeon_run_advance(b, 1, 0), gudgeon_run_advance(c, 1, 0);
+  int64_t n, m;
+  const double *x = gudgeon_rows(a, &n), *y = gudgeon_rows(b, &m);
+  check(n == m && !memcmp(x, y, n * gudgeon_columns(a) * sizeof *x), "an input with the value that it has changes nothing");
+  gudgeon_run_finish(a), gudgeon_run_finish(c);
+  check(quantity(c, "mean_crank_speed", NULL) > quantity(a, "mean_crank_speed", NULL) * 1.01, "a torque drives the crank");
+  check(quantity(c, "max_energy_residual_relative", NULL) < 1e-4, "the work of an input is in the ledger");
+  gudgeon_run_free(a), gudgeon_run_free(b), gudgeon_run_free(c), gudgeon_case_free(it);
+}
+
+/* Wrong cases say what is wrong, and stay as they were. */
+static void refusals(void) {
+  char text[5000];
+  gudgeon_case *it = read_case("sim_I");
+  check(gudgeon_case_set(it, "joint.clearence", "1e-5") == 3, "a wrong key is refused");
+  gudgeon_message(it, text, sizeof text);
+  check(strstr(text, "did you mean clearance") != NULL, "the message names what was meant");
+  check(gudgeon_case_check(it) == 0, "a refused change leaves the case as it was");
+  gudgeon_case_set(it, "joint.clearance", "-1");
+  check(gudgeon_case_check(it) == 3 && !gudgeon_run_new(it, 0, 0, 0), "a wrong case has no run");
+  check(gudgeon_message(it, text, 12) > 30 && strlen(text) == 11, "a text is cut where it does not fit");
+  gudgeon_case_set(it, "joint.clearance", "1e-5");
+  gudgeon_case_set(it, "drive.torque_table", "/etc/passwd");
+  check(gudgeon_case_check(it) == 3, "a file outside the folder is not read");
+  gudgeon_message(it, text, sizeof text);
+  check(strstr(text, "must be a file in the folder") != NULL, "the message says so");
+  gudgeon_case_free(it);
+}
+
+/* Numbers set without texts give the bits of those set as texts. */
+static void numbers(void) {
+  int n = gudgeon_keys(), clearance = -1;
+  struct gudgeon_key *keys = calloc(n, sizeof *keys);
+  check(gudgeon_key(0, n, keys) == 0, "keys are described");
+  for (int i = 0; i < n; i++)
+    if (!strcmp(keys[i].group, "joint") && !strcmp(keys[i].name, "clearance")) clearance = i;
+  check(clearance >= 0 && !strcmp(keys[clearance].unit, "m"), "a key has a unit");
+  gudgeon_case *a = read_case("sim_I"), *b = read_case("sim_I");
+  gudgeon_case_set(a, "output.columns", "none"), gudgeon_case_set(b, "output.columns", "none");
+  for (int i = 1; i < 5; i++) {
+    char text[30];
+    snprintf(text, sizeof text, "%.17g", i * 1.1e-5);
+    gudgeon_case_set(a, "joint.clearance", text);
+    gudgeon_case_set_number(b, clearance, 0, i * 1.1e-5);
+    gudgeon_run *x = gudgeon_run_new(a, 0, 0, 0), *y = gudgeon_run_new(b, 0, 0, 0);
+    gudgeon_run_advance(x, 1e300, 0), gudgeon_run_advance(y, 1e300, 0);
+    gudgeon_run_finish(x), gudgeon_run_finish(y);
+    check(quantity(x, "max_pin_force", NULL) == quantity(y, "max_pin_force", NULL), "a number without text is the same number");
+    check(gudgeon_columns(x) == 0, "no rows are made where none are asked for");
+    gudgeon_run_free(x), gudgeon_run_free(y);
+  }
+  check(gudgeon_case_set_number(b, clearance, 0, NAN) == 3, "no number is refused");
+  gudgeon_case_free(a), gudgeon_case_free(b), free(keys);
+}
+
+/* Threads that read wrong cases get their own messages, and runs give the bits of one thread. */
+static double one_force;
+static void *thread(void *argument) {
+  long number = (long)argument, wrong = 0;
+  char key[40], text[2000];
+  for (int i = 0; i < 60; i++) {
+    gudgeon_case *it = read_case("sim_I");
+    snprintf(key, sizeof key, "joint.nothing_%ld_%d", number, i);
+    gudgeon_case_set(it, key, "1");
+    gudgeon_message(it, text, sizeof text);
+    if (!strstr(text, key + 6)) wrong++;
+    if (i % 10 == 0) {
+      gudgeon_run *run = gudgeon_run_new(it, 0, 0, 0);
+      gudgeon_run_advance(run, 1e300, 0);
+      gudgeon_run_finish(run);
+      if (quantity(run, "max_pin_force", NULL) != one_force) wrong++;
+      gudgeon_run_free(run);
+    }
+    gudgeon_case_free(it);
+  }
+  return (void *)wrong;
+}
+
+static void threads(void) {
+  gudgeon_case *it = read_case("sim_I");
+  gudgeon_run *run = gudgeon_run_new(it, 0, 0, 0);
+  gudgeon_run_advance(run, 1e300, 0), gudgeon_run_finish(run);
+  one_force = quantity(run, "max_pin_force", NULL);
+  gudgeon_run_free(run), gudgeon_case_free(it);
+  pthread_t all[8];
+  pthread_attr_t small;
+  pthread_attr_init(&small), pthread_attr_setstacksize(&small, 256 * 1024);
+  long wrong = 0;
+  for (long i = 0; i < 8; i++) pthread_create(&all[i], &small, thread, (void *)i);
+  for (int i = 0; i < 8; i++) {
+    void *found;
+    pthread_join(all[i], &found);
+    wrong += (long)found;
+  }
+  check(wrong == 0, "threads do not disturb each other");
+}
+
+int main(int count, char **arguments) {
+  if (count < 2) return printf("usage: test_c CASES\n"), 2;
+  folder = arguments[1];
+  pauses();
+  torques();
+  refusals();
+  numbers();
+  if (count < 3) threads();   /* a second argument: without, for valgrind */
+  printf("%d passed, %d failed\n", passed, failed);
+  return failed > 0;
+}

@@ -1,0 +1,261 @@
+#!/usr/bin/env python3
+"""Functional mock-up units against runs: FMPy has no complaint, outputs have the bits of the rows, and a master may stop, go back and
+change what its inputs are.
+
+    tests/test_fmu.py [--all]
+
+Needs NumPy, pandas and FMPy, and the shared library: that of the environment variable GUDGEON_LIBRARY, or else build/library. Ends
+with `N passed, N failed`; the exit status is 0 if nothing failed.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import traceback
+import zipfile
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(TOP / "scripts" / "python" / "src"))
+os.environ.setdefault("GUDGEON_LIBRARY", str(TOP / "build" / "library" / "libgudgeon.so"))
+import fmpy
+import gudgeon
+import numpy as np
+from fmpy.fmi1 import FMICallException
+from fmpy.validation import validate_fmu
+
+CASES = ["sim_I", "friction/coulomb_static", "gas/compressor"]
+ALL_CASES = [
+    "sim_I", "flores/friction_100", "sim_II_oscillating", "gas/compressor", "gas/measured", "joints/both_pins", "joints/guide_friction",
+    "elastic/engine_rod", "wear/worn_bore", "joints/piston_slap",
+]  # fmt: skip
+passed = failed = 0
+
+
+def check(holds: bool, what: str) -> None:
+    global passed, failed
+    passed, failed = passed + bool(holds), failed + (not holds)
+    if not holds:
+        print(f"FAILED: {what}")
+
+
+class Unit:
+    """A unit in a master."""
+
+    def __init__(self, path: Path, fmi: int, folder: str, stop: float | None = None, sets=(), tolerance: float | None = None) -> None:
+        self.description = fmpy.read_model_description(str(path))
+        self.reference = {v.name: v.valueReference for v in self.description.modelVariables}
+        self.outputs = [v.name for v in self.description.modelVariables if v.causality == "output"]
+        self.messages: list[str] = []
+        place = fmpy.extract(str(path), tempfile.mkdtemp(dir=folder))  # a library that is loaded must not be replaced
+        self.unit = fmpy.instantiate_fmu(place, self.description, "CoSimulation", logger=self.log)
+        self.fmi = fmi
+        if fmi == 2:
+            self.unit.setupExperiment(startTime=0, stopTime=stop, tolerance=tolerance)
+            self.unit.enterInitializationMode()
+        else:
+            self.unit.enterInitializationMode(startTime=0, stopTime=stop, tolerance=tolerance)
+        for name, value in sets:
+            self.set(name, value)
+        self.unit.exitInitializationMode()
+
+    def log(self, *arguments) -> None:
+        self.messages.append(arguments[-1].decode())
+
+    def set(self, name: str, value: float) -> None:
+        (self.unit.setReal if self.fmi == 2 else self.unit.setFloat64)([self.reference[name]], [value])
+
+    def get(self, *names: str) -> np.ndarray:
+        wanted = [self.reference[name] for name in names or self.outputs]
+        return np.array((self.unit.getReal if self.fmi == 2 else self.unit.getFloat64)(wanted))
+
+    def free(self) -> None:
+        self.unit.terminate()
+        self.unit.freeInstance()
+
+
+def same(a: np.ndarray, b: np.ndarray) -> bool:
+    return bool(np.array_equal(a, b, equal_nan=True))
+
+
+def bits(name: str, fmi: int, folder: str) -> None:
+    """A unit is valid, and its outputs at the times of rows are the rows, bit for bit."""
+    case = gudgeon.read(TOP / "cases" / f"{name}.nml")
+    path = gudgeon.fmu(case, Path(folder) / "unit.fmu", fmi)
+    check(validate_fmu(str(path)) == [], f"{name}, FMI {fmi}: {validate_fmu(str(path))}")
+    end = case.begin().end if name not in ("joints/piston_slap", "wear/worn_bore") else 0.05
+    run = case.run(end=end)
+    unit = Unit(path, fmi, folder, end)
+    t = run["time"]
+    columns = [run.names.index(output) for output in unit.outputs]
+    wrong = 0
+    for i in range(len(t) - 1):
+        if i:
+            unit.unit.doStep(t[i - 1], t[i] - t[i - 1])
+        wrong += not same(unit.get(), run._rows[i, columns])
+    check(wrong == 0 and len(t) > 100, f"{name}, FMI {fmi}: {wrong} of {len(t)} rows differ")
+    unit.free()
+    step, spans = 1.37 * t[-1] / (len(t) - 1), np.ptp(run._rows, axis=0)[columns]
+    unit = Unit(path, fmi, folder, end)
+    stepper = case.begin(end=end)
+    worst = 0.0
+    for i in range(60):
+        unit.unit.doStep(i * step, step)
+        stepper.advance(i * step + step)
+        values = stepper.values
+        apart = np.abs(unit.get() - [values[name] for name in unit.outputs])
+        worst = max(worst, float(np.nanmax(apart / np.where(spans > 0, spans, 1))))
+    check(worst < 1e-9, f"{name}, FMI {fmi}: another step, {worst}")
+    unit.free()
+
+
+def parameters(fmi: int, folder: str) -> None:
+    """Parameters, refusals, and the end of a run."""
+    case = gudgeon.read(TOP / "cases" / "sim_I.nml")
+    path = gudgeon.fmu(case, Path(folder) / "unit.fmu", fmi, ["time", "pin_force_x", "piston_position"])
+    unit = Unit(path, fmi, folder, 0.02, [("joint.clearance", 3e-5), ("mechanism.rod_com[1]", 0.06)])
+    check(unit.outputs == ["piston_position", "pin_force_x"], f"chosen outputs: {unit.outputs}")
+    check(unit.get("joint.clearance")[0] == 3e-5, "a parameter is read back")
+    changed = case.set({"joint.clearance": 3e-5, "mechanism.rod_com": (0.06, 0.0)}).begin(end=0.02)
+    unit.unit.doStep(0, 0.01)
+    changed.advance(0.01)
+    check(same(unit.get(), np.array([changed.values[name] for name in unit.outputs])), f"FMI {fmi}: parameters are those of the case")
+    try:
+        unit.set("joint.clearance", 1e-5)
+        check(False, "a parameter of a running unit is refused")
+    except FMICallException:
+        check(fmi == 3 or any("cannot be used here" in text for text in unit.messages), f"the master is told: {unit.messages}")
+    try:
+        unit.unit.doStep(0.005, 0.001)
+        check(False, "a step from another time is refused")
+    except FMICallException:
+        check(fmi == 3 or any("must begin where" in text for text in unit.messages), f"the master is told: {unit.messages}")
+    if fmi == 2:
+        try:
+            unit.unit.doStep(0.01, 0.02)
+            check(False, "a step beyond the end is discarded")
+        except FMICallException as error:
+            check(error.status == 2, f"status of a step beyond the end: {error.status}")
+        import ctypes
+
+        value = ctypes.c_double()
+        unit.unit.fmi2GetRealStatus(unit.unit.component, 2, ctypes.byref(value))
+        check(abs(value.value - 0.02) < 1e-12, f"last successful time {value.value}")
+    unit.free()
+    messages: list[str] = []
+    wrong = [("joint.clearance", -1.0)]
+    try:
+        made = Unit.__new__(Unit)
+        made.messages = messages
+        made.__init__(path, fmi, folder, 0.02, wrong)  # type: ignore[misc]
+        check(False, "a wrong parameter is refused")
+    except FMICallException:
+        check(fmi == 3 or any("must be > 0" in text for text in made.messages), f"the master is told what is wrong: {made.messages}")
+    with zipfile.ZipFile(path) as file:
+        check("documentation/index.html" in file.namelist() and len([n for n in file.namelist() if n.endswith(".so")]) == 1, "files")
+
+
+def states(fmi: int, folder: str) -> None:
+    """A saved state goes on with the same bits; many instances take no memory."""
+    case = gudgeon.read(TOP / "cases" / "friction/coulomb_static.nml")
+    path = gudgeon.fmu(case, Path(folder) / "unit.fmu", fmi)
+    unit = Unit(path, fmi, folder, 0.1)
+    unit.unit.doStep(0, 0.02)
+    get = unit.unit.getFMUState if hasattr(unit.unit, "getFMUState") else unit.unit.getFMUstate
+    put = unit.unit.setFMUState if hasattr(unit.unit, "setFMUState") else unit.unit.setFMUstate
+    state = get()
+    unit.unit.doStep(0.02, 0.03)
+    first = unit.get()
+    put(state)
+    unit.unit.doStep(0.02, 0.03)
+    check(same(first, unit.get()), f"FMI {fmi}: a state that is put back goes on as before")
+    (unit.unit.freeFMUState if hasattr(unit.unit, "freeFMUState") else unit.unit.freeFMUstate)(state)
+    unit.unit.reset()
+    unit.free()
+
+    def resident() -> int:
+        return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+    sizes = []
+    place = fmpy.extract(str(path), tempfile.mkdtemp(dir=folder))
+    for _ in range(3):
+        for _ in range(40):
+            one = fmpy.instantiate_fmu(place, unit.description, "CoSimulation")
+            if fmi == 2:
+                one.setupExperiment(startTime=0, stopTime=0.1)
+                one.enterInitializationMode()
+            else:
+                one.enterInitializationMode(startTime=0, stopTime=0.1)
+            one.exitInitializationMode()
+            one.doStep(0, 0.001)
+            one.terminate()
+            one.fmi2FreeInstance(one.component) if fmi == 2 else one.fmi3FreeInstance(one.component)
+        sizes.append(resident())
+    check(sizes[2] - sizes[1] < 1e6, f"FMI {fmi}: memory grows: {sizes}")
+
+
+def motor(folder: str) -> None:
+    """The torque of drive/motor, given by a master that holds it between steps: the error halves with the step."""
+    case = gudgeon.read(TOP / "cases" / "drive/motor.nml")
+    table = np.loadtxt(TOP / "cases" / "drive/motor.csv", delimiter=",", skiprows=2)
+    end = 0.05
+    want = case.run(end=end)
+    plain = case.set({"drive.torque_table": None})
+    path = gudgeon.fmu(plain, Path(folder) / "motor.fmu")
+    from_table = case.begin(end=end)
+    errors = []
+    for steps in (100, 200, 400):
+        unit = Unit(path, 2, folder, end)
+        for i in range(steps):
+            # the torque of the table at the present speed, as the program interpolates it
+            unit.set("drive.torque", _torque(table, unit.get("crank_speed")[0]))
+            unit.unit.doStep(i * end / steps, end / steps)
+        errors.append(abs(unit.get("crank_speed")[0] - want["crank_speed"][-1]) / np.ptp(want["crank_speed"]))
+        unit.free()
+    del from_table
+    ratios = [errors[i] / errors[i + 1] for i in range(2)]
+    check(all(1.6 < ratio < 2.5 for ratio in ratios), f"the error of a held torque halves with the step: {errors}")
+
+
+def _torque(table: np.ndarray, speed: float) -> float:
+    from scipy.interpolate import PchipInterpolator
+
+    return float(PchipInterpolator(table[:, 0], table[:, 1])(speed))
+
+
+def command(folder: str) -> None:
+    """gudgeon-fmu as a command."""
+    environment = {**os.environ, "PYTHONPATH": str(TOP / "scripts" / "python" / "src")}
+    call = [sys.executable, "-m", "gudgeon._fmu", str(TOP / "cases" / "sim_I.nml"), "-o", folder, "--fmi", "3", "--columns", "pin_force_x"]
+    done = subprocess.run(call, capture_output=True, text=True, env=environment)
+    check(done.returncode == 0 and Path(folder, "sim_I.fmu").is_file(), f"gudgeon-fmu: {done.stderr}")
+    done = subprocess.run([*call[:-1], "nothing"], capture_output=True, text=True, env=environment)
+    check(done.returncode == 1 and "no such column" in done.stderr, f"a wrong column: {done.stderr}")
+    case = gudgeon.read(TOP / "cases" / "sim_I.nml").set({"case.title": "<b> & 'x'"})
+    path = gudgeon.fmu(case, Path(folder) / "title.fmu")
+    check(fmpy.read_model_description(str(path)).description == "<b> & 'x'", "titles are escaped")
+
+
+def main() -> int:
+    names = ALL_CASES if "--all" in sys.argv else CASES
+    with tempfile.TemporaryDirectory() as folder:
+        for fmi in (2, 3):
+            parts = [lambda name=name: bits(name, fmi, folder) for name in names]
+            parts += [lambda: parameters(fmi, folder), lambda: states(fmi, folder)]
+            for part in parts:
+                try:
+                    part()
+                except Exception:
+                    check(False, traceback.format_exc())
+        for part in (motor, command):
+            try:
+                part(folder)
+            except Exception:
+                check(False, traceback.format_exc())
+    print(f"{passed} passed, {failed} failed")
+    return failed > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

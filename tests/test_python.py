@@ -1,0 +1,345 @@
+#!/usr/bin/env python3
+"""The Python package against the program: the same cases give the same bits, whatever the way in.
+
+    tests/test_python.py PROGRAM [--all]
+
+Needs NumPy and pandas, and the shared library: that of the environment variable GUDGEON_LIBRARY, or else build/library.
+With --all every shipped case is compared. Ends with `N passed, N failed`; the exit status is 0 if nothing failed.
+"""
+
+import math
+import os
+import pickle
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import traceback
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(TOP / "scripts" / "python" / "src"))
+os.environ.setdefault("GUDGEON_LIBRARY", str(TOP / "build" / "library" / "libgudgeon.so"))
+import gudgeon
+import numpy as np
+
+#: One case of each kind that ends soon; tables of films take too long here.
+CASES = [
+    "sim_I", "sim_V", "sim_II_oscillating", "flores/friction_100", "friction/lugre", "gas/compressor", "gas/measured",
+    "joints/both_pins", "joints/piston_slap", "elastic/engine_rod", "drive/motor", "drive/start_up", "wear/worn_bore",
+]  # fmt: skip
+passed = failed = 0
+
+
+def check(holds: bool, what: str) -> None:
+    global passed, failed
+    passed, failed = passed + bool(holds), failed + (not holds)
+    if not holds:
+        print(f"FAILED: {what}")
+
+
+def refuses(kind: type, words: str, action) -> None:
+    """Check that an action raises an error whose text has these words."""
+    try:
+        action()
+    except kind as error:
+        check(words in str(error), f"{words!r} is in {str(error)!r}")
+    else:
+        check(False, f"{kind.__name__}: {words}")
+
+
+def case_of(name: str) -> gudgeon.Case:
+    return gudgeon.read(TOP / "cases" / f"{name}.nml")
+
+
+def same_bits(a: np.ndarray, b: np.ndarray) -> bool:
+    """Equal, but for the sign of a zero, which files do not have."""
+    return a.shape == b.shape and (a + 0.0).tobytes() == (b + 0.0).tobytes()
+
+
+def against_program(program: str, names: list[str]) -> None:
+    """Columns, events, summary and files of runs are those of the command line; the same with pauses."""
+    for name in names:
+        with tempfile.TemporaryDirectory() as folder:
+            path = TOP / "cases" / f"{name}.nml"
+            done = subprocess.run([program, "-q", "-o", folder, "-s", "output.digits=17", str(path)], capture_output=True, text=True)
+            base = Path(folder) / Path(name).name
+            if not Path(f"{base}.csv").is_file():
+                check(False, f"{name}: {done.stderr}")
+                continue
+            want = gudgeon.load(base)
+            case = case_of(name).set({"output.digits": 17})
+            try:
+                run = case.run()
+            except gudgeon.RunError as error:
+                run = error.run
+            check(run.names == want.names and run.units == want.units, f"{name}: columns")
+            check(same_bits(run._rows, want._rows), f"{name}: rows are those of the command line, bit for bit")
+            check(run.events.astype(str).equals(want.events.astype(str)), f"{name}: events")
+            passing = ("wall_time", "compiler", "compiler_options")
+            differ = [q for q in {*run.summary, *want.summary} if q not in passing and run.summary.get(q) != want.summary.get(q)]
+            check(not differ, f"{name}: quantities {differ} of the summary")
+            stepper = case.begin()
+            for i in range(1, 314):
+                stepper.advance(stepper.end * i / 314)
+            while not stepper.advance(1e300):
+                pass
+            check(same_bits(stepper.finish()._rows, want._rows), f"{name}: 313 pauses change nothing")
+            run.save(Path(folder) / "saved")
+            for suffix in (".csv", ".events.csv", ".wear.csv", ".resolved.nml"):
+                if Path(f"{base}{suffix}").is_file():
+                    both = [Path(part, base.name + suffix).read_bytes() for part in (folder, f"{folder}/saved")]
+                    check(both[0] == both[1], f"{name}{suffix} is saved as the command line writes it")
+
+
+def cases() -> None:
+    """Reading, changing, writing and refusing cases."""
+    case = case_of("sim_I")
+    check(gudgeon.Case.from_text(case.to_nml()) == case, "a case is read back from its own text")
+    check(gudgeon.Case.from_text(case.to_nml(complete=True)).run().status == "done", "so is the complete one")
+    check(pickle.loads(pickle.dumps(case)) == case, "a case is pickled as its text")
+    other = case.set({"joint.clearance": 3e-5}, drive={"torque": 3})
+    check(other.diff(case) == {"joint.clearance": (3e-5, 2e-5), "drive.torque": (3.0, 0.0)}, f"diff: {other.diff(case)}")
+    check(case.joint.clearance == 2e-5, "a changed copy leaves the case")
+    case.integrator.end_time = 0.01
+    check(not case.is_given(gudgeon.keys["integrator.revolutions"]) and case.run().summary["simulated_time"] == 0.01, "ends: the last one counts")
+    case.integrator.revolutions = 1
+    check(case.check() == [] and case["integrator.end_time"] == 0, "also when it is set the other way round")
+    del case.joint.clearance
+    refuses(gudgeon.CaseError, "&joint clearance", case.check)
+    case.add("guide", coefficient=0.1, v0=1e-3, v1=1e-2)
+    check("guide" in case, "a group is added")
+    case.remove("guide")
+    check("guide" not in case and not case.guide, "a group is removed")
+    check("clearance" in dir(case.joint) and "crank_pin" in dir(case) and "joint" in dir(case.crank_pin), "names are completed")
+    check("radial clearance" in case.joint.__doc__ and "> 0" in case.joint.__doc__, "help has meaning and limits")
+    refuses(KeyError, "did you mean joint.clearance?", lambda: case["joint.clearence"])
+    refuses(AttributeError, "did you mean clearance?", lambda: setattr(case.joint, "clearence", 1))
+    refuses(AttributeError, "did you mean joint?", lambda: case.jiont)
+    refuses(gudgeon.CaseError, "must be one of", lambda: setattr(case.contact, "law", "herz"))
+    refuses(gudgeon.CaseError, "must be a whole number", lambda: setattr(case.integrator, "max_order", 1.5))
+    refuses(gudgeon.CaseError, "1e-30", lambda: setattr(case.joint, "clearance", math.nan))
+    refuses(gudgeon.CaseError, "must be a file in the folder", lambda: case.set({"drive.torque_table": "/etc/passwd"}).check())
+    refuses(gudgeon.CaseError, "must be a file in the folder", lambda: case.set({"drive.torque_table": "../x.csv"}).check())
+    refuses(gudgeon.CaseError, "has no folder", lambda: gudgeon.Case.from_text(case_of("drive/motor").to_nml()).check())
+    try:
+        case_of("sim_I").set({"joint.clearance": -1}).check()
+    except gudgeon.CaseError as error:
+        check(error.key == "joint.clearance", f"an error names its key: {error.key}")
+    key = gudgeon.keys["contact.restitution"]
+    check(key.bounds == (0, 1, True, True) or key.bounds[:2] == (0, 1), f"bounds: {key.bounds}")
+    long = [k.name for k in gudgeon.keys.values() if len(k.meaning) > 250 or len(", ".join(k.words)) > 500]
+    check(len(gudgeon.keys) > 200 and not long, f"no declaration is cut: {long}")
+    check(gudgeon.template("film").run(end=0.001).status == "done", "a template runs")
+    check({c.name for c in case_of("sim_I").columns} == set(case_of("sim_I").run(end=0.001).names), "columns are known before the run")
+
+
+def runs() -> None:
+    """What a run gives, how it stops, and that its memory is safe."""
+    run = case_of("sim_I").run(ideal_twin=True)
+    check(not run["time"].flags.writeable and run.pin_force_x is not None, "columns are read-only views")
+    column = run["piston_position"]
+    before = column.copy()
+    twin = run.twin
+    del run
+    case_of("sim_V").run(end=0.05)
+    check(same_bits(np.array(column), before), "a column keeps its memory")
+    check(twin is not None and "eccentricity_x" not in twin.names, "the twin has no clearance")
+    run = case_of("sim_I").run()
+    refuses(KeyError, "did you mean pin_force_x?", lambda: run["pin_forse_x"])
+    refuses(AttributeError, "no column", lambda: run.nothing)
+    check(list(run.to_pandas().columns) == run.names and run.units["pin_force_x"] == "N", "a table of pandas")
+    check(abs(run.at(run["time"][100])["crank_angle"] - run["crank_angle"][100]) < 1e-12, "values at a time")
+    check(abs(run.at(crank_angle_deg=90)["crank_angle"] - math.pi / 2) < 1e-6, "values at a crank angle")
+    cycle = run.cycle()
+    turn = abs(cycle["crank_angle"][-1] - cycle["crank_angle"][0])
+    check(abs(turn / (2 * math.pi) - round(turn / (2 * math.pi))) < 0.01, f"the last cycle turns whole revolutions: {turn}")
+    check("<svg" in run._repr_html_() and "sim_I" in run._repr_html_(), "a run shows itself")
+    title = case_of("sim_I")
+    title.name = "<script>"
+    check("<script>" not in title.run(end=0.001)._repr_html_(), "names are escaped")
+    short = case_of("sim_I").run(until=0.01)
+    check(short["time"][-1] <= 0.01 and "interrupted" in short.status and same_bits(short._rows[-5], run._rows[len(short) - 5]), "until")
+    shares: list[float] = []
+    case_of("sim_I").run(progress=shares.append)
+    check(shares == sorted(shares) and shares[-1] == 1, "progress")
+    long = case_of("sim_V").set({"integrator.revolutions": 10000}).set({"output.columns": "none"})
+    began = time.monotonic()
+    refuses(TimeoutError, "more than", lambda: long.run(timeout=0.1))
+    check(time.monotonic() - began < 5, "a timeout ends a run")
+    threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    began = time.monotonic()
+    try:
+        long.run()
+        check(False, "Ctrl-C is not lost")
+    except KeyboardInterrupt as error:
+        check(time.monotonic() - began < 3 and error.run.summary["simulated_time"] > 0, "Ctrl-C keeps the run so far")
+    limited = case_of("sim_V").set({"integrator.max_steps": 50})
+    try:
+        limited.run()
+        check(False, "a run that cannot go on raises RunError")
+    except gudgeon.RunError as error:
+        check("steps" in str(error) and len(error.run) > 0, f"RunError has the run: {error}")
+    certificate = case_of("sim_I").certify()
+    check(3 < certificate.digits < 12 and certificate.until > 0.01, f"a certificate: {certificate.digits}")
+
+
+def steps() -> None:
+    """Saved states and inputs."""
+    for name in ("sim_I", "flores/friction_100", "gas/compressor", "wear/worn_bore"):
+        for method in ("adams", "radau", "auto"):
+            stepper = case_of(name).set({"integrator.method": method}).begin()
+            end = min(stepper.end, 0.05)
+            stepper.advance(0.4 * end)
+            saved = stepper.snapshot()
+            stepper.advance(0.5 * end)
+            first = stepper.values
+            stepper.restore(saved)
+            check(stepper.t == 0.4 * end, f"{name}, {method}: the time is put back")
+            stepper.advance(0.5 * end)
+            check(np.array_equal([*first.values()], [*stepper.values.values()], equal_nan=True), f"{name}, {method}: the same values")
+    free = case_of("sim_I").set(drive={"kind": "free"})
+    tight = free.set({"integrator.relative_tolerance": 1e-9, "integrator.method": "adams"})
+    smooth, cut = tight.begin(end=0.02), tight.begin(end=0.02)
+    loose = free.set({"integrator.relative_tolerance": 1e-11, "integrator.method": "adams"}).begin(end=0.02)
+    for i in range(1, 501):
+        cut.inputs["drive.torque"] = 1e-12 * i  # new values, to be felt nowhere
+        cut.advance(0.02 * i / 500)
+    smooth.advance(1)
+    loose.advance(1)
+    error = np.abs(smooth.finish()["crank_speed"] - loose.finish()["crank_speed"]).max()
+    apart = np.abs(smooth.finish()["crank_speed"] - cut.finish()["crank_speed"]).max()
+    check(apart < 5 * max(error, 1e-9), f"500 cuts: {apart}, own error {error}")
+    held = case_of("sim_I").set(drive={"kind": "constant_speed"}).begin(end=0.05)
+    check([*held.inputs] == ["drive.crank_speed"], f"a prescribed speed is an input: {held.inputs}")
+    start = held.inputs["drive.crank_speed"]
+    held.advance(0.01)
+    held.inputs["drive.crank_speed"] = 1.1 * start
+    held.advance(0.02)
+    middle = held.values
+    held.advance(0.03)
+    check(abs(middle["crank_speed"] - 1.1 * start) < 1e-9 * start, "a ramp reaches its value")
+    check(abs(held.values["crank_speed"] - 1.1 * start) < 1e-9 * start and held.values["crank_acceleration"] == 0, "and ends there")
+    turned = start * 0.01 + 1.05 * start * 0.01 + 1.1 * start * 0.01
+    check(abs(held.values["crank_angle"] - held.run["crank_angle"][0] - turned) < 1e-9 * turned, "the angle is its integral")
+    check(abs(held.finish().summary["max_energy_residual_relative"]) < 1e-5, "the ledger of energy is kept")
+    outside = case_of("sim_I").set(cylinder_pressure={"kind": "external", "bore": 0.07, "pressure": 2e5})
+    stepper = outside.begin(end=0.02)
+    check("cylinder_pressure" in stepper.inputs and stepper.inputs["cylinder_pressure"] == 2e5, "a pressure from outside is an input")
+    stepper.advance(0.01)
+    stepper.inputs["cylinder_pressure"] = 5e5
+    stepper.advance(0.015)
+    area = math.pi / 4 * 0.07**2
+    check(abs(stepper.values["gas_force"] - (5e5 - 101325) * area) < 1e-6, "the pressure acts on the piston")
+    check(stepper.finish().summary["max_energy_residual_relative"] < 1e-5, "its work is in the ledger")
+    refuses(KeyError, "there are: ", lambda: stepper.inputs.__setitem__("nothing", 1))
+    refuses(ValueError, "finite", lambda: stepper.inputs.__setitem__("cylinder_pressure", math.inf))
+
+
+def sweeps() -> None:
+    """Designs, their order whatever the threads, errors, and that a sweep that was stopped goes on."""
+    case = case_of("sim_I").set({"integrator.revolutions": 1})
+    design = {"joint.clearance": np.linspace(1e-5, 4e-5, 5), "friction.coefficient": [0.05, 0.1]}
+    table = gudgeon.sweep(case, design, workers=2)
+    check(len(table) == 10 and (table["status"] == "done").all(), "all runs are done")
+    for row in (0, 7):
+        alone = case.set({name: table[name][row] for name in design}).run(columns="none")
+        check(alone.summary["max_pin_force"] == table["max_pin_force"][row], f"row {row} has the bits of a run alone")
+    check(gudgeon.sweep(case, design, workers=1).equals(table), "threads change nothing")
+    table = gudgeon.sweep(case, {"joint.clearance": [1e-5, -1.0, 2e-5]}, reduce=lambda run: {"top": run["piston_position"].max()})
+    check(list(table["status"] == "done") == [True, False, True] and "must be > 0" in table["status"][1], "a wrong row says why")
+    check(table["top"][2] > 0.1, "reduce has the rows of the run")
+    refuses(RuntimeError, "row 1", lambda: gudgeon.sweep(case, {"joint.clearance": [1e-5, -1.0]}, errors="raise"))
+    refuses(RuntimeError, "reduce, row 0", lambda: gudgeon.sweep(case, {"joint.clearance": [1e-5]}, reduce=lambda run: run["nothing"]))
+    refuses(KeyError, "did you mean", lambda: gudgeon.sweep(case, {"joint.clearence": [1]}))
+    table = gudgeon.sweep(case, np.array([[1e-5, 0.1], [2e-5, 0.2]]), names=["joint.clearance", "friction.coefficient"], keep=["contacts"])
+    check(list(table.columns) == ["joint.clearance", "friction.coefficient", "status", "contacts"], "an array with names")
+
+
+def threads() -> None:
+    """Messages and bits in eight threads."""
+    alone = case_of("sim_I").run(end=0.01, columns="none").summary["max_pin_force"]
+    wrong: list[str] = []
+
+    def work(number: int) -> None:
+        case = case_of("sim_I")
+        for i in range(100):
+            name = f"nothing_{number}_{i}"
+            try:
+                gudgeon.Case.from_text(f"&mechanism {name} = 1 /").check()
+            except gudgeon.CaseError as error:
+                if name not in str(error):
+                    wrong.append(str(error))
+            if i % 10 == 0 and case.run(end=0.01, columns="none").summary["max_pin_force"] != alone:
+                wrong.append("other bits")
+
+    all_of_them = [threading.Thread(target=work, args=(i,)) for i in range(8)]
+    for thread in all_of_them:
+        thread.start()
+    for thread in all_of_them:
+        thread.join()
+    check(not wrong, f"threads do not disturb each other: {wrong[:3]}")
+
+
+def pages() -> None:
+    """The page of a run of this process has its title, its case and its largest force."""
+    run = case_of("sim_V_oscillating").run(end=0.02, ideal_twin=True)
+    with tempfile.TemporaryDirectory() as folder:
+        text = run.report(Path(folder) / "run.html").read_text()
+    check(str(run.case.case.title) in text and "&lubrication" in text.replace("&amp;", "&"), "the page of a run has its title and its case")
+    largest = np.hypot(run["pin_force_x"], run["pin_force_y"]).max()
+    found = re.search(r'"pin_force": ([-+0-9.e]+)', text)
+    check(found is not None and abs(float(found[1]) / largest - 1) < 1e-12, f"the page of a run has its largest force: {found}, {largest}")
+
+
+def memory() -> None:
+    """Resident memory does not grow over many instances."""
+
+    def resident() -> int:
+        return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+    case = case_of("sim_I")
+    sizes = []
+    for _ in range(3):
+        for _ in range(150):
+            stepper = case.begin(end=0.002)
+            stepper.advance(0.001)
+            saved = stepper.snapshot()
+            stepper.advance(0.002)
+            stepper.restore(saved)
+            stepper.finish()
+        sizes.append(resident())
+    check(sizes[2] - sizes[1] < 1e6, f"memory grows: {sizes}")
+
+
+def writes_nowhere(program: str) -> None:
+    """A run in Python writes no file."""
+    with tempfile.TemporaryDirectory() as folder:
+        code = f"import gudgeon; gudgeon.read({str(TOP / 'cases' / 'sim_I.nml')!r}).run(end=0.001)"
+        environment = {**os.environ, "HOME": folder, "XDG_CACHE_HOME": folder, "PYTHONDONTWRITEBYTECODE": "1"}
+        environment["PYTHONPATH"] = str(TOP / "scripts" / "python" / "src")
+        done = subprocess.run([sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, text=True)
+        check(done.returncode == 0 and not done.stdout and not done.stderr, f"nothing is printed: {done.stdout}{done.stderr}")
+        check(not list(Path(folder).iterdir()), f"nothing is written: {list(Path(folder).iterdir())}")
+
+
+def main() -> int:
+    program = os.path.abspath(sys.argv[1])
+    names = CASES
+    if "--all" in sys.argv:
+        found = sorted((TOP / "cases").rglob("*.nml"))
+        names = [str(p.relative_to(TOP / "cases").with_suffix("")) for p in found if "studies" not in p.parts]
+    for part in (lambda: against_program(program, names), cases, runs, steps, sweeps, threads, pages, memory, lambda: writes_nowhere(program)):
+        try:
+            part()
+        except Exception:
+            check(False, traceback.format_exc())
+    print(f"{passed} passed, {failed} failed")
+    return failed > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

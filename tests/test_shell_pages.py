@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""What follows from the declarations: the JSON Schema of cases, completion in shells, and the manual page.
+
+    tests/test_shell_pages.py PROGRAM
+
+Needs f90nml and jsonschema. Ends with `N passed, N failed`; the exit status is 0 if nothing failed.
+"""
+
+import json
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import f90nml
+import jsonschema
+
+TOP = Path(__file__).resolve().parent.parent
+passed = failed = 0
+
+#: Changes of simulation I that the schema refuses: group, key, value.
+WRONG = [
+    ("mechanism", "rod_length", -0.2), ("mechanism", "rod_length", "long"), ("mechanism", "rod_com", [1.0]), ("mechanism", "rod_lenght", 1.0),
+    ("mechanism", "gravity_angle_deg", 1e9), ("drive", "kind", "fast"), ("drive", "torque", True), ("initial", "crank_speed", "x"),
+    ("joint", "kind", 1), ("joint", "clearance", 0.0), ("joint", "clearance", [1e-5, 2e-5]), ("contact", "restitution", 1.5),
+    ("contact", "law", "herz"), ("integrator", "method", "euler"), ("integrator", "max_order", 1.5), ("integrator", "max_order", 99),
+    ("integrator", "relative_tolerance", 0.5), ("output", "digits", 40), ("output", "every_step", "yes"), ("lubrication", "viscosity", -1.0),
+]  # fmt: skip
+
+
+def check(holds: bool, what: str) -> None:
+    global passed, failed
+    passed, failed = passed + bool(holds), failed + (not holds)
+    if not holds:
+        print(f"FAILED: {what}")
+
+
+def output(*command: str) -> str:
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+
+def as_json(path: Path) -> dict:
+    return json.loads(json.dumps(f90nml.read(path).todict()))
+
+
+def schema(program: str) -> None:
+    validator = jsonschema.Draft202012Validator(json.loads(output(program, "--reference", "schema")))
+    validator.check_schema(validator.schema)
+    cases = [path for path in sorted((TOP / "cases").rglob("*.nml")) if "&mechanism" in path.read_text()]
+    for path in cases:
+        errors = [f"{list(error.absolute_path)}: {error.message[:80]}" for error in validator.iter_errors(as_json(path))]
+        check(not errors, f"{path.relative_to(TOP)} is valid: {errors[:2]}")
+    check(len(cases) > 60, f"shipped cases: {len(cases)}")
+    for group, key, value in WRONG:
+        case = as_json(TOP / "cases" / "sim_I.nml")
+        case[group][key] = value
+        check(not validator.is_valid(case), f"refused: {group}.{key} = {value}")
+    case = as_json(TOP / "cases" / "sim_I.nml")
+    del case["mechanism"]["rod_length"]
+    check(not validator.is_valid(case) and not validator.is_valid({"nothing": {}}), "a required key, and an unknown group")
+
+
+def completion(program: str) -> None:
+    script = output(program, "--completion", "bash")
+    for line, wanted in (
+        ("gudgeon --se", "--set"), ("gudgeon -s joint.ki", "joint.kind=clearance"), ("gudgeon -s drive.torque", "drive.torque="),
+        ("gudgeon --accuracy d", "draft"), ("gudgeon --template=f", "film"), ("gudgeon --reference sch", "schema"),
+        ("gudgeon cases/sim_VI", "cases/sim_VI.nml"), ("gudgeon sw", "sweep"),
+    ):  # fmt: skip
+        words = shlex.split(line.replace("=", " = "))
+        setup = f"COMP_LINE={shlex.quote(line)}; COMP_POINT={len(line)}; COMP_WORDS=({' '.join(map(shlex.quote, words))}); COMP_CWORD={len(words) - 1}"
+        done = subprocess.run(["bash", "-c", f"compopt() {{ :; }}\n{script}\n{setup}; _gudgeon; printf '%s\\n' \"${{COMPREPLY[@]}}\""],
+                              capture_output=True, text=True, cwd=TOP)  # fmt: skip
+        check(wanted in done.stdout.split(), f"{line!r} completes {wanted}: {done.stdout[:200]}{done.stderr}")
+    check("-l accuracy -s a -x -a" in output(program, "--completion", "fish"), "fish")
+    check(output(program, "--completion", "zsh").startswith("#compdef gudgeon"), "zsh")
+    done = subprocess.run([program, "--completion", "csh"], capture_output=True, text=True)
+    check(done.returncode == 2 and "must be bash, zsh or fish" in done.stderr, done.stderr)
+
+
+def manual_page(program: str) -> None:
+    page = output(program, "--man")
+    with tempfile.NamedTemporaryFile("w", suffix=".1") as file:
+        file.write(page)
+        file.flush()
+        if shutil.which("groff"):
+            done = subprocess.run(["groff", "-man", "-Tutf8", "-wall", file.name], capture_output=True, text=True)
+            check(done.returncode == 0 and not done.stderr, f"groff: {done.stderr[:300]}")
+        if shutil.which("mandoc"):
+            done = subprocess.run(["mandoc", "-Tlint", file.name], capture_output=True, text=True)
+            check(done.returncode == 0, f"mandoc: {done.stdout[:300]}")
+    for word in (".SH OPTIONS", ".SH EXIT STATUS", ".SH FILES", r"\-\-certify"):
+        check(word in page, f"the manual page has {word}")
+
+
+def main() -> int:
+    program = sys.argv[1]
+    schema(program)
+    completion(program)
+    manual_page(program)
+    print(f"{passed} passed, {failed} failed")
+    return failed > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
