@@ -59,12 +59,12 @@ contains
       call say(short_template(options%kind), status)
     else if (options%template) then
       call say(template(), status)
-    else if (options%reference == 'oils') then
-      call say(oils_reference(), status)
     else if (options%manual) then
       call say(manual_text(), status)
     else if (options%completion /= '') then
       call say(completion_text(options%completion), status)
+    else if (options%reference == 'oils') then
+      call say(oils_reference(), status)
     else if (options%reference == 'results') then
       call say(results_reference(), status)
     else

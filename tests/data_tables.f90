@@ -1,9 +1,9 @@
-!> Tables from the folder data.
+!> Tables of numbers from the folder data.
 module data_tables
   use kinds, only: dp
   implicit none
   private
-  public :: load_table, field_of
+  public :: load_table
 
 contains
 
@@ -42,17 +42,4 @@ contains
       first = first + next
     end do
   end function split
-
-  !> Field i of a line of a table.
-  pure function field_of(line, i) result(field)
-    character(len=*), intent(in) :: line
-    integer, intent(in) :: i
-    character(len=:), allocatable :: field
-    integer :: first, k
-    first = 1
-    do k = 2, i
-      first = first + index(line(first:), ',')
-    end do
-    field = trim(line(first:first + index(trim(line(first:))//',', ',') - 2))
-  end function field_of
 end module data_tables

@@ -1,12 +1,13 @@
 !> Tests of cases: their reading, scenes and whole runs, results and studies. See `suites` for the command line.
 program runs
   use suites, only: suites_t
+  use test_units, only: run_test_units
+  use test_oil_names, only: run_test_oil_names
   use test_case_file, only: run_test_case_file
   use test_law_refusals, only: run_test_law_refusals
   use test_curve_files, only: run_test_curve_files
   use test_command_line, only: run_test_command_line
   use test_notes, only: run_test_notes
-  use test_number_units, only: run_test_number_units
   use test_number_text, only: run_test_number_text
   use test_result_file, only: run_test_result_file
   use test_study, only: run_test_study
@@ -48,12 +49,13 @@ program runs
   type(suites_t) :: all
 
   call all%begin()
+  call all%run('units', run_test_units)
+  call all%run('oil_names', run_test_oil_names)
   call all%run('case_file', run_test_case_file)
   call all%run('law_refusals', run_test_law_refusals)
   call all%run('curve_files', run_test_curve_files)
   call all%run('command_line', run_test_command_line)
   call all%run('notes', run_test_notes)
-  call all%run('number_units', run_test_number_units)
   call all%run('number_text', run_test_number_text)
   call all%run('result_file', run_test_result_file)
   call all%run('study', run_test_study)

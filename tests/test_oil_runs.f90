@@ -4,12 +4,10 @@ module test_oil_runs
   use error_handling, only: error_t
   use checks, only: checks_t
   use case_definition, only: case_t
-  use case_file, only: read_case, parse_case
-  use chain_motion, only: piston_pin
-  use oil_viscosity, only: oil_t
+  use case_file, only: read_case
   use run_summary, only: summary_table, summary_value
   use number_text, only: real_text
-  use case_checks, only: expect, bodies
+  use case_checks, only: expect
   use collecting_sink, only: trace_t, run_case
   implicit none
   private
@@ -24,56 +22,7 @@ contains
     class(checks_t), intent(inout) :: check
     call every_film(check)
     call refuses(check)
-    call names_in_cases(check)
   end subroutine run_test_oil_runs
-
-  !> Spellings of names; a case with a name is the case with the oil's data, which its resolved form has; refusals.
-  subroutine names_in_cases(check)
-    class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: film = '&lubrication temperature=353.15 oil='
-    character(len=12), parameter :: spellings(6) = [character(len=12) :: 'SAE 10W-40', 'sae10w40', '10W-40', '10w40', &
-      'SAE 10w 40', 'Sae-10W-40']
-    type(oil_t) :: oil
-    integer :: i
-    do i = 1, size(spellings)
-      oil%name = trim(spellings(i))
-      call oil%take_name()
-      call check%equal_text(oil%name, 'SAE 10W-40', 'spelling '//spellings(i))
-    end do
-    oil%name = 'vg46'
-    call oil%take_name()
-    call check%equal_text(oil%name, 'ISO VG 46', 'spelling vg46')
-    call expect(check, film//'''SAE 30'' /', '', 'a named oil')
-    call expect(check, film//'''SAE 35'' /', 'oil = SAE 35: unknown oil; one of ISO VG 10 to 680', 'an unknown oil')
-    call expect(check, film//'''SAE 35'' /', '; did you mean SAE 30?', 'a similar oil')
-    call expect(check, film//'''30'' /', 'oil = 30: unknown oil', 'a number alone')
-    call expect(check, film//'''SAE 30'' density=900 /', 'density = 900: must not be given: oil = ''SAE 30'' gives it', &
-      'its density')
-    call expect(check, film//'''SAE 30'' viscosity_law=''vogel'' /', 'viscosity_law', 'another law')
-    call expect(check, film//'''SAE 30'' viscosity=0.01 /', 'viscosity = 0.01: must not be given', 'viscosity too')
-    call expect(check, '&lubrication oil=''SAE 30'' /', 'temperature: required with oil = ''SAE 30''', 'no temperature')
-    call resolves(check, film)
-  end subroutine names_in_cases
-
-  !> The resolved form of a case with a named oil is that of the case with the oil's data; the case keeps the name for its summary.
-  subroutine resolves(check, film)
-    class(checks_t), intent(inout) :: check
-    character(len=*), intent(in) :: film
-    character(len=long), parameter :: by_hand(4) = [character(len=long) :: 'lubrication.viscosity_law=walther', &
-      'lubrication.known_temperatures=313.15,373.15', 'lubrication.known_viscosities=100e-6,11.4e-6', 'lubrication.density=885']
-    character(len=long) :: none(0)
-    character(len=:), allocatable :: resolved, other
-    type(case_t) :: case
-    type(error_t), allocatable :: error
-    call parse_case(bodies//film//'''SAE 30'' /', 'x.nml', none, case, error, resolved)
-    call check%that(allocated(resolved), 'a named oil is accepted')
-    if (.not. allocated(resolved)) return
-    call check%equal_text(case%joints(piston_pin)%oil%name, 'SAE 30', 'the case has the name')
-    call check%that(index(resolved, 'SAE') == 0, 'the resolved form has no name')
-    call parse_case(bodies//film//''''' /', 'x.nml', by_hand, case, error, other)
-    if (allocated(error)) other = error%message
-    call check%equal_text(other, resolved, 'resolved form of a named oil')
-  end subroutine resolves
 
   !> A run with an oil equals the run with the resulting viscosities, for every film; the summary contains the viscosity.
   subroutine every_film(check)

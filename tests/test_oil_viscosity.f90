@@ -3,7 +3,6 @@
 module test_oil_viscosity
   use kinds, only: dp
   use checks, only: checks_t
-  use data_tables, only: field_of
   use oil_viscosity, only: oil_t
   implicit none
   private
@@ -17,60 +16,7 @@ contains
     call vogel(check)
     call density(check)
     call known_points(check)
-    call named(check)
   end subroutine run_test_oil_viscosity
-
-  !> Named oils: their viscosities at four temperatures against data/oils.csv; grades of ISO 3448, and windows of SAE J300 (2015) at
-  !> 100 degrees C.
-  subroutine named(check)
-    class(checks_t), intent(inout) :: check
-    character(len=6), parameter :: grades(13) = [character(len=6) :: '10W', '20', '30', '40', '50', '60', '0W-20', '5W-20', &
-      '0W-30', '5W-30', '10W-30', '5W-40', '20W-50']
-    real(dp), parameter :: least(13) = [4.1_dp, 6.9_dp, 9.3_dp, 12.5_dp, 16.3_dp, 21.9_dp, 6.9_dp, 6.9_dp, 9.3_dp, 9.3_dp, 9.3_dp, &
-      12.5_dp, 16.3_dp], most(13) = [99.0_dp, 9.3_dp, 12.5_dp, 16.3_dp, 21.9_dp, 26.1_dp, 9.3_dp, 9.3_dp, 12.5_dp, 12.5_dp, &
-      12.5_dp, 16.3_dp, 21.9_dp]
-    real(dp), parameter :: temperatures(4) = [313.15_dp, 353.15_dp, 373.15_dp, 393.15_dp]
-    type(oil_t) :: oil
-    character(len=200) :: line
-    character(len=:), allocatable :: name
-    integer :: unit, status, rows, i
-    open (newunit=unit, file='data/oils.csv', status='old', action='read')
-    read (unit, '(a)') line
-    rows = 0
-    do
-      read (unit, '(a)', iostat=status) line
-      if (status /= 0) exit
-      rows = rows + 1
-      name = field_of(line, 1)
-      oil%name = name
-      call oil%take_name()
-      call check%relative(oil%density, number(4), 1e-15_dp, name//': density')
-      call check%relative(1e6_dp*oil%known_viscosities(2), number(3), 1e-15_dp, name//': at 100 degrees C')
-      do i = 1, size(temperatures)
-        oil%temperature = temperatures(i)
-        call check%relative(oil%dynamic_viscosity(), number(5 + i), 1e-9_dp, name//': viscosity')
-      end do
-      if (index(name, 'ISO VG ') == 1) then
-        line = name(8:)//','
-        call check%relative(1e6_dp*oil%known_viscosities(1), number(1), 1e-12_dp, name//': its grade')
-      end if
-      do i = 1, size(grades)
-        if (name == 'SAE '//grades(i)) call check%that(1e6_dp*oil%known_viscosities(2) >= least(i) .and. &
-          1e6_dp*oil%known_viscosities(2) < most(i), name//': in the window of its grade')
-      end do
-    end do
-    close (unit)
-    call check%that(rows == 27, 'rows of data/oils.csv')
-
-  contains
-
-    real(dp) function number(i)
-      integer, intent(in) :: i
-      character(len=:), allocatable :: field
-      field = field_of(line, i)
-      read (field, *) number
-    end function number
-  end subroutine named
 
   !> An ISO VG 32 oil (32 and 5.4 mm^2/s at 40 and 100 degrees C; 8.5 at 80 according to a published table of ASTM D341), an SAE
   !> 15W-40 oil, and a fuel below 2 mm^2/s, where the exponential in Z matters.

@@ -7,6 +7,7 @@ Needs f90nml and jsonschema. Ends with `N passed, N failed`; the exit status is 
 """
 
 import json
+import re
 import shlex
 import shutil
 import subprocess
@@ -23,8 +24,8 @@ passed = failed = 0
 #: Changes of simulation I that the schema refuses: group, key, value.
 WRONG = [
     ("mechanism", "rod_length", -0.2), ("mechanism", "rod_length", "long"), ("mechanism", "rod_com", [1.0]), ("mechanism", "rod_lenght", 1.0),
-    ("mechanism", "gravity_angle_deg", 1e9), ("drive", "kind", "fast"), ("drive", "torque", True), ("initial", "crank_speed", "x"),
-    ("joint", "kind", 1), ("joint", "clearance", 0.0), ("joint", "clearance", [1e-5, 2e-5]), ("contact", "restitution", 1.5),
+    ("mechanism", "piston_mass", -1.0), ("drive", "kind", "fast"), ("drive", "torque", True), ("initial", "crank_speed", "x"),
+    ("joint", "kind", 1), ("joint", "clearance", -1e-5), ("joint", "clearance", [1e-5, 2e-5]), ("contact", "restitution", 1.5),
     ("contact", "law", "herz"), ("integrator", "method", "euler"), ("integrator", "max_order", 1.5), ("integrator", "max_order", 99),
     ("integrator", "relative_tolerance", 0.5), ("output", "digits", 40), ("output", "every_step", "yes"), ("lubrication", "viscosity", -1.0),
 ]  # fmt: skip
@@ -42,7 +43,14 @@ def output(*command: str) -> str:
 
 
 def as_json(path: Path) -> dict:
-    return json.loads(json.dumps(f90nml.read(path).todict()))
+    """A case as JSON; a group that stands there twice, for two places, is a list."""
+    case: dict = {}
+    for name, group in json.loads(json.dumps(f90nml.read(path).todict())).items():
+        if repeated := re.fullmatch(r"_grp_(\w+)_\d+", name):
+            case.setdefault(repeated[1], []).append(group)
+        elif name != "_start_index":
+            case[name] = group
+    return case
 
 
 def schema(program: str) -> None:

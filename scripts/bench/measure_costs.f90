@@ -399,9 +399,9 @@ contains
     type(recorder_t), intent(inout) :: recorder
     type(error_t), allocatable :: error
     call choose_columns(case, .false., recorder%list, error)
-    recorder%first_sample = 1e9_dp
-    recorder%interval = 1
-    recorder%end_time = 1e10_dp
+    recorder%rows%first_sample = 1e9_dp
+    recorder%rows%interval = 1
+    recorder%rows%end_time = 1e10_dp
     allocate (recorder%sink)   ! ignores everything
   end subroutine prepare_recorder
 

@@ -22,7 +22,7 @@ module oil_viscosity
     real(dp) :: vogel_temperature = 0         !! T0 [K]
   contains
     procedure :: parameters
-    procedure :: take_name
+    procedure :: read_name
     procedure :: has_name
     procedure :: is_known
     procedure :: conflict
@@ -58,7 +58,7 @@ contains
   end subroutine parameters
 
   !> Set the parameters that a named oil gives. A name that no oil has is found by `conflict`.
-  subroutine take_name(self)
+  subroutine read_name(self)
     class(oil_t), intent(inout) :: self
     type(named_oil_t) :: oil
     if (.not. self%has_name()) return
@@ -68,7 +68,7 @@ contains
     self%known_viscosities = oil%viscosities
     self%density = oil%density
     if (oil%name /= '') self%name = trim(oil%name)
-  end subroutine take_name
+  end subroutine read_name
 
   pure logical function has_name(self)
     class(oil_t), intent(in) :: self

@@ -220,8 +220,8 @@ contains
       case ('reference')
         line%reference = value
         call case_schema_of(table)
-        if (all(value /= ['case   ', 'bearing', 'study  ', 'oils   ', 'results', 'schema ']) .and. &
-            find_group(table%groups, value) == 0) &
+        if (all(value /= ['case   ', 'bearing', 'study  ', 'oils   ', 'results', &
+          'schema ']) .and. find_group(table%groups, value) == 0) &
           wanted = 'must be case, bearing, study, oils, results, schema or a group of cases'
       case ('completion')
         line%completion = value

@@ -3,7 +3,7 @@
 module curve_file
   use kinds, only: dp
   use text_tools, only: printable, integer_text, replaced, next_row
-  use number_units, only: find_head_unit, head_units
+  use physical_units, only: find_head_unit, head_units
   use value_reader, only: read_real
   implicit none
   private

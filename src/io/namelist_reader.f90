@@ -6,7 +6,7 @@ module namelist_reader
   use text_tools, only: printable, integer_text
   use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, word_is_next, &
     slash_of_unit, digits, shown
-  use number_units, only: split_number
+  use physical_units, only: split_number
   implicit none
   private
   public :: namelist_t, entry_t, token_t, read_namelist, read_values

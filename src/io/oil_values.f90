@@ -34,7 +34,7 @@ contains
             value%reals = known_temperatures
           case ('known_viscosities')
             value%reals = oil%viscosities
-          case ('density')
+          case default   ! density
             value%reals(1) = oil%density
           end select
         end associate

@@ -10,9 +10,9 @@ module reference_pages
   use trace_columns, only: choose_columns
   use trace_row, only: column_list_t, name_length
   use text_tools, only: replaced
+  use summary_quantities, only: quantity_t, quantities_of_runs, event_columns, wear_columns, study_columns
   use named_oils, only: oils, sources
   use number_text, only: short_text
-  use summary_quantities, only: quantity_t, quantities_of_runs, event_columns, wear_columns, study_columns
   implicit none
   private
   public :: keys_reference, results_reference, oils_reference

@@ -7,7 +7,7 @@ module value_reader
   use case_schema, only: key_t, is_listed, real_kind, integer_kind, logical_kind, word_kind
   use namelist_reader, only: token_t
   use number_text, only: exact_text
-  use number_units, only: unit_t, split_number, find_unit, shifted
+  use physical_units, only: unit_t, split_number, find_unit, shifted
   implicit none
   private
   public :: value_t, set_to_default, convert, convert_list, find_decimal_comma, is_default, unit_of, has_unit, most_reals

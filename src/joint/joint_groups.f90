@@ -71,7 +71,7 @@ contains
     call list%group('lubrication', 'Oil film in the clearance. Without this group the joint is dry', .true., place)
     call list%choice('law', 'pinkus_sternlicht', 'film theory: long journal bearing, oscillating film, or bearing of finite length')
     call oil%parameters(list)
-    if (list%sets) call oil%take_name()
+    if (list%sets) call oil%read_name()
     call transition%parameters(list)
     call elastic%parameters(list)
     call list%add('report', reports, &

@@ -1,6 +1,6 @@
 !> Units in case files: their values against decimals computed elsewhere, what the syntax allows, what is refused and how, and that
 !> a case with units is the case in SI.
-module test_number_units
+module test_units
   use kinds, only: dp
   use error_handling, only: error_t
   use model_parameters, only: key_t, real_kind
@@ -8,12 +8,11 @@ module test_number_units
   use case_definition, only: case_t
   use case_file, only: parse_case
   use checks, only: checks_t
-  use data_tables, only: field_of
   use namelist_reader, only: token_t, read_values
   use value_reader, only: value_t, convert
   implicit none
   private
-  public :: run_test_number_units
+  public :: run_test_units, field_of
 
   character(len=*), parameter :: n = achar(10), micro = char(194)//char(181)
   integer, parameter :: long = 60
@@ -27,13 +26,13 @@ module test_number_units
 
 contains
 
-  subroutine run_test_number_units(check)
+  subroutine run_test_units(check)
     class(checks_t), intent(inout) :: check
     call decimals(check)
     call same_case(check)
     call forms(check)
     call refusals(check)
-  end subroutine run_test_number_units
+  end subroutine run_test_units
 
   !> Every unit: data/units.csv.
   subroutine decimals(check)
@@ -71,6 +70,19 @@ contains
     close (unit)
     call check%that(rows > 200, 'rows of data/units.csv')
   end subroutine decimals
+
+  !> Field i of a line of a table.
+  pure function field_of(line, i) result(field)
+    character(len=*), intent(in) :: line
+    integer, intent(in) :: i
+    character(len=:), allocatable :: field
+    integer :: first, k
+    first = 1
+    do k = 2, i
+      first = first + index(line(first:), ',')
+    end do
+    field = trim(line(first:first + index(trim(line(first:))//',', ',') - 2))
+  end function field_of
 
   !> A case with units, in its file or in overrides, has the resolved form of the case in SI, which has no units.
   subroutine same_case(check)
@@ -187,4 +199,4 @@ contains
       if (allocated(error)) call check%that(index(error%message, wanted) > 0, text//', message: '//error%message)
     end subroutine refused_by_syntax
   end subroutine refusals
-end module test_number_units
+end module test_units

@@ -1,5 +1,5 @@
 !> Units of numbers in case files, settings, studies and the heads of tables: SI and what engineers write beside it.
-module number_units
+module physical_units
   use kinds, only: dp
   use constants, only: pi
   use text_tools, only: lowercase, nearest_word, replaced, integer_text, whole_number
@@ -232,4 +232,4 @@ contains
       text = number(:letter)//integer_text(whole_number(number(letter + 1:)) + power)
     end if
   end function shifted
-end module number_units
+end module physical_units
