@@ -119,7 +119,7 @@ contains
     type(key_table_t) :: table
     integer :: i
     call case_schema_of(table)
-    text = 'case bearing study results schema'
+    text = 'case bearing study oils results schema'
     do i = 1, size(table%groups)
       if (index(table%groups(i)%name, '.') == 0) text = text//' '//trim(table%groups(i)%name)
     end do
