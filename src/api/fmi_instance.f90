@@ -3,6 +3,7 @@
 !> parameters 10000 + 2 k + e for element e = 0, 1 of key k, from 0 on. The run is built when the first output is asked for, or at
 !> the end of the initialisation, and again if a parameter changes before that.
 module fmi_instance
+  use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_loc, c_f_pointer, c_associated
   use kinds, only: dp
   use error_handling, only: status_integration
   use text_file, only: read_whole
@@ -13,7 +14,7 @@ module fmi_instance
   use text_lock, only: lock_texts, unlock_texts
   implicit none
   private
-  public :: fmi_instance_t, fmi_ok, fmi_discard, fmi_error, decoded
+  public :: fmi_instance_t, fmi_ok, fmi_discard, fmi_error, save_state, restore_state, free_saved_state, decoded
 
   integer, parameter :: fmi_ok = 0, fmi_discard = 2, fmi_error = 3   !! statuses of FMI
   integer, parameter :: of_inputs = 1000, of_parameters = 10000     !! first value references
@@ -34,8 +35,13 @@ module fmi_instance
     procedure :: setup
     procedure :: build
     procedure :: forget
+    procedure :: reset
     procedure :: get
+    procedure :: get_reals
+    procedure :: get_integers
     procedure :: set
+    procedure :: set_reals
+    procedure :: set_integers
     procedure :: step
     procedure :: assign
   end type fmi_instance_t
@@ -66,6 +72,19 @@ contains
     is_right = status == 0
     if (.not. is_right) self%message = self%case%message
   end subroutine read
+
+  !> Become an instance that has just been read. Error: see `read`.
+  subroutine reset(self, status)
+    class(fmi_instance_t), intent(inout) :: self
+    integer, intent(out) :: status
+    type(fmi_instance_t) :: new
+    logical :: is_right
+    call lock_texts()
+    call new%read(self%folder, self%identity, is_right)
+    call unlock_texts()
+    call self%assign(new)
+    status = merge(fmi_ok, fmi_error, is_right)
+  end subroutine reset
 
   !> Times of the experiment, and the tolerance where the master gives one (0: it does not).
   subroutine setup(self, start, stop, tolerance, status)
@@ -148,6 +167,31 @@ contains
     end if
   end subroutine get
 
+  !> The values of several references, up to the first that is refused.
+  subroutine get_reals(self, references, values, status)
+    class(fmi_instance_t), intent(inout) :: self
+    integer, intent(in) :: references(:)
+    real(dp), intent(inout) :: values(:)
+    integer, intent(out) :: status
+    integer :: i
+    status = fmi_ok
+    do i = 1, size(references)
+      if (status == fmi_ok) call self%get(references(i), values(i), status)
+    end do
+  end subroutine get_reals
+
+  !> The same of whole numbers.
+  subroutine get_integers(self, references, values, status)
+    class(fmi_instance_t), intent(inout) :: self
+    integer, intent(in) :: references(:)
+    integer, intent(inout) :: values(:)
+    integer, intent(out) :: status
+    real(dp) :: reals(size(references))
+    reals = 0
+    call self%get_reals(references, reals, status)
+    values = nint(reals)
+  end subroutine get_integers
+
   subroutine refuse(self, reference, status)
     class(fmi_instance_t), intent(inout) :: self
     integer, intent(in) :: reference
@@ -186,6 +230,27 @@ contains
       call refuse(self, reference, status)
     end if
   end subroutine set
+
+  !> Set several inputs or parameters, up to the first that is refused.
+  subroutine set_reals(self, references, values, status)
+    class(fmi_instance_t), intent(inout) :: self
+    integer, intent(in) :: references(:)
+    real(dp), intent(in) :: values(:)
+    integer, intent(out) :: status
+    integer :: i
+    status = fmi_ok
+    do i = 1, size(references)
+      if (status == fmi_ok) call self%set(references(i), values(i), status)
+    end do
+  end subroutine set_reals
+
+  !> The same of whole numbers.
+  subroutine set_integers(self, references, values, status)
+    class(fmi_instance_t), intent(inout) :: self
+    integer, intent(in) :: references(:), values(:)
+    integer, intent(out) :: status
+    call self%set_reals(references, real(values, dp), status)
+  end subroutine set_integers
 
   !> Go on from a time by a step. `status` is fmi_discard if the run ends before, or cannot go on; `last` is the time reached.
   subroutine step(self, from, by, status)
@@ -233,6 +298,40 @@ contains
     end if
     self%is_running = from%is_running
   end subroutine assign
+
+  !> Save a copy of an instance at an address, where there is one from an earlier call, or else a new one.
+  subroutine save_state(instance, state)
+    type(fmi_instance_t), intent(in) :: instance
+    type(c_ptr), intent(inout) :: state
+    type(fmi_instance_t), pointer :: saved
+    if (c_associated(state)) then
+      call c_f_pointer(state, saved)
+    else
+      allocate (saved)
+      state = c_loc(saved)
+    end if
+    call saved%assign(instance)
+  end subroutine save_state
+
+  !> Put a saved copy back.
+  subroutine restore_state(instance, state)
+    type(fmi_instance_t), intent(inout) :: instance
+    type(c_ptr), intent(in) :: state
+    type(fmi_instance_t), pointer :: saved
+    call c_f_pointer(state, saved)
+    call instance%assign(saved)
+  end subroutine restore_state
+
+  !> Free a saved copy, if there is one.
+  subroutine free_saved_state(state)
+    type(c_ptr), intent(inout) :: state
+    type(fmi_instance_t), pointer :: saved
+    if (.not. c_associated(state)) return
+    call c_f_pointer(state, saved)
+    call saved%forget()
+    deallocate (saved)
+    state = c_null_ptr
+  end subroutine free_saved_state
 
   !> The path of a URI file:///path or file:/path, with %20 and the like decoded; any other text is a path itself.
   subroutine decoded(uri, path)

@@ -6,7 +6,8 @@ module gudgeon_fmi3
   use kinds, only: dp
   use c_texts, only: get_text
   use text_lock, only: lock_texts, unlock_texts
-  use fmi_instance, only: fmi_instance_t, fmi_ok, fmi_discard, fmi_error, decoded
+  use fmi_instance, only: fmi_instance_t, fmi_ok, fmi_discard, fmi_error, save_state, restore_state, &
+    free_saved_state, decoded
   implicit none
   private
 
@@ -115,31 +116,18 @@ contains
   integer(c_int) function reset(handle) bind(c, name='fmi3Reset') result(status)
     type(c_ptr), value :: handle
     type(unit_t), pointer :: unit
-    type(fmi_instance_t) :: new
-    character(len=:), allocatable :: folder, identity
-    logical :: is_right
     call c_f_pointer(handle, unit)
-    call lock_texts()
-    folder = unit%instance%folder
-    identity = unit%instance%identity
-    call new%read(folder, identity, is_right)
-    call unlock_texts()
-    call unit%instance%assign(new)
-    status = merge(fmi_ok, fmi_error, is_right)
+    call unit%instance%reset(status)
   end function reset
 
   integer(c_int) function get_reals(handle, references, n, values, n_values) bind(c, name='fmi3GetFloat64') result(status)
     type(c_ptr), value :: handle
     integer(c_size_t), value :: n, n_values
     integer(c_int32_t), intent(in) :: references(n)
-    real(c_double), intent(out) :: values(n)
+    real(c_double), intent(inout) :: values(n)
     type(unit_t), pointer :: unit
-    integer(c_size_t) :: i
     call c_f_pointer(handle, unit)
-    status = fmi_ok
-    do i = 1, n
-      if (status == fmi_ok) call unit%instance%get(references(i), values(i), status)
-    end do
+    call unit%instance%get_reals(references, values, status)
     call tell(unit, status)
   end function get_reals
 
@@ -147,16 +135,10 @@ contains
     type(c_ptr), value :: handle
     integer(c_size_t), value :: n, n_values
     integer(c_int32_t), intent(in) :: references(n)
-    integer(c_int32_t), intent(out) :: values(n)
+    integer(c_int32_t), intent(inout) :: values(n)
     type(unit_t), pointer :: unit
-    real(dp) :: value
-    integer(c_size_t) :: i
     call c_f_pointer(handle, unit)
-    status = fmi_ok
-    do i = 1, n
-      if (status == fmi_ok) call unit%instance%get(references(i), value, status)
-      values(i) = nint(value)
-    end do
+    call unit%instance%get_integers(references, values, status)
     call tell(unit, status)
   end function get_integers
 
@@ -166,12 +148,8 @@ contains
     integer(c_int32_t), intent(in) :: references(n)
     real(c_double), intent(in) :: values(n)
     type(unit_t), pointer :: unit
-    integer(c_size_t) :: i
     call c_f_pointer(handle, unit)
-    status = fmi_ok
-    do i = 1, n
-      if (status == fmi_ok) call unit%instance%set(references(i), values(i), status)
-    end do
+    call unit%instance%set_reals(references, values, status)
     call tell(unit, status)
   end function set_reals
 
@@ -180,12 +158,8 @@ contains
     integer(c_size_t), value :: n, n_values
     integer(c_int32_t), intent(in) :: references(n), values(n)
     type(unit_t), pointer :: unit
-    integer(c_size_t) :: i
     call c_f_pointer(handle, unit)
-    status = fmi_ok
-    do i = 1, n
-      if (status == fmi_ok) call unit%instance%set(references(i), real(values(i), dp), status)
-    end do
+    call unit%instance%set_integers(references, values, status)
     call tell(unit, status)
   end function set_integers
 
@@ -210,38 +184,24 @@ contains
     type(c_ptr), value :: handle
     type(c_ptr), intent(inout) :: state
     type(unit_t), pointer :: unit
-    type(fmi_instance_t), pointer :: saved
     call c_f_pointer(handle, unit)
-    if (c_associated(state)) then
-      call c_f_pointer(state, saved)
-    else
-      allocate (saved)
-      state = c_loc(saved)
-    end if
-    call saved%assign(unit%instance)
+    call save_state(unit%instance, state)
     status = fmi_ok
   end function get_state
 
   integer(c_int) function set_state(handle, state) bind(c, name='fmi3SetFMUState') result(status)
     type(c_ptr), value :: handle, state
     type(unit_t), pointer :: unit
-    type(fmi_instance_t), pointer :: saved
     call c_f_pointer(handle, unit)
-    call c_f_pointer(state, saved)
-    call unit%instance%assign(saved)
+    call restore_state(unit%instance, state)
     status = fmi_ok
   end function set_state
 
   integer(c_int) function free_state(handle, state) bind(c, name='fmi3FreeFMUState') result(status)
     type(c_ptr), value :: handle
     type(c_ptr), intent(inout) :: state
-    type(fmi_instance_t), pointer :: saved
+    call free_saved_state(state)
     status = fmi_ok
-    if (.not. c_associated(state)) return
-    call c_f_pointer(state, saved)
-    call saved%forget()
-    deallocate (saved)
-    state = c_null_ptr
   end function free_state
 
   type(c_ptr) function model_exchange() bind(c, name='fmi3InstantiateModelExchange') result(no)

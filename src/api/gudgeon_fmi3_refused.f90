@@ -115,17 +115,17 @@ contains
     no = fmi_error
   end function get_variable_dependencies
 
-  integer(c_int) function serializedfmu_state_size() bind(c, name='fmi3SerializedFMUStateSize') result(no)
+  integer(c_int) function serialized_state_size() bind(c, name='fmi3SerializedFMUStateSize') result(no)
     no = fmi_error
-  end function serializedfmu_state_size
+  end function serialized_state_size
 
-  integer(c_int) function serializefmu_state() bind(c, name='fmi3SerializeFMUState') result(no)
+  integer(c_int) function serialize_state() bind(c, name='fmi3SerializeFMUState') result(no)
     no = fmi_error
-  end function serializefmu_state
+  end function serialize_state
 
-  integer(c_int) function deserializefmu_state() bind(c, name='fmi3DeserializeFMUState') result(no)
+  integer(c_int) function deserialize_state() bind(c, name='fmi3DeserializeFMUState') result(no)
     no = fmi_error
-  end function deserializefmu_state
+  end function deserialize_state
 
   integer(c_int) function get_directional_derivative() bind(c, name='fmi3GetDirectionalDerivative') result(no)
     no = fmi_error
