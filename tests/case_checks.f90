@@ -9,7 +9,7 @@ module case_checks
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private
-  public :: expect, methods_agree, bodies
+  public :: expect, methods_agree, bodies, summary_value
 
   !> Bodies and a run, with a bearing of 10 mm and a clearance of 20 um.
   character(len=*), parameter :: bodies = '&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 '// &
@@ -60,4 +60,18 @@ contains
         name//': all methods give the same film thickness')
     end do
   end subroutine methods_agree
+
+  !> The value of a quantity in the text of a summary; empty if it is not there.
+  function summary_value(table, quantity) result(text)
+    character(len=*), intent(in) :: table, quantity
+    character(len=:), allocatable :: text
+    character(len=*), parameter :: newline = achar(10)
+    integer :: first
+    text = ''
+    first = index(table, newline//quantity//',')
+    if (first == 0) return
+    first = first + len(newline//quantity//',')
+    text = table(first:first + index(table(first:)//newline, newline) - 2)
+    text = text(:index(text, ',', back=.true.) - 1)
+  end function summary_value
 end module case_checks

@@ -8,7 +8,7 @@ module test_certificate
   use certificate, only: certificate_t, make_certificate, certificate_table, certificate_summary, certificate_clause, is_state
   use trace_columns, only: column_list_t, choose_columns, column_name
   use chain_motion, only: piston_pin
-  use run_summary, only: summary_value
+  use case_checks, only: summary_value
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private

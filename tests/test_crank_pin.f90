@@ -7,7 +7,8 @@ module test_crank_pin
   use chain_motion, only: crank_pin, piston_pin
   use case_definition, only: case_t
   use case_file, only: read_case
-  use run_summary, only: summary_table, summary_value
+  use run_summary, only: summary_table
+  use case_checks, only: summary_value
   use run_line, only: lines_for_user
   use checks, only: checks_t
   use collecting_sink, only: trace_t, run_case, column

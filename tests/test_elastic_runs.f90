@@ -5,7 +5,8 @@ module test_elastic_runs
   use error_handling, only: error_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use run_summary, only: summary_table, summary_value
+  use run_summary, only: summary_table
+  use case_checks, only: summary_value
   use collecting_sink, only: trace_t, run_case, column
   implicit none
   private

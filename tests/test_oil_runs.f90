@@ -5,9 +5,9 @@ module test_oil_runs
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: read_case
-  use run_summary, only: summary_table, summary_value
+  use run_summary, only: summary_table
   use number_text, only: real_text
-  use case_checks, only: expect
+  use case_checks, only: expect, summary_value
   use collecting_sink, only: trace_t, run_case
   implicit none
   private

@@ -72,7 +72,7 @@ def judge_wear(name: str, summary: dict[str, str], bins: list[dict[str, str]]) -
             rows = [row for row in bins if row["joint"] == joint]
             total, deepest = math.fsum(float(row[f"{surface}_volume[m3]"]) for row in rows), max(float(row[f"{surface}_depth[m]"]) for row in rows)
             check(abs(total - volume) <= 1e-8 * volume, f"{name}: worn_volume_{surface} {volume!r} is not the sum {total!r} of its bins")
-            check(abs(depth - deepest) <= 1e-9 * depth, f"{name}: max_wear_depth_{surface} {depth!r} is not that of the bins, {deepest!r}")
+            check(depth == deepest, f"{name}: max_wear_depth_{surface} {depth!r} is not that of the bins, {deepest!r}")
 
 
 def judge_pin(name: str, prefix: str, summary: dict[str, str], rows: list[dict[str, str]], slack: float) -> None:

@@ -3,7 +3,8 @@ module test_summary
   use kinds, only: dp
   use chain_motion, only: piston_pin
   use checks, only: checks_t
-  use run_summary, only: build_advice, summary_table, summary_value
+  use run_summary, only: build_advice, summary_table
+  use case_checks, only: summary_value
   use case_definition, only: case_t
   use simulation, only: run_report_t
   use text_tools, only: integer_text

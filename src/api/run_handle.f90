@@ -1,9 +1,7 @@
 !> A run that another program advances: with its rows and events in memory, and its summary.
 module run_handle
-  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
   use kinds, only: dp
   use error_handling, only: error_t, fail, status_integration
-  use text_tools, only: next_line
   use case_definition, only: case_t
   use joint_places, only: n_places
   use trace_columns, only: column_list_t, choose_columns
@@ -14,6 +12,7 @@ module run_handle
   use simulation, only: run_t, run_report_t
   use scene_inputs, only: input_t, inputs
   use run_summary, only: summary_table
+  use summary_rows, only: summary_row_t, read_rows
   use certificate, only: certificate_t, make_certificate, certificate_summary, certificate_table
   use run_progress, only: clock
   use row_store, only: row_store_t
@@ -21,13 +20,7 @@ module run_handle
   use c_texts, only: handle_t
   implicit none
   private
-  public :: run_handle_t, begin_run, copy_run, summary_row_t
-
-  !> A quantity of the summary.
-  type :: summary_row_t
-    character(len=:), allocatable :: name, unit, text
-    real(dp) :: value = 0   !! not a number if it is a word
-  end type summary_row_t
+  public :: run_handle_t, begin_run, copy_run
 
   type, extends(handle_t) :: run_handle_t
     type(run_t) :: run
@@ -145,41 +138,11 @@ contains
       end do
       if (self%is_twin .and. allocated(case%notes)) deallocate (case%notes)
       self%table = summary_table(case, self%report, clock() - self%began, self%is_twin)
-      call read_table(self%table, self%summary)
+      call read_rows(self%table, self%summary)
       call self%keep(error, self%status)
     end if
     status = self%status
   end subroutine finish
-
-  !> The rows of a summary as text, without its first line.
-  subroutine read_table(table, rows)
-    character(len=*), intent(in) :: table
-    type(summary_row_t), allocatable, intent(out) :: rows(:)
-    type(summary_row_t), allocatable :: found(:)
-    character(len=:), allocatable :: line
-    integer :: at, n, first, last, ios
-    allocate (found(count([(table(at:at) == achar(10), at=1, len(table))])))
-    at = index(table, achar(10)) + 1
-    n = 0
-    do while (at <= len(table))
-      call next_line(table, at, line)
-      if (line == '') cycle
-      n = n + 1
-      first = index(line, ',')
-      last = index(line, ',', back=.true.)
-      associate (row => found(n))
-        row%name = line(:first - 1)
-        row%unit = line(last + 1:)
-        row%text = line(first + 1:last - 1)
-        if (index(row%text, '"') == 1) row%text = row%text(2:len(row%text) - 1)
-        row%value = ieee_value(1.0_dp, ieee_quiet_nan)
-        if (verify(row%text, '+-.0123456789eE') > 0 .or. scan(row%text, '0123456789') == 0) cycle
-        read (row%text, *, iostat=ios) row%value
-        if (ios /= 0) row%value = ieee_value(1.0_dp, ieee_quiet_nan)
-      end associate
-    end do
-    rows = found(:n)
-  end subroutine read_table
 
   !> Estimate the accuracy of a finished run, as --certify does; the summary has its rows afterwards. Error: the run is not done.
   subroutine certify(self, status)
@@ -199,7 +162,7 @@ contains
     self%certificate_table = ''
     if (.not. allocated(certificate%reason)) self%certificate_table = certificate_table(certificate)
     self%table = self%table//certificate_summary(certificate)
-    call read_table(self%table, self%summary)
+    call read_rows(self%table, self%summary)
     call self%keep(error, status)
   end subroutine certify
 
@@ -237,7 +200,7 @@ contains
     if (.not. allocated(error) .and. allocated(self%report%films)) &
       call write_film_file(path//'.film.csv', self%report%films, error)
     if (.not. allocated(error) .and. allocated(self%report%wear)) then
-      if (size(self%report%wear) > 0) call write_wear_file(path//'.wear.csv', self%report%wear, error)
+      if (size(self%report%wear) > 0) call write_wear_file(path//'.wear.csv', self%report%wear, self%case%output%digits, error)
     end if
     if (.not. allocated(error) .and. allocated(self%certificate_table)) then
       if (self%certificate_table /= '') call write_text(path//'.certificate.csv', self%certificate_table, error)

@@ -201,7 +201,8 @@ contains
       call keep_first(file_error, self%error)
     end if
     if (allocated(self%report%wear)) then
-      if (size(self%report%wear) > 0) call write_wear_file(self%base//'.wear.csv', self%report%wear, file_error)
+      if (size(self%report%wear) > 0) call write_wear_file(self%base//'.wear.csv', self%report%wear, &
+        self%case%output%digits, file_error)
       call keep_first(file_error, self%error)
     end if
     call write_summary(self, files)

@@ -9,13 +9,14 @@ module certificate
   use case_definition, only: case_t, output_case_t
   use trace_columns, only: column_list_t, choose_columns, column_name
   use simulation, only: run_t, run_report_t
-  use run_summary, only: summary_table, summary_value
+  use run_summary, only: summary_table
+  use summary_rows, only: summary_row_t, read_rows
   use film_files, only: provide_tables
   use joint_places, only: n_places
   use number_text, only: real_text, short_text
   use whole_run, only: go_to_end
   use row_store, only: row_store_t
-  use text_tools, only: next_line, quoted
+  use text_tools, only: quoted
   implicit none
   private
   public :: certificate_t, make_certificate, certificate_table, certificate_summary, certificate_clause, is_state
@@ -52,7 +53,7 @@ module certificate
 
   type :: comparison_run_t   !! with nothing if it did not reach its end
     real(dp), allocatable :: values(:, :)        !! (columns, rows)
-    character(len=:), allocatable :: summary     !! its rows `quantity,value,unit`
+    type(summary_row_t), allocatable :: summary(:)
   end type comparison_run_t
 
 contains
@@ -156,7 +157,7 @@ contains
     if (was_interrupted) call fail(error, 'interrupted before it was certified', status_integration)
     call motion%finish(report, failure)
     if (allocated(failure)) return
-    own%summary = summary_table(case, report, 0.0_dp)
+    call read_rows(summary_table(case, report, 0.0_dp), own%summary)
     own%values = rows%values(:, :rows%rows)
   end subroutine run
 
@@ -193,32 +194,36 @@ contains
     type(certificate_t), intent(inout) :: self
     type(comparison_run_t), intent(in) :: runs(:)
     logical, intent(in) :: ends_with_period   !! the last cycle of the user's run, and perhaps its wear, are of another time
-    character(len=:), allocatable :: line, name, unit
     real(dp) :: results(size(runs)), difference
     logical :: of_cycle
-    integer :: at, i
+    integer :: k, i
     self%differences = ''
-    at = 1
-    do while (at <= len(runs(1)%summary))
-      call next_line(runs(1)%summary, at, line)
-      name = line(:index(line, ',') - 1)
-      unit = line(index(line, ',', back=.true.) + 1:)
-      of_cycle = index(name, 'cycle_') > 0
-      if (unit == '' .or. ends_with_period .and. (of_cycle .or. index(name, 'worn_') > 0)) cycle
-      if (.not. (of_cycle .or. any([(index('_'//name//' ', '_'//trim(compared(i))//' ') > 0, i=1, size(compared))]))) cycle
-      results = 0   ! where a run does not have it
-      do i = 1, size(runs)
-        line = summary_value(runs(i)%summary, name)
-        if (line /= '') read (line, *) results(i)
-      end do
-      difference = maxval(abs(results - results(1)))
-      self%differences = self%differences//name//'_difference,'//real_text(difference)//','//unit//newline
-      difference = difference/max(maxval(abs(results)), tiny(difference))
-      if (of_cycle .or. allocated(self%worst) .and. .not. difference > self%worst_difference) cycle
-      self%worst = name
-      self%worst_difference = difference
+    do k = 1, size(runs(1)%summary)
+      associate (row => runs(1)%summary(k))
+        of_cycle = index(row%name, 'cycle_') > 0
+        if (row%unit == '' .or. ends_with_period .and. (of_cycle .or. index(row%name, 'worn_') > 0)) cycle
+        if (.not. (of_cycle .or. any([(index('_'//row%name//' ', '_'//trim(compared(i))//' ') > 0, i=1, size(compared))]))) cycle
+        results = [(value_of(runs(i)%summary, row%name), i=1, size(runs))]
+        difference = maxval(abs(results - results(1)))
+        self%differences = self%differences//row%name//'_difference,'//real_text(difference)//','//row%unit//newline
+        difference = difference/max(maxval(abs(results)), tiny(difference))
+        if (of_cycle .or. allocated(self%worst) .and. .not. difference > self%worst_difference) cycle
+        self%worst = row%name
+        self%worst_difference = difference
+      end associate
     end do
   end subroutine compare_results
+
+  !> The value of a quantity; 0 where a run does not have it.
+  pure real(dp) function value_of(rows, name) result(value)
+    type(summary_row_t), intent(in) :: rows(:)
+    character(len=*), intent(in) :: name
+    integer :: i
+    value = 0
+    do i = 1, size(rows)
+      if (rows(i)%name == name) value = rows(i)%value
+    end do
+  end function value_of
 
   !> NAME.certificate.csv: the largest error of each column in the certified part, also over its range in the run, and whether it is
   !> a coordinate or speed, by whose errors the certified part is found.

@@ -19,7 +19,7 @@ module run_summary
   use version_number, only: program_version
   implicit none
   private
-  public :: summary_table, summary_value, build_advice
+  public :: summary_table, build_advice
 
   character(len=*), parameter :: newline = achar(10)
 
@@ -274,19 +274,6 @@ contains
     end do
     if (text == '') text = trim(names(mod(pins, size(names))))
   end function phases_of
-
-  !> The value of a quantity in the text of a summary; empty if it is not there.
-  function summary_value(table, quantity) result(text)
-    character(len=*), intent(in) :: table, quantity
-    character(len=:), allocatable :: text
-    integer :: first
-    text = ''
-    first = index(table, newline//quantity//',')
-    if (first == 0) return
-    first = first + len(newline//quantity//',')
-    text = table(first:first + index(table(first:)//newline, newline) - 2)
-    text = text(:index(text, ',', back=.true.) - 1)
-  end function summary_value
 
   !> Advice for the user of a program that was compiled without optimisation, or an empty text.
   pure function build_advice(flags, seconds) result(text)

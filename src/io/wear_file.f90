@@ -16,9 +16,10 @@ contains
 
   !> Write one row for each bin of each joint: its middle, in degrees from x towards y in the frame of the body, and mean depth and
   !> volume that are worn from pin and bore there. Error: the file cannot be written (status_output).
-  subroutine write_wear_file(path, worn, error)
+  subroutine write_wear_file(path, worn, digits, error)
     character(len=*), intent(in) :: path
     type(wear_profile_t), intent(in) :: worn(:)
+    integer, intent(in) :: digits   !! significant digits of depths and volumes
     type(error_t), allocatable, intent(out) :: error
     type(growing_text_t) :: file
     integer :: i, j, k
@@ -28,10 +29,10 @@ contains
         do j = 1, size(depth, 1)
           call file%append(trim(places(worn(i)%place)%name)//','//real_text((j - 0.5_dp)*360/size(depth, 1)))
           do k = of_pin, of_bore
-            call file%append(','//real_text(depth(j, k)))
+            call file%append(','//real_text(depth(j, k), digits))
           end do
           do k = of_pin, of_bore
-            call file%append(','//real_text(volume(j, k)))
+            call file%append(','//real_text(volume(j, k), digits))
           end do
           call file%append(achar(10))
         end do
