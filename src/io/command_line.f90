@@ -7,7 +7,8 @@ module command_line
   use case_schema, only: key_table_t, case_schema_of, find_group, is_listed
   implicit none
   private
-  public :: command_line_t, parse_command_line, program_arguments, help_text, option_t, options
+  public :: command_line_t, parse_command_line, program_arguments, help_text, option_t, options, subjects, shells, &
+    progress_words
 
   !> The contents of the command line.
   type :: command_line_t
@@ -19,8 +20,7 @@ module command_line
     character(len=:), allocatable :: accuracy     !! one of `accuracy_levels`, or empty: as in the case file
     integer :: jobs = 0                           !! number of processes; 0: number of processors
     logical :: certify = .false.                  !! make certificates of the runs
-    character(len=:), allocatable :: reference    !! page of the manual to print: case, bearing, study, oils, results or a group
-                                                  !! of cases; empty: none
+    character(len=:), allocatable :: reference    !! page of the manual to print: one of `subjects` or a group of cases; empty: none
     character(len=:), allocatable :: kind         !! of a short template; empty: the complete one
     character(len=:), allocatable :: completion   !! shell whose completion script is printed; empty: none
     logical :: manual = .false.                   !! print the page of the manual
@@ -49,6 +49,9 @@ module command_line
     option_t('reference', '', .true.), option_t('from', '', .true.), option_t('completion', '', .true.), &
     option_t('man', '', .false.)]
 
+  character(len=*), parameter :: subjects = 'case, bearing, study, oils, results, schema'   !! of --reference, beside groups
+  character(len=*), parameter :: shells = 'bash, zsh, fish'                   !! of --completion
+  character(len=*), parameter :: progress_words = 'auto, always, never'       !! of --progress
   character(len=*), parameter :: standard_input = '/dev/stdin'
   integer, parameter :: most_jobs = 1024
 
@@ -205,7 +208,7 @@ contains
         if (line%jobs < 1 .or. line%jobs > most_jobs) wanted = 'must be a whole number from 1 to 1024'
       case ('progress')
         line%progress = value
-        if (all(value /= ['auto  ', 'always', 'never '])) wanted = 'must be auto, always or never'
+        if (.not. is_listed(value, progress_words)) wanted = 'must be auto, always or never'
       case ('check')
         line%check = .true.
       case ('template')
@@ -220,12 +223,11 @@ contains
       case ('reference')
         line%reference = value
         call case_schema_of(table)
-        if (all(value /= ['case   ', 'bearing', 'study  ', 'oils   ', 'results', &
-          'schema ']) .and. find_group(table%groups, value) == 0) &
-          wanted = 'must be case, bearing, study, oils, results, schema or a group of cases'
+        if (.not. is_listed(value, subjects) .and. find_group(table%groups, value) == 0) &
+          wanted = 'must be '//subjects//' or a group of cases'
       case ('completion')
         line%completion = value
-        if (all(value /= ['bash', 'zsh ', 'fish'])) wanted = 'must be bash, zsh or fish'
+        if (.not. is_listed(value, shells)) wanted = 'must be bash, zsh or fish'
       case ('man')
         line%manual = .true.
       case ('quiet')

@@ -25,7 +25,7 @@ contains
         if (index(it%name, '.') > 0) cycle   ! copies of groups for another joint
         if (group > 1) text = text//','//n
         text = text//string(trim(it%name))//': '//group_schema(table, it)
-        if (.not. it%is_model .and. any(table%keys(it%first:it%last)%required .and. .not. it%place /= '')) &
+        if (.not. it%is_model .and. it%place == '' .and. any(table%keys(it%first:it%last)%required)) &
           required = required//', '//string(trim(it%name))
       end associate
     end do

@@ -2,15 +2,14 @@
 module shell_pages
   use text_tools, only: replaced, next_line
   use case_schema, only: key_table_t, case_schema_of
-  use command_line, only: options, help_text
+  use command_line, only: options, help_text, subjects, shells, progress_words
   use accuracy_presets, only: accuracy_levels
   use case_templates, only: template_kinds
   use version_number, only: program_version
   implicit none
   private
-  public :: completion_text, manual_text, shells
+  public :: completion_text, manual_text
 
-  character(len=*), parameter :: shells = 'bash, zsh, fish'
   character(len=*), parameter :: n = achar(10)
 
 contains
@@ -39,11 +38,11 @@ contains
       '  [ "$now" = "$cut" ] && before="${COMP_WORDS[COMP_CWORD-2]}"'//n// &
       '  local words=""'//n// &
       '  case "$before" in'//n// &
-      '    -s|--set) words="'//settings(' ')//'"; compopt -o nospace ;;'//n// &
-      '    -a|--accuracy) words="'//replaced(accuracy_levels, ',', '')//'" ;;'//n// &
-      '    --progress) words="auto always never" ;;'//n// &
-      '    --reference) words="'//subjects()//'" ;;'//n// &
-      '    --completion) words="'//replaced(shells, ',', '')//'" ;;'//n// &
+      '    -s|--set) words="'//settings()//'"; compopt -o nospace ;;'//n// &
+      '    -a|--accuracy) words="'//listed(accuracy_levels)//'" ;;'//n// &
+      '    --progress) words="'//listed(progress_words)//'" ;;'//n// &
+      '    --reference) words="'//all_subjects()//'" ;;'//n// &
+      '    --completion) words="'//listed(shells)//'" ;;'//n// &
       '    -o|--out|--from) COMPREPLY=($(compgen -f -- "$now")); compopt -o filenames; return ;;'//n// &
       '    *) case "$now" in'//n// &
       '      --template=*) words="'//'--template='//replaced(template_kinds, ', ', ' --template=')//'" ;;'//n// &
@@ -67,21 +66,28 @@ contains
       if (options(i)%short /= '') line = line//' -s '//options(i)%short
       select case (options(i)%long)
       case ('set')
-        line = line//' -x -a "'//settings(' ')//'"'
+        line = line//' -x -a "'//settings()//'"'
       case ('accuracy')
-        line = line//' -x -a "'//replaced(accuracy_levels, ',', '')//'"'
+        line = line//' -x -a "'//listed(accuracy_levels)//'"'
       case ('progress')
-        line = line//' -x -a "auto always never"'
+        line = line//' -x -a "'//listed(progress_words)//'"'
       case ('reference')
-        line = line//' -x -a "'//subjects()//'"'
+        line = line//' -x -a "'//all_subjects()//'"'
       case ('completion')
-        line = line//' -x -a "'//replaced(shells, ',', '')//'"'
+        line = line//' -x -a "'//listed(shells)//'"'
       case default
         if (options(i)%takes_value) line = line//' -r'
       end select
       text = text//line//n
     end do
   end function fish_text
+
+  !> Words with blanks between them, of a list with commas.
+  function listed(words) result(text)
+    character(len=*), intent(in) :: words
+    character(len=:), allocatable :: text
+    text = replaced(words, ',', '')
+  end function listed
 
   !> All options with two hyphens.
   function all_options() result(text)
@@ -95,8 +101,7 @@ contains
   end function all_options
 
   !> GROUP.KEY= for each key; GROUP.KEY=WORD where it has words.
-  function settings(between) result(text)
-    character(len=*), intent(in) :: between
+  function settings() result(text)
     character(len=:), allocatable :: text, key
     type(key_table_t) :: table
     integer :: i
@@ -105,25 +110,25 @@ contains
     do i = 1, size(table%keys)
       key = trim(table%keys(i)%group)//'.'//trim(table%keys(i)%name)//'='
       if (allocated(table%keys(i)%words)) then
-        text = text//between//key//replaced(table%keys(i)%words, ', ', between//key)
+        text = text//' '//key//replaced(table%keys(i)%words, ', ', ' '//key)
       else
-        text = text//between//key
+        text = text//' '//key
       end if
     end do
-    text = text(len(between) + 1:)
+    text = text(2:)
   end function settings
 
-  !> The subjects of --reference.
-  function subjects() result(text)
+  !> The subjects of --reference, with the groups of cases.
+  function all_subjects() result(text)
     character(len=:), allocatable :: text
     type(key_table_t) :: table
     integer :: i
     call case_schema_of(table)
-    text = 'case bearing study oils results schema'
+    text = listed(subjects)
     do i = 1, size(table%groups)
       if (index(table%groups(i)%name, '.') == 0) text = text//' '//trim(table%groups(i)%name)
     end do
-  end function subjects
+  end function all_subjects
 
   !> The page of the manual, in the language of man: the text of --help in its sections.
   function manual_text() result(text)
