@@ -32,17 +32,12 @@ module cycle_answers
     character(len=8) :: text = ''     !! instead of the value, of a quantity without unit
   end type answer_t
 
-  !> Indices into `cycle_quantities`.
-  integer, parameter :: q_start = 1, q_duration = 2, q_revolutions = 3, q_change = 4, q_settled = 5, &
-    q_film = 6, q_film_angle = 7, q_ratio = 8, q_force = 9, q_share = 10, q_asperity_share = 11, q_film_power = 12, &
-    q_friction_power = 13, q_moment = 14, q_joint_fmep = 15, q_pressure = 16, q_pressure_angle = 17, q_flow = 18, &
-    q_pin_wear = 19, q_bore_wear = 20, &
-    q_speed = 21, q_fluctuation = 22, q_piston_speed = 23, q_gas_pressure = 24, q_gas_angle = 25, &
-    q_indicated = 26, q_brake = 27, q_imep = 28, q_bmep = 29, q_fmep = 30, &
-    q_energy = 40, q_rest = 41
-  !> Parts of the work, in the order of their quantities from `q_first_work` on.
-  integer, parameter :: q_first_work = 31, parts(*) = [by_gas, by_drive, by_damping, of_contact, of_friction, of_film, &
-    of_asperities, by_guide, by_elastic]
+  !> Parts of the work, and their quantities.
+  integer, parameter :: parts(*) = [by_gas, by_drive, by_damping, of_contact, of_friction, of_film, of_asperities, by_guide, &
+    by_elastic]
+  character(len=21), parameter :: work_of_parts(size(parts)) = [character(len=21) :: 'cycle_work_gas', 'cycle_work_drive', &
+    'cycle_work_damping', 'cycle_work_contact', 'cycle_work_friction', 'cycle_work_film', 'cycle_work_asperities', &
+    'cycle_work_guide', 'cycle_work_elastic']
 
   !> All quantities; those of a joint get its place as a prefix.
   type(quantity_t), parameter :: cycle_quantities(*) = [ &
@@ -116,28 +111,28 @@ contains
     displacement = 0
     if (allocated(scene%gas)) displacement = scene%gas%cylinder%displacement*revolutions/gas_revolutions
 
-    call add(q_start, cycle%start)
-    call add(q_duration, cycle%duration)
-    call add(q_revolutions, real(revolutions, dp))
+    call add('cycle_start', cycle%start)
+    call add('cycle_duration', cycle%duration)
+    call add('cycle_revolutions', real(revolutions, dp))
     call add_change(periods%change(revolutions))
     do i = 1, scene%n_joints
       call add_joint(i)
     end do
     call add_machine()
     do i = 1, size(scene%parts)
-      call add(q_first_work - 1 + findloc(parts, scene%parts(i)%what, 1), cycle%work(i), scene%parts(i)%joint)
+      call add(trim(work_of_parts(findloc(parts, scene%parts(i)%what, 1))), cycle%work(i), scene%parts(i)%joint)
     end do
-    call add(q_energy, cycle%energy_change)
-    call add(q_rest, cycle%energy_change - sum(cycle%work(:size(scene%parts))))
+    call add('cycle_energy_change', cycle%energy_change)
+    call add('cycle_work_rest', cycle%energy_change - sum(cycle%work(:size(scene%parts))))
 
   contains
 
-    subroutine add(quantity, value, joint)
-      integer, intent(in) :: quantity
+    subroutine add(name, value, joint)
+      character(len=*), intent(in) :: name   !! of a quantity
       real(dp), intent(in) :: value
       integer, intent(in), optional :: joint   !! 0 or absent: not of a joint
       type(answer_t) :: answer
-      answer%quantity = quantity
+      answer%quantity = index_of(name)
       answer%value = value
       if (present(joint)) then
         if (joint > 0) answer%place = scene%joints(joint)%place
@@ -145,10 +140,17 @@ contains
       answers = [answers, answer]
     end subroutine add
 
+    pure integer function index_of(name)
+      character(len=*), intent(in) :: name
+      do index_of = size(cycle_quantities), 1, -1
+        if (cycle_quantities(index_of)%name == name) return
+      end do
+    end function index_of
+
     subroutine add_change(change)
       real(dp), intent(in) :: change   !! negative: not known
-      if (change >= 0) call add(q_change, change)
-      call add(q_settled, 0.0_dp)
+      if (change >= 0) call add('cycle_change', change)
+      call add('cycle_is_settled', 0.0_dp)
       answers(size(answers))%text = 'unknown'
       if (change >= 0) answers(size(answers))%text = merge('yes', 'no ', change <= periods%tolerance)
     end subroutine add_change
@@ -172,47 +174,47 @@ contains
       integer, intent(in) :: i
       real(dp) :: film, friction, worn(2)
       associate (joint => scene%joints(i), pin => cycle%pin(scene%joints(i)%place))
-        call add(q_film, pin%min_film_thickness, i)
-        call add(q_film_angle, degrees(pin%thinnest_angle), i)
-        call add(q_ratio, 1 - pin%min_film_thickness/joint%bearing%clearance, i)
-        call add(q_force, pin%max_force, i)
-        call add(q_share, pin%contact_time/cycle%duration, i)
+        call add('cycle_min_film_thickness', pin%min_film_thickness, i)
+        call add('cycle_min_film_thickness_angle', degrees(pin%thinnest_angle), i)
+        call add('cycle_max_eccentricity_ratio', 1 - pin%min_film_thickness/joint%bearing%clearance, i)
+        call add('cycle_max_force', pin%max_force, i)
+        call add('cycle_contact_share', pin%contact_time/cycle%duration, i)
         film = work_of(of_film, i)
         friction = work_of(of_friction, i) + work_of(of_asperities, i)
-        if (joint%has_kind(of_film)) call add(q_film_power, -film/cycle%duration, i)
+        if (joint%has_kind(of_film)) call add('cycle_mean_film_power', -film/cycle%duration, i)
         if (joint%has_kind(of_friction) .or. joint%has_kind(of_asperities)) &
-          call add(q_friction_power, -friction/cycle%duration, i)
-        if (pin%turning > 0) call add(q_moment, -(film + friction)/pin%turning, i)
-        if (displacement > 0) call add(q_joint_fmep, -(film + friction)/displacement, i)
+          call add('cycle_mean_friction_power', -friction/cycle%duration, i)
+        if (pin%turning > 0) call add('cycle_mean_friction_moment', -(film + friction)/pin%turning, i)
+        if (displacement > 0) call add('cycle_joint_fmep', -(film + friction)/displacement, i)
         worn = extremes%wear_growth(scene, joint%place, revolutions)*3600/cycle%duration
-        if (all(worn >= 0)) call add(q_pin_wear, worn(of_pin), i)
-        if (all(worn >= 0)) call add(q_bore_wear, worn(of_bore), i)
-        if (pin%load_integral > 0) call add(q_asperity_share, pin%asperity_integral/pin%load_integral, i)
+        if (all(worn >= 0)) call add('cycle_wear_depth_rate_pin', worn(of_pin), i)
+        if (all(worn >= 0)) call add('cycle_wear_depth_rate_bore', worn(of_bore), i)
+        if (pin%load_integral > 0) call add('cycle_asperity_load_share', pin%asperity_integral/pin%load_integral, i)
         if (.not. (joint%reports_film .and. joint%has_kind(of_film))) return
         if (pin%max_film_pressure > 0) then
-          call add(q_pressure, pin%max_film_pressure, i)
-          call add(q_pressure_angle, degrees(pin%pressure_angle), i)
+          call add('cycle_max_film_pressure', pin%max_film_pressure, i)
+          call add('cycle_max_film_pressure_angle', degrees(pin%pressure_angle), i)
         end if
-        if (pin%film_volume > 0) call add(q_flow, pin%film_volume/cycle%duration, i)
+        if (pin%film_volume > 0) call add('cycle_mean_film_side_flow', pin%film_volume/cycle%duration, i)
       end associate
     end subroutine add_joint
 
     subroutine add_machine()
       real(dp) :: mean_speed
       mean_speed = two_pi*revolutions/cycle%duration
-      call add(q_speed, cycles%direction*mean_speed)
-      call add(q_fluctuation, (cycle%max_speed + cycle%max_negative_speed)/mean_speed)
-      call add(q_piston_speed, 4*scene%chain%bodies%crank%length*revolutions/cycle%duration)
+      call add('cycle_mean_crank_speed', cycles%direction*mean_speed)
+      call add('cycle_speed_fluctuation', (cycle%max_speed + cycle%max_negative_speed)/mean_speed)
+      call add('cycle_mean_piston_speed', 4*scene%chain%bodies%crank%length*revolutions/cycle%duration)
       if (.not. allocated(scene%gas)) return
-      call add(q_gas_pressure, cycle%max_pressure)
-      call add(q_gas_angle, degrees(cycle%max_pressure_angle))
+      call add('cycle_max_cylinder_pressure', cycle%max_pressure)
+      call add('cycle_max_cylinder_pressure_angle', degrees(cycle%max_pressure_angle))
       shaft = -work_of(by_drive) - work_of(by_damping)
       loss = work_of(by_gas) - shaft - sum(cycle%work(:size(scene%parts)))   ! by what is neither gas nor shaft
-      call add(q_indicated, work_of(by_gas)/cycle%duration)
-      call add(q_brake, shaft/cycle%duration)
-      call add(q_imep, work_of(by_gas)/displacement)
-      call add(q_bmep, shaft/displacement)
-      call add(q_fmep, loss/displacement)
+      call add('cycle_indicated_power', work_of(by_gas)/cycle%duration)
+      call add('cycle_brake_power', shaft/cycle%duration)
+      call add('cycle_imep', work_of(by_gas)/displacement)
+      call add('cycle_bmep', shaft/displacement)
+      call add('cycle_fmep', loss/displacement)
     end subroutine add_machine
 
     !> A crank angle [rad] in degrees, from 0 to the length of the cycle.

@@ -18,7 +18,6 @@ module run_recorder
   use run_limits, only: run_limits_t
   use trace_sink, only: trace_sink_t, trace_event_t
   use film_snapshots, only: film_snapshots_t
-  use wear_record, only: wear_profile_t
   implicit none
   private
   public :: recorder_t
@@ -48,7 +47,6 @@ module run_recorder
     procedure :: event_handled
     procedure :: finish
     procedure :: row
-    procedure :: wear
   end type recorder_t
 
 contains
@@ -361,14 +359,6 @@ contains
     call evaluate_scene(self, scene, t, self%y, now, in_domain)
     call write_row(self, scene, t, self%y, now, in_domain)
   end subroutine finish
-
-  !> The worn surfaces of the joints whose wear is counted.
-  function wear(self, scene) result(worn)
-    class(recorder_t), intent(in) :: self
-    type(scene_t), intent(in) :: scene
-    type(wear_profile_t), allocatable :: worn(:)
-    worn = self%extremes%wear(scene)
-  end function wear
 
   !> Account for the values of an evaluation and write its row. If its state is not `in_domain` the model there is no row, and the
   !> run is to end.
