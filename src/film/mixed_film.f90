@@ -11,11 +11,12 @@ contains
 
   !> Forces of the film, which acts in the mean gap of the surfaces, and of the asperities, which press the pin towards the centre
   !> and cause friction.
-  pure subroutine mixed_forces(film, rough, pin_radius, motion, film_force, film_moment, pressing, friction)
+  pure subroutine mixed_forces(film, rough, pin_radius, motion, viscosity_ratio, film_force, film_moment, pressing, friction)
     class(film_law_t), intent(in) :: film
     type(asperities_t), intent(in) :: rough
     real(dp), intent(in) :: pin_radius                 !! [m]
     type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: viscosity_ratio            !! of the film to that of its law [-]
     real(dp), intent(out) :: film_force(2), film_moment   !! of the film on the pin [N], [N m]
     real(dp), intent(out) :: pressing, friction           !! of the asperities: towards the centre, and along t [N]
     type(film_motion_t) :: seen
@@ -25,7 +26,7 @@ contains
     bearing_speed = 0.5_dp*(motion%pin_speed - motion%turning_speed)
     pressing = rough%force(distance)
     friction = rough%friction_force(tangential + pin_angular_speed*pin_radius - bearing_speed*(distance + pin_radius), pressing)
-    call film%film_force(seen, film_force, film_moment)
+    call film%loads(seen, viscosity_ratio, film_force, film_moment)
   end subroutine mixed_forces
 
   !> The motion on which the film between rough surfaces depends.
@@ -64,11 +65,12 @@ contains
 
   !> Derivatives of the total force and moment on the pin (rows F_x, F_y, moment) with respect to e_x, e_y, e_x', e_y' and the
   !> angular speeds of pin and bearing (columns), by central differences.
-  pure subroutine mixed_derivatives(film, rough, pin_radius, motion, derivatives)
+  pure subroutine mixed_derivatives(film, rough, pin_radius, motion, viscosity_ratio, derivatives)
     class(film_law_t), intent(in) :: film
     type(asperities_t), intent(in) :: rough
     real(dp), intent(in) :: pin_radius
     type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: viscosity_ratio
     real(dp), intent(out) :: derivatives(3, 6)
     real(dp) :: step(6), above(3), below(3)
     integer :: i
@@ -86,7 +88,7 @@ contains
       type(film_motion_t), intent(in) :: at
       real(dp), intent(out) :: values(3)
       real(dp) :: pressing, friction, distance, n(2)
-      call mixed_forces(film, rough, pin_radius, at, values(1:2), values(3), pressing, friction)
+      call mixed_forces(film, rough, pin_radius, at, viscosity_ratio, values(1:2), values(3), pressing, friction)
       distance = norm2(at%eccentricity)
       n = [1.0_dp, 0.0_dp]
       if (distance > 0) n = at%eccentricity/distance

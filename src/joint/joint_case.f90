@@ -13,6 +13,7 @@ module joint_case
   use oil_viscosity, only: oil_t
   use asperities, only: asperities_t
   use archard_wear, only: wear_law_t
+  use film_heat, only: heat_case_t
   implicit none
   private
   public :: joint_case_t, visit_joint, drop_laws, select_contact, select_friction
@@ -38,6 +39,7 @@ module joint_case
     type(elastic_walls_t) :: elastic
     type(asperities_t), allocatable :: asperities
     type(wear_law_t), allocatable :: wear
+    type(heat_case_t), allocatable :: heat
   contains
     procedure :: parameters => joint_parameters
     procedure :: has_clearance
@@ -92,6 +94,8 @@ contains
     class(joint_case_t), intent(in) :: self
     class(film_law_t), allocatable, intent(out) :: film
     allocate (film, source=self%film)
+    film%thinning_ratio = self%oil%thinning_ratio
+    film%thinning_speed = self%oil%thinning_rate*self%clearance/(self%bearing_radius - self%clearance)
     if (.not. self%oil%is_known()) return
     film%viscosity = self%oil%dynamic_viscosity()
     film%kinematic_viscosity = self%oil%kinematic_viscosity()
@@ -143,6 +147,7 @@ contains
     if (allocated(joint%film)) deallocate (joint%film)
     if (allocated(joint%asperities)) deallocate (joint%asperities)
     if (allocated(joint%wear)) deallocate (joint%wear)
+    if (allocated(joint%heat)) deallocate (joint%heat)
   end subroutine drop_laws
 
   !> Select the contact law that a case names, if it names one.

@@ -11,6 +11,7 @@ contains
   module procedure visit_joint
     type(asperities_t) :: asperities
     type(wear_law_t) :: wear
+    type(heat_case_t) :: heat
     call list%group('joint', 'Joint of rod and piston (piston pin)', .false., place)
     call joint%parameters(list)
     if (list%sets .and. another_has_clearance .and. .not. joint%has_clearance()) return
@@ -27,6 +28,11 @@ contains
     call wear%parameters(list)
     if (list%sets) joint%wear = wear
     if (list%is_absent()) deallocate (joint%wear)
+    call list%group('heat', 'Heating of the film by its losses. Without this group the temperature is that of &lubrication', &
+      .true., place)
+    call heat%parameters(list)
+    if (list%sets) joint%heat = heat
+    if (list%is_absent()) deallocate (joint%heat)
   end procedure visit_joint
 
   subroutine visit_contact(law, place, list)

@@ -5,7 +5,7 @@ module oil_film
   use film_law, only: film_law_t, film_motion_t
   use joint_case, only: joint_case_t
   use joint_evaluation, only: joint_evaluation_t, most_element_states
-  use load_element, only: load_element_t, n_slopes, by_pin_speed, by_bearing_speed
+  use load_element, only: load_element_t, n_slopes, n_motions, by_pin_speed, by_bearing_speed
   use film_figures, only: add_film_force, add_film_figures
   implicit none
   private
@@ -34,7 +34,7 @@ contains
     class(oil_film_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
     type(joint_evaluation_t), intent(inout) :: joint
-    call self%film%film_force(film_motion_of(self%film, joint), joint%film, joint%moment)
+    call self%film%loads(film_motion_of(self%film, joint), joint%viscosity_ratio, joint%film, joint%moment)
     joint%force = joint%film
   end subroutine find_loads
 
@@ -58,8 +58,11 @@ contains
     real(dp), intent(out) :: of_loads(3, n_slopes), of_rates(most_element_states, n_slopes)
     of_loads = 0
     of_rates = 0
-    call self%film%force_derivatives(film_motion_of(self%film, joint), of_loads(:, :by_pin_speed))
-    call add_bearing_speed(self%film, film_motion_of(self%film, joint), of_loads)
+    associate (seen => film_motion_of(self%film, joint))
+      call self%film%force_derivatives(seen, of_loads(:, :by_pin_speed))
+      call add_bearing_speed(self%film, seen, of_loads)
+      call self%film%load_slopes(seen, joint%viscosity_ratio, of_loads(:, :n_motions))
+    end associate
   end subroutine find_slopes
 
   !> Add the derivatives with respect to the angular speed of the bearing to those of a film law: it entrains the film as that of
@@ -98,6 +101,6 @@ contains
     seen = film_motion_of(self%film, joint)
     rate = joint%eccentricity_rate
     share = merge(0.0_dp, 1.0_dp, joint%touches)
-    thickening = 1
+    thickening = joint%viscosity_ratio*self%film%thinning(seen)
   end subroutine see_film
 end module oil_film

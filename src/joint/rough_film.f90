@@ -48,8 +48,8 @@ contains
     class(rough_film_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
     type(joint_evaluation_t), intent(inout) :: joint
-    call mixed_forces(self%film, self%asperities, self%pin_radius, film_motion_of(self%film, joint), joint%film, joint%moment, &
-      joint%normal_force, joint%friction_force)
+    call mixed_forces(self%film, self%asperities, self%pin_radius, film_motion_of(self%film, joint), joint%viscosity_ratio, &
+      joint%film, joint%moment, joint%normal_force, joint%friction_force)
     call find_polar(self%bearing%clearance, joint)
     associate (n => joint%normal)
       joint%contact = -joint%normal_force*n + joint%friction_force*[-n(2), n(1)]
@@ -64,7 +64,8 @@ contains
     real(dp), intent(out) :: of_loads(3, n_slopes), of_rates(most_element_states, n_slopes)
     of_loads = 0
     of_rates = 0
-    call mixed_derivatives(self%film, self%asperities, self%pin_radius, film_motion_of(self%film, joint), of_loads(:, :n_motions))
+    call mixed_derivatives(self%film, self%asperities, self%pin_radius, film_motion_of(self%film, joint), joint%viscosity_ratio, &
+      of_loads(:, :n_motions))
   end subroutine find_slopes
 
   pure subroutine add_columns(self, joint, row)
@@ -85,6 +86,7 @@ contains
     real(dp), intent(out) :: rate(2), share, thickening
     call self%oil_film_t%see_film(joint, seen, rate, share, thickening)
     seen = motion_in_gap(self%film, self%asperities, seen)
+    thickening = joint%viscosity_ratio*self%film%thinning(seen)
   end subroutine see_film
 
   pure subroutine spread(self, joint, ratio, width, arc)

@@ -84,7 +84,7 @@ module scene_problem
     type(slice_t) :: measures       !! indices of the integrals on request
     logical :: measures_loss = .false.   !! the last of them is the energy taken by the joints
     type(work_part_t), allocatable :: parts(:)   !! parts of the work, if they are told apart
-    logical :: has_shared_loads = .false.   !! of these, film and contact act at the same time in a joint
+    logical :: clears_loads = .false.       !! the right-hand side needs all loads of a joint, also those that do not act
     integer :: other_part = 0       !! the part that is the whole work without that of the others; 0: none
     logical :: is_plain = .true.    !! rigid bodies, an ideal guide and a drive that does not vary
     logical :: may_stick = .false.  !! a joint has set-valued friction
@@ -258,7 +258,7 @@ contains
     logical, intent(out) :: in_domain
     type(evaluation_t) :: now
     integer :: i
-    if (self%has_shared_loads) then
+    if (self%clears_loads) then
       do i = 1, self%n_joints
         call clear_loads(now%joint(i))
       end do
@@ -276,7 +276,7 @@ contains
       dydt)
     if (allocated(self%chain%elastic)) call self%chain%elastic%set_rates(now%motion, now%accelerations, dydt)
     do i = 1, self%n_joints
-      if (self%joints(i)%has_own_rates) call self%joints(i)%set_own_rates(now%joint(i), dydt)
+      if (self%joints(i)%has_own_rates) call self%joints(i)%set_own_rates(now%joint(i), y, dydt)
     end do
     if (allocated(self%parts)) call set_work_rates(self, y, now, dydt)
     if (self%measures%last < self%measures%first) return
@@ -448,6 +448,7 @@ contains
     call self%layout%count_again()
     call claim_states(self)
     self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying))
+    self%clears_loads = any([(allocated(self%joints(i)%heat), i=1, self%n_joints)])
     self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide)
     call self%set_layout()
   end subroutine claim

@@ -18,7 +18,7 @@ contains
     end do
     if (allocated(self%guide)) call add(by_guide, 0)
     if (allocated(self%chain%elastic)) call add(by_elastic, 0)
-    self%has_shared_loads = any([(self%joints(i)%shares_load(), i=1, self%n_joints)])
+    self%clears_loads = self%clears_loads .or. any([(self%joints(i)%shares_load(), i=1, self%n_joints)])
     call choose_other_part(self)
     do i = 1, size(self%parts)
       if (i == self%other_part .or. is_constant_torque(self) .and. self%parts(i)%what == by_drive) cycle
