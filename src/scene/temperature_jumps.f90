@@ -1,0 +1,116 @@
+!> Jumps of the temperatures of films to their settled values, in a run until the motion is periodic. A film settles over thousands of
+!> cycles, the rest of the motion within some: after a cycle in which the other states repeat, each temperature is set to where its
+!> change in a cycle is expected to be 0.
+!>
+!> The first jump follows from the heat that leaves for each kelvin, u = rho c_p Q + G: over a cycle T' = -u (T - T_s)/C with mean u
+!> gives T_s = T + dT/(1 - exp(-Int u dt/C)). Later ones follow by the secant through the last two changes. The settled temperature
+!> does not depend on the jumps, since the motion must repeat over plain cycles after the last one.
+module temperature_jumps
+  use kinds, only: dp
+  use film_heat, only: uptake
+  use clearance_joint, only: most_joints
+  use scene_problem, only: scene_t
+  use period_watch, only: period_watch_t
+  use run_length, only: longest_period
+  implicit none
+  private
+  public :: temperature_jumps_t
+
+  real(dp), parameter :: fast_repeats = 1e-3_dp    !! change of the other states in a cycle, relative to their ranges
+  real(dp), parameter :: farthest = 25             !! longest jump without a secant [K]
+  integer, parameter :: depth = longest_period + 1
+
+  !> The film of one joint.
+  type :: film_t
+    integer :: pairs = 0                !! number of changes that are known, up to 2
+    real(dp) :: temperature(2) = 0      !! at the beginning of the last cycle but one with a jump after it, and of the last one [K]
+    real(dp) :: change(2) = 0           !! of it in these cycles [K]
+    real(dp) :: begin(0:depth - 1) = 0, sum(0:depth - 1) = 0   !! temperature [K] and integral of u [J/K] at the end of revolution k,
+                                                               !! in element mod(k, depth)
+  end type film_t
+
+  type :: temperature_jumps_t
+    logical :: is_due = .false.         !! the integration is to go on with the new temperatures
+    real(dp) :: jump(most_joints) = 0   !! of the temperature at each joint [K]
+    type(film_t), private :: films(most_joints)
+    integer, private :: since = -1      !! number of revolutions made when the present temperatures began; -1: the start
+  contains
+    procedure :: consider
+    procedure :: make
+  end type temperature_jumps_t
+
+contains
+
+  !> The motion has completed a revolution with the state y: find out whether temperatures are to jump.
+  subroutine consider(self, scene, periods, y)
+    class(temperature_jumps_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    type(period_watch_t), intent(in) :: periods
+    real(dp), intent(in) :: y(:)
+    real(dp) :: target(most_joints)
+    integer :: i, p, made
+    made = periods%made
+    if (self%since < 0) self%since = made
+    do i = 1, scene%n_joints
+      if (.not. allocated(scene%joints(i)%heat)) cycle
+      associate (heat => scene%joints(i)%heat, film => self%films(i))
+        film%begin(mod(made, depth)) = y(heat%at%first)
+        film%sum(mod(made, depth)) = y(heat%sums%first + uptake - 1)
+      end associate
+    end do
+    self%jump = 0
+    do p = periods%forcing, min(periods%longest, made - self%since), periods%forcing
+      if (periods%fast_change(p) > fast_repeats) cycle
+      do i = 1, scene%n_joints
+        if (.not. allocated(scene%joints(i)%heat)) cycle
+        associate (film => self%films(i), now => mod(made, depth), then => mod(made - p, depth))
+          target(i) = settled(film, film%begin(then), film%begin(now) - film%begin(then), &
+            (film%sum(now) - film%sum(then))/scene%joints(i)%heat%given%heat_capacity)
+          self%jump(i) = target(i) - film%begin(now)
+          if (abs(self%jump(i)) <= periods%tolerance*periods%range_of(scene%joints(i)%heat%at%first)) self%jump(i) = 0
+        end associate
+      end do
+      exit
+    end do
+    self%is_due = any(abs(self%jump) > 0)
+    if (self%is_due) self%since = made
+  end subroutine consider
+
+  !> The settled temperature [K] by the change d of the temperature t in a cycle.
+  real(dp) function settled(film, t, d, exponent)
+    type(film_t), intent(inout) :: film
+    real(dp), intent(in) :: t, d
+    real(dp), intent(in) :: exponent   !! Int u dt/C over the cycle
+    real(dp) :: slope
+    film%temperature = [film%temperature(2), t]
+    film%change = [film%change(2), d]
+    film%pairs = min(film%pairs + 1, 2)
+    slope = 0
+    if (film%pairs == 2 .and. abs(film%temperature(2) - film%temperature(1)) > 0) &
+      slope = (film%change(2) - film%change(1))/(film%temperature(2) - film%temperature(1))
+    if (slope < 0) then
+      settled = t - d/slope
+    else
+      settled = t + d/(1 - exp(-max(exponent, tiny(1.0_dp))))
+    end if
+    settled = min(max(settled, t - farthest), t + farthest)
+  end function settled
+
+  !> Make the jumps in a scene and its state.
+  subroutine make(self, scene, y)
+    class(temperature_jumps_t), intent(inout) :: self
+    type(scene_t), intent(inout) :: scene
+    real(dp), intent(inout) :: y(:)
+    integer :: i
+    self%is_due = .false.
+    do i = 1, scene%n_joints
+      if (.not. abs(self%jump(i)) > 0) cycle
+      associate (heat => scene%joints(i)%heat)
+        y(heat%at%first) = y(heat%at%first) + self%jump(i)
+        heat%jumped = heat%jumped + self%jump(i)
+        heat%jumps = heat%jumps + 1
+        self%films(i)%begin(mod(self%since, depth)) = y(heat%at%first)
+      end associate
+    end do
+  end subroutine make
+end module temperature_jumps
