@@ -170,7 +170,8 @@ contains
       do k = 1, crank%n
         call self%periods%end_revolution(crank%t(k), crank%y(:, k), crank%angle(crank%ended - crank%n + k))
         if (self%periods%is_on .and. self%periods%window_after < 0 .and. .not. self%periods%has_ended) &
-          call self%jumps%consider(scene, self%periods, crank%y(:, k))
+          call self%jumps%consider(scene, self%periods, crank%y(:, k), &
+            method%settings%relative*abs(crank%y(:, k)) + method%settings%absolute)
         if (.not. (self%periods%has_ended .or. self%jumps%is_due)) cycle
         t_end = crank%t(k)
         self%scene_at_end = scene

@@ -4,7 +4,8 @@
 !>
 !> The first jump follows from the heat that leaves for each kelvin, u = rho c_p Q + G: over a cycle T' = -u (T - T_s)/C with mean u
 !> gives T_s = T + dT/(1 - exp(-Int u dt/C)). Later ones follow by the secant through the last two changes. The settled temperature
-!> does not depend on the jumps, since the motion must repeat over plain cycles after the last one.
+!> does not depend on the jumps, since the motion must repeat over plain cycles after the last one. Of jumps that the tolerance of the
+!> integration may explain only a few are made.
 module temperature_jumps
   use kinds, only: dp
   use film_heat, only: uptake
@@ -17,14 +18,17 @@ module temperature_jumps
   public :: temperature_jumps_t
 
   real(dp), parameter :: fast_repeats = 1e-3_dp    !! change of the other states in a cycle, relative to their ranges
-  real(dp), parameter :: farthest = 25             !! longest jump without a secant [K]
+  real(dp), parameter :: farthest = 25             !! longest jump [K]
+  integer, parameter :: most_small_jumps = 3
   integer, parameter :: depth = longest_period + 1
 
   !> The film of one joint.
   type :: film_t
-    integer :: pairs = 0                !! number of changes that are known, up to 2
-    real(dp) :: temperature(2) = 0      !! at the beginning of the last cycle but one with a jump after it, and of the last one [K]
-    real(dp) :: change(2) = 0           !! of it in these cycles [K]
+    logical :: is_known = .false.       !! the following are
+    real(dp) :: temperature = 0         !! at the beginning of a former cycle [K]
+    real(dp) :: change = 0              !! of it in that cycle [K]
+    integer :: small_jumps = 0          !! number of jumps below the error of the settled temperature
+    real(dp) :: slope = 0               !! of this change over the temperature; 0: not known [-]
     real(dp) :: begin(0:depth - 1) = 0, sum(0:depth - 1) = 0   !! temperature [K] and integral of u [J/K] at the end of revolution k,
                                                                !! in element mod(k, depth)
   end type film_t
@@ -42,12 +46,13 @@ module temperature_jumps
 contains
 
   !> The motion has completed a revolution with the state y: find out whether temperatures are to jump.
-  subroutine consider(self, scene, periods, y)
+  subroutine consider(self, scene, periods, y, tolerances)
     class(temperature_jumps_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     type(period_watch_t), intent(in) :: periods
     real(dp), intent(in) :: y(:)
-    real(dp) :: target(most_joints)
+    real(dp), intent(in) :: tolerances(:)   !! of the integration, of each component
+    real(dp) :: target, error
     integer :: i, p, made
     made = periods%made
     if (self%since < 0) self%since = made
@@ -63,11 +68,13 @@ contains
       if (periods%fast_change(p) > fast_repeats) cycle
       do i = 1, scene%n_joints
         if (.not. allocated(scene%joints(i)%heat)) cycle
-        associate (film => self%films(i), now => mod(made, depth), then => mod(made - p, depth))
-          target(i) = settled(film, film%begin(then), film%begin(now) - film%begin(then), &
-            (film%sum(now) - film%sum(then))/scene%joints(i)%heat%given%heat_capacity)
-          self%jump(i) = target(i) - film%begin(now)
-          if (abs(self%jump(i)) <= periods%tolerance*periods%range_of(scene%joints(i)%heat%at%first)) self%jump(i) = 0
+        associate (film => self%films(i), now => mod(made, depth), then => mod(made - p, depth), &
+            at => scene%joints(i)%heat%at%first)
+          call find_settled(film, film%begin(then), film%begin(now) - film%begin(then), (film%sum(now) - film%sum(then))/ &
+            scene%joints(i)%heat%given%heat_capacity, tolerances(at), target, error)
+          target = target - film%begin(now)
+          if (abs(target) <= error) film%small_jumps = film%small_jumps + 1
+          if (abs(target) > periods%tolerance*periods%range_of(at) .and. film%small_jumps <= most_small_jumps) self%jump(i) = target
         end associate
       end do
       exit
@@ -76,25 +83,27 @@ contains
     if (self%is_due) self%since = made
   end subroutine consider
 
-  !> The settled temperature [K] by the change d of the temperature t in a cycle.
-  real(dp) function settled(film, t, d, exponent)
+  !> The settled temperature and its error [K] by the change d of the temperature t in a cycle. The slope of the change over the
+  !> temperature is only taken from temperatures that differ by much more than this error.
+  subroutine find_settled(film, t, d, exponent, tolerance, settled, error)
     type(film_t), intent(inout) :: film
-    real(dp), intent(in) :: t, d
-    real(dp), intent(in) :: exponent   !! Int u dt/C over the cycle
-    real(dp) :: slope
-    film%temperature = [film%temperature(2), t]
-    film%change = [film%change(2), d]
-    film%pairs = min(film%pairs + 1, 2)
-    slope = 0
-    if (film%pairs == 2 .and. abs(film%temperature(2) - film%temperature(1)) > 0) &
-      slope = (film%change(2) - film%change(1))/(film%temperature(2) - film%temperature(1))
-    if (slope < 0) then
-      settled = t - d/slope
-    else
-      settled = t + d/(1 - exp(-max(exponent, tiny(1.0_dp))))
+    real(dp), intent(in) :: t, d, tolerance   !! [K]; tolerance of d
+    real(dp), intent(in) :: exponent          !! Int u dt/C over the cycle
+    real(dp), intent(out) :: settled, error
+    real(dp), parameter :: apart = 10
+    real(dp) :: first_slope, slope
+    first_slope = exp(-max(exponent, tiny(1.0_dp))) - 1
+    if (.not. film%slope < 0) film%slope = first_slope
+    if (film%is_known .and. abs(t - film%temperature) > apart*tolerance/abs(film%slope)) then
+      slope = (d - film%change)/(t - film%temperature)
+      if (slope < 0) film%slope = slope
     end if
-    settled = min(max(settled, t - farthest), t + farthest)
-  end function settled
+    film%is_known = .true.
+    film%temperature = t
+    film%change = d
+    settled = t - min(max(d/film%slope, -farthest), farthest)
+    error = tolerance/abs(film%slope)
+  end subroutine find_settled
 
   !> Make the jumps in a scene and its state.
   subroutine make(self, scene, y)
