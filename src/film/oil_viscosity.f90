@@ -45,6 +45,7 @@ module oil_viscosity
     procedure :: kinematic
     procedure :: rho
     procedure :: relative_slope
+    procedure :: expansion_at
   end type oil_curve_t
 
   real(dp), parameter :: mm2 = 1e-6_dp   !! [m^2]
@@ -194,7 +195,7 @@ contains
   pure real(dp) function relative_slope(self, temperature) result(slope)
     class(oil_curve_t), intent(in) :: self
     real(dp), intent(in) :: temperature   !! [K]
-    real(dp) :: nu, rest, z, k
+    real(dp) :: nu, rest, z
     if (self%is_walther) then
       nu = self%kinematic(temperature)/mm2
       rest = exp(-1.47_dp - 1.84_dp*nu - 0.51_dp*nu**2)
@@ -203,9 +204,15 @@ contains
     else
       slope = -self%slope/(temperature - self%vogel_temperature)**2
     end if
-    k = expansion/self%density*(temperature - density_temperature)
-    slope = slope - expansion/self%density*(1 + 1.6_dp*k)
+    slope = slope + self%expansion_at(temperature)
   end function relative_slope
+
+  !> Derivative of the density with respect to the temperature, over the density [1/K].
+  pure real(dp) function expansion_at(self, temperature) result(slope)
+    class(oil_curve_t), intent(in) :: self
+    real(dp), intent(in) :: temperature   !! [K]
+    slope = -expansion/self%density*(1 + 1.6_dp*expansion/self%density*(temperature - density_temperature))
+  end function expansion_at
 
   !> Z for a viscosity in mm^2/s.
   pure real(dp) function z_of(nu)

@@ -12,7 +12,7 @@ module run_summary
   use period_watch, only: period_watch_t
   use joint_places, only: n_places, in_order, name_prefix
   use archard_wear, only: of_pin, of_bore
-  use film_heat, only: heat_totals_t, heat_in, heat_to_oil, heat_to_housing
+  use film_heat, only: heat_totals_t
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use result_notes, only: notes_on_results, relative_residual, energy_warning, no_exponent
@@ -186,9 +186,9 @@ contains
       character(len=*), intent(in) :: prefix
       type(heat_totals_t), intent(in) :: heat
       call table%add('film_temperature', heat%temperature, prefix)
-      call table%add('heat_in', heat%sums(heat_in), prefix)
-      call table%add('heat_to_oil', heat%sums(heat_to_oil), prefix)
-      call table%add('heat_to_housing', heat%sums(heat_to_housing), prefix)
+      call table%add('heat_in', heat%came_in, prefix)
+      call table%add('heat_to_oil', heat%to_oil, prefix)
+      call table%add('heat_to_housing', heat%to_housing, prefix)
       call table%add('heat_stored', heat%stored, prefix)
       if (heat%jumps > 0) then
         call table%add('temperature_jumps', heat%jumps, prefix)

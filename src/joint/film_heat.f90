@@ -59,7 +59,9 @@ module film_heat
   type :: heat_totals_t
     logical :: is_known = .false.
     real(dp) :: temperature = 0         !! [K]
-    real(dp) :: sums(n_sums) = 0        !! the integrals
+    real(dp) :: came_in = 0             !! [J]
+    real(dp) :: to_oil = 0              !! [J]
+    real(dp) :: to_housing = 0          !! [J]
     real(dp) :: stored = 0              !! C (T - T_0) [J]
     real(dp) :: extrapolated = 0        !! the part of it that stands for times that were left out [J]
     real(dp) :: residual = 0            !! heat that came in less what has left and is stored: the error of the integration [J]
@@ -174,7 +176,8 @@ contains
     of_viscosity = self%oil%relative_slope(t)
     associate (given => self%given)
       of_rate = (film_power*of_viscosity - given%conductance - self%oil%rho(t)*given%specific_heat* &
-        merge(given%side_flow, film_flow, given%side_flow > 0))/given%heat_capacity
+        merge(given%side_flow, film_flow, given%side_flow > 0)*(1 + self%oil%expansion_at(t)*(t - given%inlet_temperature)))/ &
+        given%heat_capacity
     end associate
   end subroutine slopes
 
@@ -184,11 +187,14 @@ contains
     real(dp), intent(in) :: y(*)
     totals%is_known = .true.
     totals%temperature = y(self%at%first)
-    totals%sums = y(self%sums%first:self%sums%last)
+    associate (sums => y(self%sums%first:self%sums%last))
+      totals%came_in = sums(heat_in)
+      totals%to_oil = sums(heat_to_oil)
+      totals%to_housing = sums(heat_to_housing)
+    end associate
     totals%stored = self%given%heat_capacity*(totals%temperature - self%start)
     totals%extrapolated = self%given%heat_capacity*self%jumped
-    totals%residual = totals%sums(heat_in) - totals%sums(heat_to_oil) - totals%sums(heat_to_housing) &
-      - (totals%stored - totals%extrapolated)
+    totals%residual = totals%came_in - totals%to_oil - totals%to_housing - (totals%stored - totals%extrapolated)
     totals%jumps = self%jumps
   end function totals
 end module film_heat

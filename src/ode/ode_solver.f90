@@ -257,6 +257,7 @@ contains
     class(ode_problem_t), intent(in) :: problem
     class(ode_method_t), intent(inout) :: method
     real(dp), intent(in) :: t, y(:)
+    call method%count_time(method%t_old - (self%t - t))   ! the time after t is counted again
     self%t = t
     self%y = y
     self%event = 0

@@ -37,6 +37,7 @@ module temperature_jumps
     logical :: is_due = .false.         !! the integration is to go on with the new temperatures
     real(dp) :: jump(most_joints) = 0   !! of the temperature at each joint [K]
     type(film_t), private :: films(most_joints)
+    integer, private :: cycle = 0       !! over which changes are known [revolutions]
     integer, private :: since = -1      !! number of revolutions made when the present temperatures began; -1: the start
   contains
     procedure :: consider
@@ -65,7 +66,10 @@ contains
     end do
     self%jump = 0
     do p = periods%forcing, min(periods%longest, made - self%since), periods%forcing
-      if (periods%fast_change(p) > fast_repeats) cycle
+      if (mod(made - self%since, p) /= 0 .or. periods%fast_change(p) > fast_repeats) cycle   ! at the same phase of the cycle
+      if (p /= self%cycle) self%films%is_known = .false.
+      if (p /= self%cycle) self%films%slope = 0
+      self%cycle = p
       do i = 1, scene%n_joints
         if (.not. allocated(scene%joints(i)%heat)) cycle
         associate (film => self%films(i), now => mod(made, depth), then => mod(made - p, depth), &
