@@ -34,7 +34,7 @@ contains
     if (allocated(case%measured)) call add('gas', case%measured%description())
     do i = 1, n_places
       associate (place => in_order(i))
-        if (i == 1 .or. case%joints(place)%has_clearance()) call add(trim(places(place)%title), joint_text(case%joints(place)))
+        if (i == 1 .or. case%joints(place)%has_bearing()) call add(trim(places(place)%title), joint_text(case%joints(place)))
       end associate
     end do
     if (allocated(case%guide)) call add('guide', guide_text(case))
@@ -95,7 +95,7 @@ contains
     type(joint_case_t), intent(in) :: joint
     character(len=:), allocatable :: text
     text = 'ideal'
-    if (.not. joint%has_clearance()) return
+    if (.not. joint%has_bearing()) return
     text = 'clearance '//quantity_text(joint%clearance, 'm', digits)//', '// &
       short_text(joint%clearance/joint%bearing_radius, 2)//' of the radius of '//quantity_text(joint%bearing_radius, 'm', digits)
     if (joint%bearing_length > 0) text = text//', length/diameter '//short_text(0.5_dp*joint%bearing_length/joint%bearing_radius, 3)

@@ -12,7 +12,7 @@ module case_rules
   use friction_law, only: friction_law_t
   use body_rules, only: check_guide, check_elastic, bore_reach
   use chain_motion, only: crank_pin, piston_pin, n_pins, n_bodies, body_crank, body_big_end, body_small_end, body_piston
-  use joint_places, only: places, n_places, in_order, name_prefix, joint_group
+  use joint_places, only: places, n_places, in_order, name_prefix, joint_group, main_bearing
   implicit none
   private
   public :: check_rules
@@ -103,25 +103,31 @@ contains
       character(len=:), allocatable :: group      !! of the joint
       logical :: bearing_turns
       group = joint_group(place)
-      if (.not. joint%has_clearance()) then
+      call forbid(place == main_bearing .and. joint%has_clearance(), group, 'kind', &
+        'must be ideal or quasi_static: the crank turns about a fixed axis')
+      call forbid(place /= main_bearing .and. abs(joint%load_share - 1) > 0, group, 'load_share', &
+        'is for place = ''main_bearing'' alone')
+      if (.not. joint%has_bearing()) then
         call forbid(has_own_law(place) .or. place == in_order(1) .and. (allocated(joint%contact) .or. &
           allocated(joint%friction) .or. allocated(joint%film) .or. allocated(joint%asperities) .or. allocated(joint%wear)), &
           group, 'kind', &
-          'must be clearance with contact, friction or lubrication: an ideal joint has no '// &
+          'must be clearance (or quasi_static) with contact, friction or lubrication: an ideal joint has no '// &
           'clearance; remove these groups, for example with --set contact=none')
         call forbid(joint%clearance > 0 .and. .not. values%is_given(group, 'kind'), group, 'clearance', &
           'needs kind = ''clearance''; the default is ideal')
         return
       end if
       if (allocated(joint%film)) call check_oil(joint, law_group('lubrication', place))
-      call values%demand(joint%clearance > 0, group, 'clearance', 'with kind = ''clearance''')
-      call values%demand(joint%bearing_radius > 0, group, 'bearing_radius', 'with kind = ''clearance''')
+      call values%demand(joint%clearance > 0, group, 'clearance', 'with kind = '''//joint%kind//'''')
+      call values%demand(joint%bearing_radius > 0, group, 'bearing_radius', 'with kind = '''//joint%kind//'''')
       if (joint%bearing_radius > 0) call forbid(joint%bearing_radius <= joint%clearance, group, 'clearance', &
         'must be < bearing_radius = '//short_text(joint%bearing_radius)//': the pin''s radius is the difference')
       call values%demand(joint%bearing_length > 0 .or. .not. allocated(joint%film), group, 'bearing_length', 'with lubrication')
-      call forbid(.not. (allocated(joint%contact) .or. allocated(joint%film)), group, 'kind', &
+      if (joint%is_carried()) call check_carried(joint, place)
+      call forbid(joint%has_clearance() .and. .not. (allocated(joint%contact) .or. allocated(joint%film)), group, 'kind', &
         'needs contact or lubrication: without them no force would act on the pin')
-      call forbid(allocated(joint%friction) .and. .not. allocated(joint%contact), law_group('friction', place), 'law', &
+      call forbid(allocated(joint%friction) .and. .not. (allocated(joint%contact) .or. joint%is_carried()), &
+        law_group('friction', place), 'law', &
         'needs the group contact: dry friction follows the normal force')
       if (values%problems%concerns(group)) return
       if (allocated(joint%asperities)) then
@@ -135,6 +141,27 @@ contains
       call check_transition(joint, law_group('lubrication', place))
       call check_elastic_film(joint, law_group('lubrication', place), law_group('contact', place))
     end subroutine check_joint
+
+    !> Check that a film alone carries the load of a pin that is ideal in the mechanism.
+    subroutine check_carried(joint, place)
+      type(joint_case_t), intent(in) :: joint
+      integer, intent(in) :: place   !! index in `places`
+      call forbid(.not. allocated(joint%film), joint_group(place), 'kind', &
+        'quasi_static needs the group lubrication: a film carries the load')
+      call forbid(allocated(joint%friction), law_group('friction', place), 'law', &
+        'is not for kind = ''quasi_static'': no contact law acts there; give the group the place of another joint')
+      if (.not. allocated(joint%film)) return
+      call forbid(allocated(joint%contact) .and. .not. joint%elastic%is_wanted, law_group('contact', place), 'law', &
+        'is not for kind = ''quasi_static'' unless elastic_film = .true.: the film carries all of the load')
+      call forbid(joint%transition%is_weighted(), law_group('lubrication', place), 'transition', &
+        'must be switch with kind = ''quasi_static'': the film carries all of the load')
+      call forbid(.not. joint%film%is_quasi_static(), law_group('lubrication', place), 'law', &
+        'must give a force that depends on the velocity of the pin alone, with kind = ''quasi_static'': finite_bearing, or '// &
+        'closed_form and half_film of pinkus_sternlicht')
+      if (.not. allocated(joint%wear)) return
+      call forbid(.not. allocated(joint%asperities), law_group('wear', place), 'rate', &
+        'needs the group asperities with kind = ''quasi_static'': a rigid film carries all of the load')
+    end subroutine check_carried
 
     !> Check that the viscosity of the film is given by one source.
     subroutine check_oil(joint, group)
@@ -320,7 +347,8 @@ contains
         end do
         if (values%problems%concerns('mechanism') .or. values%problems%concerns('initial')) return
         place = in_order(max(1, findloc(distance(in_order) > 0, .true., 1)))
-        call forbid(sum(distance) >= m%rod_length - m%crank_length, 'initial', name_prefix(place)//'eccentricity', &
+        call forbid(sum(distance, c%joints%has_clearance()) >= m%rod_length - m%crank_length, 'initial', &
+          name_prefix(place)//'eccentricity', &
           'must be shorter than rod_length - crank_length = '//short_text(m%rod_length - m%crank_length))
       end associate
     end subroutine check_start
@@ -332,7 +360,7 @@ contains
       character(len=*), intent(in) :: prefix   !! prefix of the keys
       real(dp), intent(in) :: distance, rate(2)
       associate (key => prefix//'eccentricity')
-        if (joint%has_clearance()) then
+        if (joint%has_bearing()) then
           if (values%problems%concerns(group)) return
           if (distance >= joint%bearing_radius) then
             call values%refuse('initial', key, 'must be shorter than bearing_radius = '//short_text(joint%bearing_radius)// &
@@ -341,6 +369,8 @@ contains
             call values%refuse('initial', key, 'must be shorter than the clearance, '//short_text(joint%clearance)// &
               ', where there is no contact')
           end if
+          call forbid(joint%is_carried() .and. norm2(rate) > 0, 'initial', key//'_rate', &
+            'must be 0 with kind = ''quasi_static'': it follows from the load')
         else
           call forbid(distance > 0, 'initial', key, 'must be 0 in an ideal joint')
           call forbid(norm2(rate) > 0, 'initial', key//'_rate', 'must be 0 in an ideal joint')

@@ -11,7 +11,7 @@ module case_definition
   use model_parameters, only: has_parameters_t, parameter_list_t
   use run_length, only: run_length_t
   use chain_motion, only: n_pins
-  use joint_places, only: places, n_places, in_order, name_prefix
+  use joint_places, only: places, n_places, in_order, name_prefix, main_bearing
   use joint_case, only: joint_case_t
   use guide_case, only: guide_case_t, guide_clearance
   use elastic_rod, only: elastic_rod_t
@@ -153,7 +153,7 @@ contains
     integer :: i
     is_loose = .false.
     do i = 1, n_places
-      is_loose(places(i)%pin) = is_loose(places(i)%pin) .or. self%joints(i)%has_clearance()
+      if (self%joints(i)%has_clearance()) is_loose(places(i)%pin) = .true.
     end do
   end function loose_pins
 
@@ -238,6 +238,7 @@ contains
       name = name_prefix(in_order(i))//'eccentricity'
       call list%add(name, self%eccentricity(:, in_order(i)), 'centre of the '//trim(places(in_order(i))%title)// &
         ' from the centre of its bearing (x, y); in contact if longer than the clearance', 'm', default='0.0', usual='0 to 1e-2')
+      if (in_order(i) == main_bearing) cycle   ! its rate follows from the load
       call list%add(name//'_rate', self%eccentricity_rate(:, in_order(i)), 'rate of '//name, 'm/s', default='0.0', &
         usual='0 to 100')
     end do

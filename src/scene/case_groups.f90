@@ -26,9 +26,9 @@ contains
     call case%initial%parameters(list)
     do i = 1, n_places
       call visit_joint(case%joints(in_order(i)), trim(places(in_order(i))%name), &
-        any(case%joints(in_order(:i - 1))%has_clearance()), list)
+        any(case%joints(in_order(:i - 1))%has_bearing()), list)
     end do
-    do i = 1, merge(n_places, 0, list%sets .and. case%has_play())
+    do i = 1, merge(n_places, 0, list%sets .and. any(case%joints%has_bearing()))
       call drop_laws(case%joints(i))
     end do
     call visit_guide(case%guide, list)

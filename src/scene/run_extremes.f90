@@ -231,7 +231,7 @@ contains
     integer :: i, revolutions
     revolutions = 1
     if (allocated(scene%gas)) revolutions = scene%gas%revolutions
-    do i = 1, scene%n_joints
+    do i = 1, size(scene%joints)
       associate (place => scene%joints(i)%place)
         self%figures%pin(place)%film_change = cycles%film_change(place, revolutions)
       end associate

@@ -6,7 +6,7 @@ module scene_builder
   use case_definition, only: case_t
   use ode_method, only: ode_settings_t
   use chain_motion, only: body_piston
-  use joint_places, only: n_places, in_order
+  use joint_places, only: in_order
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
   use joint_events, only: may_touch, may_pass_static
   use load_elements, only: add_elements
@@ -97,29 +97,31 @@ contains
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint, makes_tables
     type(scene_t), allocatable, intent(out) :: scene
-    integer :: i, n
+    integer, allocatable :: of_clearance(:), carried(:)   ! places
+    integer :: n
     allocate (scene)
-    if (ideal_joint) then
-      allocate (scene%joints(0))
-    else
-      allocate (scene%joints(count(case%joints%has_clearance())))
-    end if
-    n = 0
-    do i = 1, merge(n_places, 0, size(scene%joints) > 0)
-      associate (place => in_order(i))
-        if (.not. case%joints(place)%has_clearance()) cycle
-        n = n + 1
-        call build_joint(case, place, makes_tables, scene%joints(n))
-      end associate
+    of_clearance = pack(in_order, case%joints(in_order)%has_clearance() .and. .not. ideal_joint)
+    carried = pack(in_order, case%joints(in_order)%is_carried() .and. .not. ideal_joint)
+    scene%n_joints = size(of_clearance)
+    allocate (scene%joints(size(of_clearance) + size(carried)), scene%carried(size(carried)))
+    do n = 1, size(scene%joints)
+      if (n <= scene%n_joints) then
+        call build_joint(case, of_clearance(n), makes_tables, scene%joints(n))
+      else
+        associate (place => carried(n - scene%n_joints), bearing => scene%carried(n - scene%n_joints))
+          call build_joint(case, place, makes_tables, scene%joints(n))
+          bearing%joint = n
+          bearing%load_share = case%joints(place)%load_share
+        end associate
+      end if
     end do
-    scene%n_joints = n
-    if (n > 0) scene%chain%is_loose = case%loose_pins()
+    if (scene%n_joints > 0) scene%chain%is_loose = case%loose_pins()
     if (allocated(case%guide) .and. .not. (ideal_joint .and. case%has_loose_guide())) then
       allocate (scene%guide)
       call case%guide%build(scene%guide)
       scene%guide%start = [case%initial%piston_offset, case%initial%piston_tilt]
       scene%guide%start_rate = [case%initial%piston_offset_rate, case%initial%piston_tilt_rate]
-      do n = 1, scene%n_joints
+      do n = 1, size(scene%joints)
         if (scene%joints(n)%site%bearing == body_piston) scene%joints(n)%bearing_turns = scene%guide%is_loose
       end do
     end if
@@ -199,7 +201,7 @@ contains
       joint%pin_radius = joint%bearing%pin_radius()
       call add_elements(wanted, case%integrator%relative_tolerance, makes_tables, joint)
       if (allocated(wanted%wear)) allocate (joint%wear, source=wanted%wear)
-      joint%reports_film = wanted%reports_film .and. allocated(wanted%film)
+      joint%reports_film = (wanted%reports_film .or. wanted%is_carried() .and. case%output%answers) .and. allocated(wanted%film)
     end associate
   end subroutine build_joint
 

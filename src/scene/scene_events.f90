@@ -149,11 +149,11 @@ contains
     class(scene_t), intent(in) :: scene
     integer :: i
     mode_of = 0
-    do i = 1, size(scene%joints)
+    do i = 1, scene%n_joints
       mode_of = mode_of + scene%joints(i)%phase*n_phases**(i - 1)
     end do
     if (.not. allocated(scene%guide)) return
-    if (any(scene%guide%touches)) mode_of = mode_of + n_phases**size(scene%joints)
+    if (any(scene%guide%touches)) mode_of = mode_of + n_phases**scene%n_joints
   end function mode_of
 
   !> Choose the state of set-valued friction of one joint: its direction of sliding, or sticking.
@@ -235,6 +235,9 @@ contains
       call self%joints(i)%begin_at(contact(1) + self%joints(i)%bearing%clearance, contact(2))
       if (.not. may_touch(self%joints(i))) cycle
       if (contact(1) >= -rounding*self%joints(i)%bearing%clearance) call self%joints(i)%begin_contact(contact(2))
+    end do
+    do i = self%n_joints + 1, size(self%joints)
+      self%joints(i)%phase = self%joints(i)%phase_apart()
     end do
     if (allocated(self%guide)) call prepare_corners(self, y)
     do i = 1, self%n_joints

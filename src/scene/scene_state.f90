@@ -21,6 +21,9 @@ contains
     do i = 1, self%n_joints
       call self%joints(i)%declare(list, y)
     end do
+    do i = 1, size(self%carried)
+      call self%carried(i)%declare(list, self%joints(self%carried(i)%joint), y)
+    end do
     if (allocated(self%guide)) call self%guide%declare(list, y)
     if (allocated(self%chain%elastic)) call self%chain%elastic%declare(list, t, y, angle, speed)
     if (allocated(self%gas)) call self%gas%declare(list, angle, speed)

@@ -131,7 +131,7 @@ contains
     call row%add('energy[J]', energy, 'kinetic and potential energy of all bodies, with the energy stored in elastic members')
     call row%add('energy_residual[J]', energy - initial_energy - work, &
       'energy minus initial energy minus the work of all non-conservative forces and of the drive; 0 for an exact integration')
-    do i = 1, scene%n_joints
+    do i = 1, size(scene%joints)
       call add_joint_columns(scene%joints(i), now%joint(i), row)
     end do
     if (allocated(scene%guide)) call add_guide_columns(scene%guide, now%motion, now%accelerations, now%guide, row)
