@@ -3,6 +3,7 @@ module case_rules
   use kinds, only: dp
   use constants, only: two_pi
   use number_text, only: short_text
+  use text_tools, only: integer_text
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use case_schema, only: find_group
@@ -29,18 +30,24 @@ contains
     logical :: turns   ! the crank turns at the start
     integer :: i
     turns = abs(c%initial%crank_speed) > 0
-    call check_bodies()
+    if (allocated(c%load)) then
+      call check_load()
+    else
+      call check_bodies()
+    end if
     do i = 1, n_places
       call check_joint(c%joints(in_order(i)), in_order(i))
     end do
     do i = 1, n_places
       call check_friction(c%joints(in_order(i)), in_order(i))
     end do
-    call check_guide(c, values)
     call check_start()
-    call check_elastic(c, values)
-    call check_gas()
-    call check_drive()
+    if (.not. allocated(c%load)) then
+      call check_guide(c, values)
+      call check_elastic(c, values)
+      call check_gas()
+      call check_drive()
+    end if
     call check_periods()
     call check_run()
     call check_output()
@@ -88,6 +95,35 @@ contains
         end if
       end associate
     end subroutine check_bodies
+
+    !> Check a bearing by itself: that there is no part of a mechanism, that its joint is carried, and that its bodies are known.
+    subroutine check_load()
+      character(len=*), parameter :: only = 'is for a mechanism; this case has &bearing_load', &
+        groups(6) = [character(len=17) :: 'mechanism', 'guide', 'elastic_rod', 'crankshaft', 'combustion', 'cylinder_pressure'], &
+        of_drive(4) = [character(len=16) :: 'torque', 'damping', 'flywheel_inertia', 'torque_table'], &
+        of_initial(4) = [character(len=18) :: 'piston_offset', 'piston_offset_rate', 'piston_tilt', 'piston_tilt_rate']
+      character(len=:), allocatable :: group
+      integer :: k
+      do k = 1, size(groups)
+        if (values%is_present(find_group(values%groups, trim(groups(k))))) call values%refuse_group(trim(groups(k)), only)
+      end do
+      do k = 2, n_places
+        group = joint_group(in_order(k))
+        if (values%is_present(find_group(values%groups, group))) call values%refuse_group(group, only)
+      end do
+      do k = 1, size(of_drive)
+        call forbid(values%is_said(values%place_of('drive', trim(of_drive(k)))), 'drive', trim(of_drive(k)), only)
+      end do
+      call forbid(c%drive%kind == 'free' .and. values%is_given('drive', 'kind'), 'drive', 'kind', &
+        'must be constant_speed with &bearing_load')
+      do k = 1, size(of_initial)
+        call forbid(values%is_said(values%place_of('initial', trim(of_initial(k)))), 'initial', trim(of_initial(k)), only)
+      end do
+      call forbid(.not. c%joints(in_order(1))%is_carried(), 'joint', 'kind', 'must be quasi_static with &bearing_load')
+      call forbid(mod(c%load%period_deg, 360) /= 0, 'bearing_load', 'period_deg', 'must be a multiple of 360')
+      call values%demand(c%load%crank_to_rod > 0 .or. .not. c%load%needs_rod(), 'bearing_load', 'crank_to_rod', &
+        'where frame, journal or bearing is rod')
+    end subroutine check_load
 
     !> The clearance of a joint, unless it is wrong by itself [m].
     elemental real(dp) function play_of(joint)
@@ -153,14 +189,9 @@ contains
       if (.not. allocated(joint%film)) return
       call forbid(allocated(joint%contact) .and. .not. joint%elastic%is_wanted, law_group('contact', place), 'law', &
         'is not for kind = ''quasi_static'' unless elastic_film = .true.: the film carries all of the load')
-      call forbid(joint%transition%is_weighted(), law_group('lubrication', place), 'transition', &
-        'must be switch with kind = ''quasi_static'': the film carries all of the load')
       call forbid(.not. joint%film%is_quasi_static(), law_group('lubrication', place), 'law', &
         'must give a force that depends on the velocity of the pin alone, with kind = ''quasi_static'': finite_bearing, or '// &
         'closed_form and half_film of pinkus_sternlicht')
-      if (.not. allocated(joint%wear)) return
-      call forbid(.not. allocated(joint%asperities), law_group('wear', place), 'rate', &
-        'needs the group asperities with kind = ''quasi_static'': a rigid film carries all of the load')
     end subroutine check_carried
 
     !> Check that the viscosity of the film is given by one source.
@@ -200,6 +231,9 @@ contains
             'needs transition = ''weighted''; the default is switch')
           return
         end if
+        call forbid(joint%is_carried(), own, 'transition', 'must be switch with kind = ''quasi_static'': the film carries all '// &
+          'of the load')
+        if (joint%is_carried()) return
         call forbid(allocated(joint%asperities), own, 'transition', &
           'must be switch with asperities: they carry with the film at every depth')
         call forbid(.not. allocated(joint%contact), own, 'transition', 'needs the group contact: film and contact share the load')
@@ -345,7 +379,7 @@ contains
           call check_pin(c%joints(in_order(place)), joint_group(in_order(place)), name_prefix(in_order(place)), &
             distance(in_order(place)), start%eccentricity_rate(:, in_order(place)))
         end do
-        if (values%problems%concerns('mechanism') .or. values%problems%concerns('initial')) return
+        if (values%problems%concerns('mechanism') .or. values%problems%concerns('initial') .or. allocated(c%load)) return
         place = in_order(max(1, findloc(distance(in_order) > 0, .true., 1)))
         call forbid(sum(distance, c%joints%has_clearance()) >= m%rod_length - m%crank_length, 'initial', &
           name_prefix(place)//'eccentricity', &
@@ -454,8 +488,8 @@ contains
           return
         end if
         call forbid(.not. turns, 'run', 'until', 'needs crank_speed other than 0')
-        call forbid(run%period_revolutions < c%gas_revolutions(), 'run', 'period_revolutions', &
-          'must be >= 2, what the gas takes to repeat')
+        call forbid(run%period_revolutions < c%forced_revolutions(), 'run', 'period_revolutions', &
+          'must be >= '//integer_text(c%forced_revolutions())//', what the gas or the load takes to repeat')
         call forbid(is_cut .and. c%output%start_time > 0, 'output', 'start_time', 'must be 0 with window = ''last_period''')
         call forbid(is_cut .and. run%most_revolutions <= run%period_revolutions, 'run', 'most_revolutions', &
           'must be > period_revolutions with window = ''last_period''')

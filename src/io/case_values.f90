@@ -44,6 +44,7 @@ module case_values
     procedure :: is_used      !! whether the selected law has this key
     procedure :: check_range  !! range of one key
     procedure :: refuse       !! note an error of a value
+    procedure :: refuse_group !! note that a group must not be given
     procedure :: forbid       !! the same if a condition holds
     procedure :: demand       !! the same for a value that is missing or 0
     procedure :: place_in_file   !! line of a value
@@ -372,7 +373,8 @@ contains
       group = find_group(self%groups, trim(key%group))
       if (self%is_present(group)) then
         call self%refuse(trim(key%group), trim(key%name), 'required'//self%by_law(key))
-      else if (.not. (self%groups(group)%is_model .or. self%problems%concerns(''))) then
+      else if (.not. (self%groups(group)%is_model .or. self%problems%concerns('') .or. &
+                      any(self%is_present .and. self%groups%instead_of == self%groups(group)%name))) then
         call self%problems%add(self%file//': '//shown_group(trim(key%group))//': this group is required', trim(key%group), &
           behind_file)
       end if
@@ -453,6 +455,13 @@ contains
     end if
     call self%problems%add(text, group, self%place_in_file(place))
   end subroutine refuse
+
+  !> Note that a group must not be given.
+  subroutine refuse_group(self, name, why)
+    class(case_values_t), intent(inout) :: self
+    character(len=*), intent(in) :: name, why
+    call self%problems%add(self%file//': '//shown_group(name)//': '//why, name, self%line(find_group(self%groups, name)))
+  end subroutine refuse_group
 
   !> Line of the file on which the key at `place` is given, or else on which its group begins.
   pure integer function place_in_file(self, place)

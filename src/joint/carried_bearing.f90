@@ -8,6 +8,7 @@ module carried_bearing
   use run_state, only: run_state_t
   use joint_places, only: name_prefix
   use clearance_joint, only: clearance_joint_t, phase_film
+  use load_element, only: power_of
   use joint_evaluation, only: joint_evaluation_t, clear_loads, find_polar, find_sliding
   implicit none
   private
@@ -82,6 +83,7 @@ contains
       in_domain = sum(place**2) < joint%reach(phase_film)**2
       if (joint%limits_states) in_domain = sum(place**2) < joint%bearing%clearance**2
       if (in_domain) call joint%slots(1)%element%carry(place, load, now)
+      now%power = power_of(now, now%force, now%eccentricity_rate, now%moment)
       call find_polar(joint%bearing%clearance, now)
       call find_sliding(joint%pin_radius, now)
       if (.not. joint%has_own_gap) return

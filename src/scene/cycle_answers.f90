@@ -102,16 +102,15 @@ contains
     type(cycle_t) :: cycle
     real(dp) :: displacement   !! swept in all cycles of the gas in this cycle [m^3]
     real(dp) :: loss, shaft
-    integer :: revolutions, i, gas_revolutions
+    integer :: revolutions, i, forced
     allocate (answers(0))
-    gas_revolutions = 1
-    if (allocated(scene%gas)) gas_revolutions = scene%gas%revolutions
-    revolutions = gas_revolutions
+    forced = scene%forced_revolutions()
+    revolutions = forced
     if (periods%period > 0) revolutions = periods%period
     if (cycles%followed < revolutions .or. revolutions > longest_period) return
     cycle = cycles%last_cycle(revolutions)
     displacement = 0
-    if (allocated(scene%gas)) displacement = scene%gas%cylinder%displacement*revolutions/gas_revolutions
+    if (allocated(scene%gas)) displacement = scene%gas%cylinder%displacement*revolutions/forced
 
     call add('cycle_start', cycle%start)
     call add('cycle_duration', cycle%duration)
@@ -124,6 +123,7 @@ contains
     do i = 1, scene%n_works
       call add(trim(work_of_parts(findloc(parts, scene%parts(i)%what, 1))), cycle%work(i), scene%parts(i)%joint)
     end do
+    if (allocated(scene%given_load)) return
     call add('cycle_energy_change', cycle%energy_change)
     call add('cycle_work_rest', cycle%energy_change - sum(cycle%work(:scene%n_works)))
 
@@ -206,6 +206,7 @@ contains
       mean_speed = two_pi*revolutions/cycle%duration
       call add('cycle_mean_crank_speed', cycles%direction*mean_speed)
       call add('cycle_speed_fluctuation', (cycle%max_speed + cycle%max_negative_speed)/mean_speed)
+      if (allocated(scene%given_load)) return
       call add('cycle_mean_piston_speed', 4*scene%chain%bodies%crank%length*revolutions/cycle%duration)
       if (.not. allocated(scene%gas)) return
       call add('cycle_max_cylinder_pressure', cycle%max_pressure)

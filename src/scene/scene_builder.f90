@@ -5,7 +5,8 @@ module scene_builder
   use error_handling, only: error_t
   use case_definition, only: case_t
   use ode_method, only: ode_settings_t
-  use chain_motion, only: body_piston
+  use chain_motion, only: body_crank, body_big_end, body_piston
+  use bearing_load, only: bearing_load_t
   use joint_places, only: in_order
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
   use joint_events, only: may_touch, may_pass_static
@@ -48,8 +49,6 @@ contains
     type(scene_t), allocatable, intent(out) :: scene
     type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: without_tables   !! the films compute no tables: the scene is not to be integrated
-    type(piston_t) :: piston
-    real(dp) :: gravity(2)   ! along the axis of the cylinder towards the crank, rotated towards -y [m/s^2]
     logical :: makes_tables
     integer :: i
 
@@ -58,15 +57,7 @@ contains
     call assemble_scene(case, ideal_joint, makes_tables, scene)
     if (allocated(scene%guide)) call scene%guide%prepare()
     call choose_entry(case, scene)
-    associate (m => case%mechanism)
-      piston = piston_t(m%piston_mass)
-      if (case%has_loose_guide() .and. .not. ideal_joint) &
-        piston = piston_t(m%piston_mass, .true., case%guide%piston_inertia, case%guide%piston_com)
-      gravity = [-m%gravity*cos(m%gravity_angle_deg*degree), 0 - m%gravity*sin(m%gravity_angle_deg*degree)]   ! no negative zero
-      scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, &
-        m%crank_inertia + case%drive%flywheel_inertia, m%crank_com), &
-        rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston, gravity)
-    end associate
+    if (.not. allocated(scene%given_load)) call build_bodies(case, ideal_joint, scene)
     if (scene%chain%has_elastic_rod()) call scene%chain%elastic%rod%prepare(scene%chain%bodies%rod)
     scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping, 0.0_dp)
     call vary_drive(case, scene)
@@ -90,6 +81,47 @@ contains
     end do
     call scene%prepare_start()
   end subroutine build_scene
+
+  !> Build crank, rod and piston.
+  subroutine build_bodies(case, ideal_joint, scene)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint
+    type(scene_t), intent(inout) :: scene
+    type(piston_t) :: piston
+    real(dp) :: gravity(2)   ! along the axis of the cylinder towards the crank, rotated towards -y [m/s^2]
+    associate (m => case%mechanism)
+      piston = piston_t(m%piston_mass)
+      if (case%has_loose_guide() .and. .not. ideal_joint) &
+        piston = piston_t(m%piston_mass, .true., case%guide%piston_inertia, case%guide%piston_com)
+      gravity = [-m%gravity*cos(m%gravity_angle_deg*degree), 0 - m%gravity*sin(m%gravity_angle_deg*degree)]   ! no negative zero
+      scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, &
+        m%crank_inertia + case%drive%flywheel_inertia, m%crank_com), &
+        rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston, gravity)
+    end associate
+  end subroutine build_bodies
+
+  !> Let the journal and the bearing of a bearing by itself turn with the bodies that its load names, and prepare the load.
+  subroutine give_load(load, scene)
+    type(bearing_load_t), intent(in) :: load
+    type(scene_t), intent(inout) :: scene
+    allocate (scene%given_load, source=load)
+    call scene%given_load%prepare()
+    associate (joint => scene%joints(1))
+      joint%site%pin_body = body_named(load%journal)
+      joint%site%bearing = body_named(load%bearing)
+      joint%bearing_turns = load%bearing /= 'fixed'
+    end associate
+
+  contains
+
+    !> A body that turns as one of this name; the piston does not turn.
+    pure integer function body_named(name) result(body)
+      character(len=*), intent(in) :: name
+      body = body_piston
+      if (name == 'crank') body = body_crank
+      if (name == 'rod') body = body_big_end
+    end function body_named
+  end subroutine give_load
 
   !> Assemble the parts of a scene from the case: joints with clearance, with their laws prepared, guide, elastic members and gas.
   !> With `makes_tables` missing tables of films are computed.
@@ -116,6 +148,7 @@ contains
       end if
     end do
     if (scene%n_joints > 0) scene%chain%is_loose = case%loose_pins()
+    if (allocated(case%load) .and. .not. ideal_joint) call give_load(case%load, scene)
     if (allocated(case%guide) .and. .not. (ideal_joint .and. case%has_loose_guide())) then
       allocate (scene%guide)
       call case%guide%build(scene%guide)

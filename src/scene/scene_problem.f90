@@ -15,6 +15,7 @@ module scene_problem
   use joint_events, only: penetration_and_rate
   use sticking, only: hold_surfaces
   use carried_bearing, only: carried_bearing_t
+  use bearing_load, only: bearing_load_t
   use piston_guide, only: piston_guide_t, guide_loads_t
   use working_gas, only: working_gas_t
   use crank_turns, only: crank_turns_t, wear_cycle_t
@@ -41,11 +42,11 @@ module scene_problem
     real(dp) :: power               !! of all non-conservative forces and the drive [W]
   end type evaluation_t
 
-  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2, of_wear = -3   !! owners of events other than joints
+  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2, of_wear = -3, of_load = -4   !! owners of events other than joints
 
   !> The owner of an event function of the integrator.
   type :: event_owner_t
-    integer :: joint = 0            !! or of_gas, of_turns, of_guide, of_wear
+    integer :: joint = 0            !! or of_gas, of_turns, of_guide, of_wear, of_load
     integer :: event = 0            !! number of the event within its owner
   end type event_owner_t
 
@@ -68,6 +69,7 @@ module scene_problem
     integer :: n_joints = 0         !! number of joints with clearance
     type(clearance_joint_t), allocatable :: joints(:)      !! these, and then the joints of the carried bearings
     type(carried_bearing_t), allocatable :: carried(:)     !! bearings without influence on the mechanism
+    type(bearing_load_t), allocatable :: given_load        !! of a bearing by itself; there is no mechanism
     integer :: joint_at(n_places) = 0   !! index of the joint at each place; 0: an ideal pin, or none
     integer, allocatable :: reported(:) !! places with results: the first one, and those with a joint
     type(piston_guide_t), allocatable :: guide   !! not allocated: the guide is ideal
@@ -117,6 +119,7 @@ module scene_problem
     procedure :: is_singular
     procedure :: crank_angle
     procedure :: crank_speed
+    procedure :: forced_revolutions
     procedure :: work
     procedure :: work_of_torque
     procedure :: measure_joint
@@ -227,6 +230,14 @@ module scene_problem
       logical, intent(out) :: in_domain
     end subroutine look_at_carried
 
+    !> Set the motion of crank and rod in a scene without mechanism. `in_domain` is false if there is no rod angle.
+    pure module subroutine move_without_mechanism(self, t, y, now, in_domain)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: t, y(self%n)
+      type(evaluation_t), intent(inout) :: now
+      logical, intent(out) :: in_domain
+    end subroutine move_without_mechanism
+
     !> Claim the states of the elastic members.
     module subroutine claim_elastic(self)
       class(scene_t), intent(inout) :: self
@@ -336,7 +347,7 @@ contains
       call clear_loads(evaluation%joint(i))
     end do
     call find_accelerations(self, self%n_joints, self%joints, t, y, evaluation, in_domain)
-    if (in_domain) call self%chain%move_piston(evaluation%motion)
+    if (in_domain .and. .not. allocated(self%given_load)) call self%chain%move_piston(evaluation%motion)
     do i = 1, self%n_joints
       call self%joints(i)%complete(evaluation%motion, in_domain, y, evaluation%joint(i))
     end do
@@ -472,7 +483,8 @@ contains
     call claim_states(self)
     call self%layout%count_again()
     call claim_states(self)
-    self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying))
+    self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying) &
+      .or. allocated(self%given_load))
     self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide) &
       .or. size(self%carried) > 0
     call self%set_layout()
@@ -623,6 +635,14 @@ contains
       if (self%runs_up) crank_speed = self%chain%varying%speed(t)
     end if
   end function crank_speed
+
+  !> Number of revolutions after which the gas pressure, or the given load of a bearing, repeats; else 1.
+  pure integer function forced_revolutions(self) result(revolutions)
+    class(scene_t), intent(in) :: self
+    revolutions = 1
+    if (allocated(self%gas)) revolutions = self%gas%revolutions
+    if (allocated(self%given_load)) revolutions = self%given_load%revolutions()
+  end function forced_revolutions
 
   !> Work of all non-conservative forces and the drive so far [J].
   pure real(dp) function work(self, y)

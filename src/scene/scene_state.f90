@@ -47,8 +47,7 @@ contains
     character(len=:), allocatable :: key
     real(dp) :: cycle
     if (.not. goes_on) then
-      cycle = two_pi
-      if (allocated(scene%gas)) cycle = scene%gas%revolutions*two_pi
+      cycle = scene%forced_revolutions()*two_pi
       angle = modulo(angle, cycle)
       scene%start_angle = angle
     end if

@@ -9,7 +9,7 @@ contains
     integer :: i, kind
     allocate (self%parts(0))
     if (allocated(self%gas)) call add(by_gas, 0)
-    call add(by_drive, 0)
+    if (.not. allocated(self%given_load)) call add(by_drive, 0)
     if (self%chain%drive%damping > 0) call add(by_damping, 0)
     do i = 1, self%n_joints
       do kind = 1, n_kinds
