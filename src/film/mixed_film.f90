@@ -34,8 +34,8 @@ contains
   !> angular speeds of `motion`, and the forces of the asperities.
   !>
   !> The film carries W - N n + f t. N depends on |e| alone; f depends on the tangential velocity u, which grows with f. So u -
-  !> u(f(u)) increases strictly and has one root, between the velocities for f = -mu N and f = mu N. Mostly the surfaces slide so fast
-  !> that one of these is the root.
+  !> u(f(u)) increases strictly and has one root, between the velocities for f = -mu N and f = mu N. Mostly the surfaces slide so
+  !> fast that one of these is the root.
   pure subroutine mixed_velocity(film, rough, pin_radius, motion, load, velocity, pressing, friction)
     class(film_law_t), intent(in) :: film
     type(asperities_t), intent(in) :: rough
