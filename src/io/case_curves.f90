@@ -33,8 +33,10 @@ contains
     type(case_t), intent(inout) :: into
     if (into%drive%table%is_wanted()) call provide(values, into%file, 'drive', 'torque_table', turning_speed, torque, &
       into%drive%table)
-    if (allocated(into%load)) call provide(values, into%file, 'bearing_load', 'table', crank_angle, load, into%load%curve, &
-      into%load%period_deg)
+    if (allocated(into%load)) then
+      if (mod(into%load%period_deg, 360) == 0) call provide(values, into%file, 'bearing_load', 'table', crank_angle, load, &
+        into%load%curve, into%load%period_deg)   ! else refused by the rules
+    end if
     if (.not. allocated(into%measured)) return
     associate (gas => into%measured)
       if (gas%is_external() .or. all(gas%period_deg /= measured_pressure_periods)) return   ! without table, or refused by the rules

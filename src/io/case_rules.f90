@@ -139,6 +139,7 @@ contains
       character(len=:), allocatable :: group      !! of the joint
       logical :: bearing_turns
       group = joint_group(place)
+      if (allocated(c%load) .and. .not. joint%is_carried()) return   ! refused already
       call forbid(place == main_bearing .and. joint%has_clearance(), group, 'kind', &
         'must be ideal or quasi_static: the crank turns about a fixed axis')
       call forbid(place /= main_bearing .and. abs(joint%load_share - 1) > 0, group, 'load_share', &

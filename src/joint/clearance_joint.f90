@@ -20,10 +20,11 @@ module clearance_joint
   use film_figures, only: film_figures_t, film_figures_of
   implicit none
   private
-  public :: clearance_joint_t, most_joints, most_joint_states, n_joint_slopes
+  public :: clearance_joint_t, most_joints, most_bearings, most_joint_states, n_joint_slopes
   public :: phase_free, phase_film, phase_contact, n_phases, contact_changes
 
-  integer, parameter :: most_joints = 3   !! with those whose pins are ideal in the mechanism
+  integer, parameter :: most_joints = 2     !! with clearance
+  integer, parameter :: most_bearings = 3   !! with those whose pins are ideal in the mechanism
   integer, parameter :: most_elements = 2                                       !! of a joint
   integer, parameter :: most_joint_states = most_elements*most_element_states   !! of all its elements
   integer, parameter :: n_joint_slopes = n_motions + most_joint_states          !! columns of its slopes

@@ -153,11 +153,8 @@ contains
   pure function loose_pins(self) result(is_loose)
     class(case_t), intent(in) :: self
     logical :: is_loose(n_pins)
-    integer :: i
-    is_loose = .false.
-    do i = 1, n_places
-      if (self%joints(i)%has_clearance()) is_loose(places(i)%pin) = .true.
-    end do
+    integer :: pin
+    is_loose = [(any(places%pin == pin .and. self%joints%has_clearance()), pin=1, n_pins)]
   end function loose_pins
 
   !> Whether the piston has clearance in its bore.

@@ -11,7 +11,7 @@ module scene_problem
   use crank_rod, only: accelerate_crank_rod
   use ideal_chain, only: accelerate_ideal_chain
   use joint_evaluation, only: joint_evaluation_t, clear_loads
-  use clearance_joint, only: clearance_joint_t, most_joints, n_phases, phase_free, phase_film, phase_contact
+  use clearance_joint, only: clearance_joint_t, most_bearings, n_phases, phase_free, phase_film, phase_contact
   use joint_events, only: penetration_and_rate
   use sticking, only: hold_surfaces
   use carried_bearing, only: carried_bearing_t
@@ -35,7 +35,7 @@ module scene_problem
     type(motion_t) :: motion
     type(accelerations_t) :: accelerations
     type(loads_t) :: loads
-    type(joint_evaluation_t) :: joint(most_joints)
+    type(joint_evaluation_t) :: joint(most_bearings)
     type(guide_loads_t) :: guide    !! of a guide that is not ideal
     real(dp) :: crank_moment        !! moment of the drive on the crank [N m]
     real(dp) :: cylinder_pressure   !! [Pa]
