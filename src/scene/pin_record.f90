@@ -103,7 +103,7 @@ contains
     logical, intent(in) :: is_end   !! t is the end of the step, or of its final part; else that of a revolution inside it
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
-    real(dp) :: known(n_peaks), largest(n_peaks)
+    real(dp) :: known(n_peaks), largest(n_peaks), angle
     integer :: before
     logical :: touches
 
@@ -121,7 +121,13 @@ contains
     figures%evaluations = figures%evaluations + (self%evaluations - before)
     figures%peak_evaluations = figures%peak_evaluations + (self%evaluations - before)
     call add_values(self, touches, largest, figures)
-    if (present(cycles)) call cycles%record_peaks(self%pin, touches, largest, angle_at(self%thinnest_time))
+    if (present(cycles)) then
+      angle = now%motion%crank_angle
+      if (self%thinnest_time < t) then
+        if (cycles%is_thinner(self%pin, largest)) angle = angle_inside(method, scene, self%thinnest_time)
+      end if
+      call cycles%record_peaks(self%pin, touches, largest, angle)
+    end if
     if (present(cycles) .and. self%joint > 0) call follow_turn(self, scene, t, now, cycles)
     if (self%reports_film) call sum_film(self, method, scene, t, now, figures, cycles)
     if (.not. allocated(self%wear)) return
@@ -132,19 +138,17 @@ contains
       call self%wear%look_ahead(method, scene, t)
     end if
     figures%evaluations = figures%evaluations + (self%wear%evaluations - before)
-
-  contains
-
-    !> Crank angle at a time in the last step [rad].
-    real(dp) function angle_at(time)
-      real(dp), intent(in) :: time
-      real(dp) :: y(size(method%y))
-      angle_at = now%motion%crank_angle
-      if (.not. time < t) return
-      call method%interpolate(time, y)
-      angle_at = scene%crank_angle(time, y)
-    end function angle_at
   end subroutine search
+
+  !> Crank angle at a time inside the last step [rad].
+  real(dp) function angle_inside(method, scene, time) result(angle)
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: time
+    real(dp) :: y(size(method%y))
+    call method%interpolate(time, y)
+    angle = scene%crank_angle(time, y)
+  end function angle_inside
 
   !> Add the angle that the pin turns through in its bearing since the last call, in either sense, to the present revolution. Where
   !> it turns back, that angle is taken from the cubic through angles and speeds at both ends.
