@@ -8,7 +8,7 @@ module clearance_joint
   use state_layout, only: layout_t, coordinates_t, slice_t
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, angular_acceleration, body_crank, body_big_end, body_small_end, body_piston, &
-    n_bodies
+    body_frame, n_bodies
   use joint_places, only: place_t, places, piston_pin, name_prefix
   use chain_bodies, only: bodies_t
   use ideal_chain, only: ideal_rod
@@ -22,10 +22,11 @@ module clearance_joint
   use film_heat, only: film_heat_t, coldest, hottest
   implicit none
   private
-  public :: clearance_joint_t, most_joints, most_joint_states, n_joint_slopes
+  public :: clearance_joint_t, most_joints, most_bearings, most_joint_states, n_joint_slopes
   public :: phase_free, phase_film, phase_contact, n_phases, contact_changes
 
-  integer, parameter :: most_joints = 2
+  integer, parameter :: most_joints = 2     !! with clearance
+  integer, parameter :: most_bearings = 3   !! with those whose pins are ideal in the mechanism
   integer, parameter :: most_elements = 2                                       !! of a joint
   integer, parameter :: most_joint_states = most_elements*most_element_states + 1   !! of all its elements, and a temperature
   integer, parameter :: n_joint_slopes = n_motions + most_joint_states          !! columns of its slopes
@@ -64,7 +65,8 @@ module clearance_joint
     logical :: has_slopes = .true.          !! the slopes of all elements are in closed form
     logical :: reports_film = .false.       !! report the results of the film in the summary
     ! state
-    type(coordinates_t) :: at               !! indices of the eccentricity in the state
+    type(coordinates_t) :: at               !! indices of the eccentricity in the state; that of its rate is 0 if a film carries the
+                                            !! pin (`carried_bearing`)
     integer :: phase = phase_free
     real(dp) :: impact_speed = 0            !! penetration rate at the beginning of the present contact [m/s]
     real(dp) :: reach(0:n_phases - 1) = 0   !! largest admissible eccentricity in each phase: see `find_reach` [m]
@@ -81,6 +83,9 @@ module clearance_joint
     procedure :: set_start
     procedure :: declare
     procedure :: set_own_rates
+    procedure :: set_heat_rates
+    procedure, non_overridable :: read_temperature
+    procedure, non_overridable :: admits_temperature
     procedure :: reset_states
     procedure :: work_of_friction
     procedure, non_overridable :: read_state
@@ -119,7 +124,7 @@ contains
     integer, intent(in) :: place   !! index in `places`
     self%place = place
     self%site = places(place)
-    self%bearing_turns = self%site%bearing /= body_piston
+    self%bearing_turns = all(self%site%bearing /= [body_piston, body_frame])
   end subroutine set_place
 
   !> Add an element, which has been prepared and acts in the given phases.
@@ -265,18 +270,18 @@ contains
         if (joint%touches) dydt(element%friction_work%first) = joint%friction_force*joint%sliding_speed
       end associate
     end do
-    if (allocated(self%heat)) call set_heat_rates(self, joint, y, dydt)
+    if (allocated(self%heat)) call self%set_heat_rates(whole_of(self, joint, y), y, dydt)
   end subroutine set_own_rates
 
-  !> Rates of the heat of the film. All loads must be set, also those that the present phase does not have.
-  pure subroutine set_heat_rates(self, joint, y, dydt)
-    type(clearance_joint_t), intent(in) :: self
-    type(joint_evaluation_t), intent(in) :: joint
+  !> Rates of the heat of the film, from the joint with all its loads, also those that the present phase does not have.
+  pure subroutine set_heat_rates(self, whole, y, dydt)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: whole
     real(dp), intent(in) :: y(*)
     real(dp), intent(inout) :: dydt(*)
     type(film_losses_t) :: losses
     real(dp) :: friction
-    call find_losses(self, whole_of(self, joint, y), losses, friction)
+    call find_losses(self, whole, losses, friction)
     call self%heat%set_rates(losses%power + losses%neglected_power + friction, losses%side_flow, y, dydt)
   end subroutine set_heat_rates
 
@@ -344,10 +349,25 @@ contains
     joint%touches = self%phase == phase_contact
     joint%impact_speed = self%impact_speed
     joint%viscosity_ratio = 1
-    if (.not. allocated(self%heat)) return
-    joint%temperature = self%heat%temperature(y)
-    if (joint%temperature > 0) joint%viscosity_ratio = self%heat%viscosity_ratio(joint%temperature)
+    if (allocated(self%heat)) call self%read_temperature(y, joint)
   end subroutine read_state
+
+  !> Set the temperature of the film, which heats up, and its viscosity where that is admissible.
+  pure subroutine read_temperature(self, y, joint)
+    class(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: y(*)
+    type(joint_evaluation_t), intent(inout) :: joint
+    joint%temperature = self%heat%temperature(y)
+    if (self%admits_temperature(joint)) joint%viscosity_ratio = self%heat%viscosity_ratio(joint%temperature)
+  end subroutine read_temperature
+
+  !> Whether the temperature of the film is admissible.
+  pure logical function admits_temperature(self, joint)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    admits_temperature = .true.
+    if (allocated(self%heat)) admits_temperature = joint%temperature > coldest .and. joint%temperature < hottest
+  end function admits_temperature
 
   !> Whether the state is admissible: the eccentricity within its reach, and the states of the elements within theirs.
   pure logical function admits(self, y, joint)
@@ -356,7 +376,7 @@ contains
     type(joint_evaluation_t), intent(in) :: joint
     integer :: k
     admits = joint%eccentricity(1)**2 + joint%eccentricity(2)**2 < self%reach(self%phase)**2
-    if (allocated(self%heat)) admits = admits .and. joint%temperature > coldest .and. joint%temperature < hottest
+    if (allocated(self%heat)) admits = admits .and. self%admits_temperature(joint)
     if (.not. self%limits_states) return
     do k = 1, self%n_elements
       associate (element => self%slots(k)%element)
@@ -496,9 +516,15 @@ contains
     real(dp), intent(in) :: y(*)
     type(joint_evaluation_t), intent(inout) :: joint
     real(dp), intent(out) :: normal_force
+    normal_force = 0
+    if (self%at%rate == 0) then
+      joint%eccentricity = y(self%at%position:self%at%position + 1)
+      joint%eccentricity_rate = 0
+      call find_polar(self%bearing%clearance, joint)   ! the state is the position in the film also between elastic walls
+      return
+    end if
     call self%read_state(y, joint)
     call self%find_gap(y, joint)
-    normal_force = 0
     if (self%phase == phase_contact) normal_force = self%slots(self%acting(phase_contact))%element%normal_force(joint)
   end subroutine find_contact_state
 

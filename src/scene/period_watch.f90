@@ -73,10 +73,10 @@ contains
     self%smallest_range = least_range*scales(self%at)
     self%turning = merge(1.0_dp, 0.0_dp, growing(self%at))
     allocate (self%is_slow(size(self%at)), source=.false.)
-    do i = 1, scene%n_joints
+    do i = 1, size(scene%joints)
       if (allocated(scene%joints(i)%heat)) where (self%at == scene%joints(i)%heat%at%first) self%is_slow = .true.
     end do
-    if (allocated(scene%gas)) self%forcing = scene%gas%revolutions
+    self%forcing = scene%forced_revolutions()
     self%earlier = int(abs(scene%crank_angle(t, y) - scene%start_angle)/two_pi)
     allocate (self%states(size(self%at), 0:depth - 1), source=0.0_dp)
     allocate (self%low(size(self%at), 0:depth - 1), source=huge(1.0_dp))

@@ -9,7 +9,7 @@
 module temperature_jumps
   use kinds, only: dp
   use film_heat, only: uptake
-  use clearance_joint, only: most_joints
+  use clearance_joint, only: most_bearings
   use scene_problem, only: scene_t
   use period_watch, only: period_watch_t
   use run_length, only: longest_period
@@ -35,8 +35,8 @@ module temperature_jumps
 
   type :: temperature_jumps_t
     logical :: is_due = .false.         !! the integration is to go on with the new temperatures
-    real(dp) :: jump(most_joints) = 0   !! of the temperature at each joint [K]
-    type(film_t), private :: films(most_joints)
+    real(dp) :: jump(most_bearings) = 0   !! of the temperature at each joint [K]
+    type(film_t), private :: films(most_bearings)
     integer, private :: cycle = 0       !! over which changes are known [revolutions]
     integer, private :: since = -1      !! number of revolutions made when the present temperatures began; -1: the start
   contains
@@ -57,7 +57,7 @@ contains
     integer :: i, p, made
     made = periods%made
     if (self%since < 0) self%since = made
-    do i = 1, scene%n_joints
+    do i = 1, size(scene%joints)
       if (.not. allocated(scene%joints(i)%heat)) cycle
       associate (heat => scene%joints(i)%heat, film => self%films(i))
         film%begin(mod(made, depth)) = y(heat%at%first)
@@ -70,7 +70,7 @@ contains
       if (p /= self%cycle) self%films%is_known = .false.
       if (p /= self%cycle) self%films%slope = 0
       self%cycle = p
-      do i = 1, scene%n_joints
+      do i = 1, size(scene%joints)
         if (.not. allocated(scene%joints(i)%heat)) cycle
         associate (film => self%films(i), now => mod(made, depth), then => mod(made - p, depth), &
             at => scene%joints(i)%heat%at%first)
@@ -116,7 +116,7 @@ contains
     real(dp), intent(inout) :: y(:)
     integer :: i
     self%is_due = .false.
-    do i = 1, scene%n_joints
+    do i = 1, size(scene%joints)
       if (.not. abs(self%jump(i)) > 0) cycle
       associate (heat => scene%joints(i)%heat)
         y(heat%at%first) = y(heat%at%first) + self%jump(i)
