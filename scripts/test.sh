@@ -87,6 +87,7 @@ Fortran tests of single models|fpm @strict --target units
 force tables of films|tests/test_film_tables.py
 command line|tests/test_program.sh
 bearing cases|python3 tests/test_bearing_cases.py
+bearings under load|python3 tests/test_bearings.py
 build scripts|tests/test_build.sh
 states and runs that go on from them|tests/test_state_file.py
 layers, linters|tests/test_layers.py
