@@ -94,6 +94,7 @@ layers, linters|tests/test_layers.py
 failures of the machine|tests/test_faults.py --kills 10
 heat and work of the gas|.venv/bin/python tests/test_gas.py
 heating of films|.venv/bin/python tests/test_film_heat.py
+statistics of columns|.venv/bin/python tests/test_column_statistics.py
 END
   $all && cat <<'END'
 independent judge of runs|tests/test_judge.py
