@@ -6,6 +6,8 @@ module case_loader
   use case_schema, only: find_group, find_key, is_listed
   use value_reader, only: set_to_default, read_times
   use case_values, only: case_values_t
+  use history_rules, only: read_positions
+  use joint_places, only: n_places
   use case_curves, only: provide_curves
   use state_file, only: provide_state
   implicit none
@@ -34,6 +36,7 @@ contains
     logical, intent(in), optional :: only(:)  !! groups to be set. A group of a joint may change the laws of the other joint; if one
                                               !! such group changes, set all groups of joints.
     type(loader_t) :: loader
+    integer :: i
     loader%values => values
     allocate (loader%only(size(values%groups)), source=.true.)
     if (present(only)) then
@@ -43,6 +46,9 @@ contains
     end if
     call visit_case(into, loader)
     call read_times(into%output%film_times, into%output%snapshot_times)
+    do i = 1, n_places
+      call read_positions(into%joints(i)%history)
+    end do
     call provide_curves(values, into)
     call provide_state(values, into)
   end subroutine load_case

@@ -48,6 +48,7 @@ module case_values
     procedure :: demand       !! the same for a value that is missing or 0
     procedure :: place_in_file   !! line of a value
     procedure :: is_given
+    procedure :: law_group    !! group in which a law of a joint is given
   end type case_values_t
 
 contains
@@ -489,4 +490,13 @@ contains
     character(len=*), intent(in) :: group, name
     given = self%values(self%place_of(group, name))%given(1)
   end function is_given
+
+  !> Name of the group in which a law of the joint at a place is given.
+  function law_group(self, name, place) result(group)
+    class(case_values_t), intent(in) :: self
+    character(len=*), intent(in) :: name, place   !! of the law's group and of the place
+    character(len=:), allocatable :: group
+    group = place//'.'//name
+    if (.not. self%is_present(find_group(self%groups, group))) group = name
+  end function law_group
 end module case_values

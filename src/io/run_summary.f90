@@ -6,6 +6,7 @@ module run_summary
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
   use simulation, only: run_report_t
   use cycle_answers, only: answer_t, cycle_quantities
+  use history_files, only: add_histories
   use result_table, only: result_table_t
   use run_figures, only: pin_figures_t, elastic_figures_t
   use piston_guide, only: n_corners, corner_names
@@ -111,6 +112,7 @@ contains
       if (case%is_elastic()) call add_elastic(f%elastic)
     end associate
     if (allocated(report%answers)) call add_answers(report%answers)
+    if (allocated(report%histories)) call add_histories(table, report%histories)
     call table%add('version', program_version)
     call table%add('compiler', compiler_version())
     call table%add('compiler_options', compiler_options())
