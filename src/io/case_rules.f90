@@ -400,7 +400,8 @@ contains
       if (c%output%film_times == '') return
       has_film = .false.
       do place = 1, n_places
-        if (allocated(c%joints(place)%film)) has_film = has_film .or. c%joints(place)%film%gives_pressure()
+        if (allocated(c%joints(place)%film)) has_film = has_film .or. c%joints(place)%film%gives_pressure() .or. &
+          allocated(c%joints(place)%history%march)
       end do
       call forbid(.not. allocated(c%output%snapshot_times), 'output', 'film_times', &
         'must be times >= 0 in rising order with commas, or from:to:count')

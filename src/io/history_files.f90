@@ -1,7 +1,7 @@
 !> Films with memory: their march after a run, their files and their rows of the summary.
 !>
 !> NAME.film_history.csv has a row for each row of the last cycle, and NAME.film.csv the fields at the times that the case asks for.
-!> If several joints of a case have such a film, the names of the files carry the place: NAME.crank_pin.film_history.csv.
+!> If several joints of a case have such a film, the names of the former carry the place: NAME.crank_pin.film_history.csv.
 module history_files
   use kinds, only: dp
   use error_handling, only: error_t
@@ -22,6 +22,7 @@ module history_files
   public :: march_histories, write_histories, write_history, add_history, add_histories
 
   character(len=*), parameter :: newline = achar(10)
+  character(len=*), parameter :: field_columns = 'angle[rad],film_thickness[m],place[m],pressure[Pa],film_fraction[-]'
 
 contains
 
@@ -55,19 +56,50 @@ contains
     type(case_t), intent(in) :: case
     type(history_record_t), intent(in) :: histories(:)
     type(error_t), allocatable, intent(out) :: error
+    type(growing_text_t) :: fields
     character(len=:), allocatable :: path
-    integer :: i
+    integer :: i, k
+    call fields%append('time[s],crank_angle[rad],joint,'//field_columns//newline)
     do i = 1, size(histories)
       path = base
       if (size(histories) > 1) path = base//'.'//trim(places(histories(i)%place)%name)
-      if (.not. allocated(histories(i)%history%rows)) cycle
-      call write_history(path, histories(i)%history, case%output%digits, error, histories(i))
-      if (allocated(error)) return
+      associate (of => histories(i))
+        if (.not. allocated(of%history%rows)) cycle
+        call write_rows(path, of%history, case%output%digits, error, of)
+        if (allocated(error)) return
+        if (.not. allocated(of%history%fields)) cycle
+        do k = 1, size(of%history%fields)
+          associate (field => of%history%fields(k))
+            call append_field(fields, field, real_text(field%time, case%output%digits)//','//real_text(of%angle( &
+              minloc(abs(of%duty%time(2:) - field%time), 1)), case%output%digits)//','//trim(places(of%place)%name), &
+              case%output%digits)
+          end associate
+        end do
+      end associate
     end do
+    if (case%output%film_times /= '') call write_text(base//'.film.csv', fields%text(:fields%used), error)
   end subroutine write_histories
 
-  !> Write the rows and fields of one film. `of` has what stands beside them after a run.
-  subroutine write_history(base, history, digits, error, of)
+  !> Write the files of the film of a bearing case. Error: a file cannot be written (status_output).
+  subroutine write_history(base, history, digits, error)
+    character(len=*), intent(in) :: base
+    type(film_history_t), intent(in) :: history
+    integer, intent(in) :: digits
+    type(error_t), allocatable, intent(out) :: error
+    type(growing_text_t) :: fields
+    integer :: k
+    call write_rows(base, history, digits, error)
+    if (allocated(error) .or. .not. allocated(history%fields)) return
+    if (size(history%fields) == 0) return
+    call fields%append('time[s],'//field_columns//newline)
+    do k = 1, size(history%fields)
+      call append_field(fields, history%fields(k), real_text(history%fields(k)%time, digits), digits)
+    end do
+    call write_text(base//'.film.csv', fields%text(:fields%used), error)
+  end subroutine write_history
+
+  !> Write the rows of one film. `of` has what stands beside them after a run.
+  subroutine write_rows(base, history, digits, error, of)
     character(len=*), intent(in) :: base
     type(film_history_t), intent(in) :: history
     integer, intent(in) :: digits
@@ -93,31 +125,23 @@ contains
       call append_numbers(file, numbers, digits)
     end do
     call write_text(base//'.film_history.csv', file%text(:file%used), error)
-    if (allocated(error) .or. .not. allocated(history%fields)) return
-    if (size(history%fields) > 0) call write_fields(base//'.film.csv', history%fields, digits, error)
-  end subroutine write_history
+  end subroutine write_rows
 
-  !> Write one row for each cell on half of the bearing; that on the other half is the same.
-  subroutine write_fields(path, fields, digits, error)
-    character(len=*), intent(in) :: path
-    type(film_field_t), intent(in) :: fields(:)
+  !> Append one row for each cell on half of the bearing; that on the other half is the same.
+  subroutine append_field(file, field, head, digits)
+    type(growing_text_t), intent(inout) :: file
+    type(film_field_t), intent(in) :: field
+    character(len=*), intent(in) :: head   !! first columns of each row
     integer, intent(in) :: digits
-    type(error_t), allocatable, intent(out) :: error
-    type(growing_text_t) :: file
-    integer :: i, j, k
-    call file%append('time[s],angle[rad],film_thickness[m],place[m],pressure[Pa],film_fraction[-]'//newline)
-    do i = 1, size(fields)
-      associate (field => fields(i))
-        do j = 1, size(field%angle)
-          do k = 1, size(field%axial)
-            call append_numbers(file, [field%time, field%angle(j), field%thickness(j), field%axial(k), field%pressure(k, j), &
-              field%fraction(k, j)], digits)
-          end do
-        end do
-      end associate
+    integer :: j, k
+    do j = 1, size(field%angle)
+      do k = 1, size(field%axial)
+        call file%append(head//',')
+        call append_numbers(file, &
+          [field%angle(j), field%thickness(j), field%axial(k), field%pressure(k, j), field%fraction(k, j)], digits)
+      end do
     end do
-    call write_text(path, file%text(:file%used), error)
-  end subroutine write_fields
+  end subroutine append_field
 
   subroutine append_numbers(file, numbers, digits)
     type(growing_text_t), intent(inout) :: file

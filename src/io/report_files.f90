@@ -13,7 +13,7 @@ module report_files
   !> Suffixes of all files of results, the summaries first.
   character(len=*), parameter :: result_suffixes(*) = [character(len=32) :: '.summary.csv', '.ideal.summary.csv', '.csv', &
     '.events.csv', '.film.csv', '.wear.csv', '.certificate.csv', '.ideal.csv', '.ideal.events.csv', '.film_history.csv', &
-    '.piston_pin.film_history.csv', '.crank_pin.film_history.csv', '.piston_pin.film.csv', '.crank_pin.film.csv']
+    '.piston_pin.film_history.csv', '.crank_pin.film_history.csv']
 
 contains
 
