@@ -6,6 +6,7 @@ import pandas as pd
 from gudgeon.plots.style import BLACK, BLUE, GREEN, VERMILION, WIDTH
 from gudgeon.results import Results, Run
 from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import StrMethodFormatter
 
 SIMULATIONS = ("I", "II", "III", "IV", "V", "VI")
 #: Ending of the case's name, film, colour.
@@ -83,6 +84,8 @@ def with_memory(run: Run, table: pd.DataFrame, name: str) -> Drawing:
     for axis, label in zip(axes, ("thinnest film [µm]", "largest pressure [MPa]", "oil in the gap [-]", "flow [ml/s]")):
         axis.set_ylabel(label)
     axes[0].set_yscale("log")
+    for formatter in (axes[0].yaxis.set_major_formatter, axes[0].yaxis.set_minor_formatter):
+        formatter(StrMethodFormatter("{x:g}"))
     axes[2].set_ylim(0, 1)
     axes[0].legend(loc="best", ncols=2)
     axes[3].legend(loc="best", ncols=2)
