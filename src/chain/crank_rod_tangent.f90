@@ -49,7 +49,7 @@ contains
       changes(2, :) = [r*(sq*qd**2 - cq*qdd), l*(sa*ad**2 - ca*add), -2*r*cq*qd, -2*l*ca*ad, bodies%per_piston_mass, 0.0_dp, 0.0_dp]
       changes(3, :) = [-r*(cq*qd**2 + sq*qdd), l*(ca*ad**2 + sa*add), -2*r*sq*qd, 2*l*sa*ad, 0.0_dp, 0.0_dp, 0.0_dp]
       per_determinant = 0
-      if (drive%free_crank) per_determinant = 1/(bodies%inertia_product - m12**2)
+      if (drive%free_crank) per_determinant = 1/(drive%inertia*m22 + (bodies%inertia_product - m12**2))
       per_rod_term = 1/m22
       do i = 1, 7
         crank = (on_crank(i)*m22 - on_rod(i)*m12)*per_determinant
