@@ -13,13 +13,13 @@ module crank_train
   use state_layout, only: layout_t, coordinates_t, slice_t
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, turn_crank
-  use train_motion, only: most_stations
+  use train_motion, only: train_rows_t, most_stations
   use chain_bodies, only: bodies_t, drive_t
   use varying_drive, only: varying_drive_t
   use ideal_cylinders, only: ideal_cylinder_t, small_sine_cosine
   implicit none
   private
-  public :: crank_train_t, ring_t, train_rows_t
+  public :: crank_train_t, ring_t
 
   !> The ring of a damper; one in oil (viscous) has no stiffness, and its angle is no state.
   type :: ring_t
@@ -68,13 +68,8 @@ module crank_train
     procedure :: gas_power
     procedure :: inertia_beside
     procedure :: frees_crank
+    procedure :: add_slopes
   end type crank_train_t
-
-  !> Inertia [kg m^2] and torque [N m] of each station, without the mechanism and without the damping of the drive.
-  type :: train_rows_t
-    real(dp) :: inertia(most_stations)
-    real(dp) :: torque(most_stations)
-  end type train_rows_t
 
   interface
     !> Claim the twists of stations and the angles and speeds of rings in the state vector. The scale of a twist is that by a torque
@@ -93,6 +88,19 @@ module crank_train
       real(dp), intent(in) :: t, crank_angle, crank_speed
       real(dp), intent(inout) :: y(:)
     end subroutine declare
+
+    !> Complete the derivatives of the accelerations with respect to the state (see `difference_jacobian`): those of the mechanism
+    !> must be there, with the damping of a drive at its station; those of stations and rings are set, and the mechanism's get what
+    !> the torque of the shaft adds.
+    module subroutine add_slopes(self, drive, inertia, crank, rows, by_torque, a_p, a_v)
+      class(crank_train_t), intent(in) :: self
+      type(drive_t), intent(in) :: drive
+      real(dp), intent(in) :: inertia(:)       !! of the stations [kg m^2]
+      type(coordinates_t), intent(in) :: crank !! the crank angle in the state; n = 0: its speed is prescribed
+      integer, intent(in) :: rows(:)           !! rows of the mechanism's accelerations that follow a torque on the crank
+      real(dp), intent(in) :: by_torque(:)     !! their derivatives with respect to it
+      real(dp), intent(inout) :: a_p(:, :), a_v(:, :)
+    end subroutine add_slopes
 
     !> Natural size of the energy of stations, rings and cylinders [J].
     pure real(dp) module function energy_scale(self, crank_speed)
@@ -154,6 +162,9 @@ contains
           train%angle(i) = motion%crank_angle + train%twist(it%station) + it%shift
           across = s*it%cos_shift + c*it%sin_shift
           along = c*it%cos_shift - s*it%sin_shift
+          train%sine(i) = across
+          train%cosine(i) = along
+          if (it%station == self%full) cycle
           call small_sine_cosine(train%twist(it%station), sine, cosine)
           train%sine(i) = across*cosine + along*sine
           train%cosine(i) = along*cosine - across*sine

@@ -128,8 +128,8 @@ contains
     real(dp) :: square
     if (abs(angle) < 0.05_dp) then
       square = angle**2
-      sine = angle*(1 - square/6*(1 - square/20*(1 - square/42)))
-      cosine = 1 - square/2*(1 - square/12*(1 - square/30*(1 - square/56)))
+      sine = angle*(1 - square*(1/6.0_dp - square*(1/120.0_dp - square*(1/5040.0_dp))))
+      cosine = 1 - square*(0.5_dp - square*(1/24.0_dp - square*(1/720.0_dp - square*(1/40320.0_dp))))
     else
       sine = sin(angle)
       cosine = cos(angle)

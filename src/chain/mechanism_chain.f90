@@ -15,7 +15,8 @@ module mechanism_chain
   use loose_piston, only: free_piston, add_energy_beside
   use varying_drive, only: varying_drive_t
   use elastic_members, only: elastic_members_t
-  use crank_train, only: crank_train_t, train_rows_t
+  use crank_train, only: crank_train_t
+  use train_motion, only: train_rows_t
   use elastic_rod, only: elastic_rod_t
   use elastic_rod_piece, only: accelerate_elastic_rod
   use elastic_rod_body, only: elastic_rod_energy, elastic_end_forces

@@ -3,7 +3,7 @@ module train_motion
   use kinds, only: dp
   implicit none
   private
-  public :: train_motion_t, most_stations, most_cylinders, most_rings
+  public :: train_motion_t, train_rows_t, most_stations, most_cylinders, most_rings
 
   integer, parameter :: most_stations = 16, most_cylinders = 16, most_rings = 4
 
@@ -17,4 +17,9 @@ module train_motion
     real(dp) :: sine(most_cylinders), cosine(most_cylinders)   !! of that
     real(dp) :: gas_force(most_cylinders)   !! on each piston, along its axis towards the shaft [N]
   end type train_motion_t
+  !> Inertia [kg m^2] and torque [N m] of each station, without the mechanism and without the damping of the drive.
+  type :: train_rows_t
+    real(dp) :: inertia(most_stations)
+    real(dp) :: torque(most_stations)
+  end type train_rows_t
 end module train_motion
