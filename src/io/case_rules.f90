@@ -10,6 +10,8 @@ module case_rules
   use archard_wear, only: of_bore
   use friction_law, only: friction_law_t
   use history_rules, only: check_history
+  use train_rules, only: check_train
+  use train_builder, only: inertia_beside
   use body_rules, only: check_guide, check_elastic, bore_reach
   use chain_motion, only: crank_pin, piston_pin, n_pins, n_bodies, body_crank, body_big_end, body_small_end, body_piston
   use joint_places, only: places, n_places, in_order, name_prefix, joint_group
@@ -29,6 +31,8 @@ contains
     logical :: turns   ! the crank turns at the start
     integer :: i
     turns = abs(c%initial%crank_speed) > 0
+    call check_train(c, values)
+    if (has_train_problem()) return
     call check_bodies()
     do i = 1, n_places
       call check_joint(c%joints(in_order(i)), in_order(i))
@@ -46,6 +50,16 @@ contains
     call check_output()
 
   contains
+
+    !> Whether cylinders or crankshaft are wrong.
+    logical function has_train_problem()
+      integer :: k
+      has_train_problem = values%problems%concerns('crankshaft')
+      do k = 1, size(values%groups)
+        if (values%groups(k)%number > 0) has_train_problem = has_train_problem .or. &
+          values%problems%concerns(trim(values%groups(k)%name))
+      end do
+    end function has_train_problem
 
     !> Note an error of a value of the case if it is wrong.
     subroutine forbid(is_wrong, group, name, wanted)
@@ -72,7 +86,7 @@ contains
           call values%refuse('guide', key, 'lets the pin move '//short_text(bore_reach(c))//' m off the cylinder''s axis: must '// &
             'be less than rod_length - crank_length - clearance = '//short_text(m%rod_length - m%crank_length - play))
         end if
-        crank = m%crank_inertia + c%drive%flywheel_inertia + m%crank_mass*sum(m%crank_com**2)
+        crank = m%crank_inertia + c%drive%flywheel_inertia + m%crank_mass*sum(m%crank_com**2) + inertia_beside(c)
         rod = m%rod_inertia + m%rod_mass*sum(m%rod_com**2)
         is_loose = c%loose_pins()
         if (is_loose(crank_pin)) then

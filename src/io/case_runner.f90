@@ -121,7 +121,8 @@ contains
     call keep_tables(case, base, job%error)
     if (allocated(job%error)) return
     text = resolved_text(values)
-    job%has_twin = case%output%ideal_twin .and. (case%has_clearance() .or. case%is_elastic())
+    job%has_twin = case%output%ideal_twin .and. (case%has_clearance() .or. case%is_elastic() .or. &
+      allocated(case%shaft))
     call job%run%prepare(case, text, .false., list, base, options, shows_progress)
     if (job%has_twin) call job%twin%prepare(case, text, .true., ideal_list, base//'.ideal', options, shows_progress)
     if (.not. options%check) return

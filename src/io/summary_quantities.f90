@@ -119,6 +119,20 @@ module summary_quantities
     quantity_t('film_history_thickness_ratio', '1', &
       'thickness of the film with memory over that of the film of the run, where they differ most'), &
     quantity_t('film_history_thickness_ratio_time', 's', 'time of that row'), &
+    quantity_t('firing_order', '', 'cylinders in the order in which the shaft brings them to one point of the cycle, from 1 on'), &
+    quantity_t('natural_frequency_N', 'Hz', 'natural frequencies of the crankshaft with mean inertias, undamped, above 0; with '// &
+      'its driven station held if the speed is prescribed'), &
+    quantity_t('mode_N_station_J', '1', 'shape of the mode N (the first three) at station J; the largest is 1'), &
+    quantity_t('mode_N_damper_R', '1', 'the same of the ring of a damper of rubber'), &
+    quantity_t('cyclic_irregularity', '1', &
+      'largest less smallest speed of the driven station in the last cycle, over the mean speed'), &
+    quantity_t('front_irregularity', '1', 'the same of the first station'), &
+    quantity_t('max_damper_R_power', 'W', 'power that the damping of damper R takes, mean of the last cycle'), &
+    quantity_t('cycle_front_twist_order_H', 'rad', 'amplitude at order H of the twist of the first station against the '// &
+      'driven one in the last cycle'), &
+    quantity_t('cycle_segment_J_torque_order_H', 'N.m', 'amplitude at order H of the torque of segment J in the last cycle'), &
+    quantity_t('max_segment_J_torque', 'N.m', 'largest torque of segment J of the crankshaft'), &
+    quantity_t('max_station_J_twist', 'rad', 'largest twist of station J against the crank of the full cylinder'), &
     quantity_t('version', '', 'version of the program'), &
     quantity_t('compiler', '', 'compiler of the program'), &
     quantity_t('compiler_options', '', 'its options')]

@@ -26,6 +26,7 @@ module simulation
   use history_record, only: history_record_t
   use joint_places, only: n_places, in_order
   use wear_record, only: wear_profile_t
+  use train_record, only: train_result_t
   use trace_sink, only: trace_sink_t
   use constants, only: two_pi, degree
   implicit none
@@ -45,6 +46,7 @@ module simulation
     logical :: energy_is_poor = .false.          !! the run is done, but the user must be told of its energy residual
     type(period_watch_t) :: periods              !! search for a periodic motion that ends the run
     type(answer_t), allocatable :: answers(:)    !! of the last whole cycle, if the case asks for them
+    type(train_result_t), allocatable :: train(:)    !! of several cylinders on one crankshaft
     type(exponent_t) :: exponent                 !! Lyapunov exponent, if it is requested
   end type run_report_t
 
@@ -354,6 +356,7 @@ contains
     allocate (report%answers(0))
     if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, &
       self%recorder%periods, self%recorder%extremes)
+    if (allocated(self%scene%chain%train)) report%train = train_results(self)
     if (self%has_cycles) call move_alloc(self%recorder%cycles, cycles)
     if (allocated(self%recorder%films)) report%films = self%recorder%films%fields(self%scene)
     if (allocated(self%recorder%histories)) report%histories = self%recorder%histories
@@ -405,4 +408,21 @@ contains
     real(dp), intent(in) :: crank_travel   !! [rad]
     energy_limit = min(0.05_dp, max(1e-10_dp, 1e3_dp*tolerance*max(1.0_dp, abs(crank_travel)/(100*two_pi))))
   end function energy_limit
+
+  !> Results of several cylinders on one crankshaft.
+  function train_results(run) result(list)
+    type(run_t), intent(in) :: run
+    type(train_result_t), allocatable :: list(:)
+    integer :: revolutions, ended, followed
+    revolutions = 1
+    if (allocated(run%scene%gas)) revolutions = run%scene%gas%revolutions
+    if (run%recorder%periods%period > 0) revolutions = run%recorder%periods%period
+    ended = 0
+    followed = 0
+    if (allocated(run%recorder%cycles)) then
+      ended = run%recorder%cycles%ended
+      followed = run%recorder%cycles%followed
+    end if
+    list = run%recorder%extremes%train%results(run%scene, ended, followed, revolutions)
+  end function train_results
 end module simulation
