@@ -15,7 +15,7 @@ module case_curves
   use joint_places, only: places, n_places
   use case_schema, only: shown_group
   use case_values, only: case_values_t
-  use curve_file, only: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque
+  use curve_file, only: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque, load
   implicit none
   private
   public :: provide_curves, provide_history, period_fault
@@ -41,6 +41,10 @@ contains
       call provide_history(values, into%file, into%joints(i)%history, values%law_group('supply', trim(places(i)%name)), &
         values%law_group('bore', trim(places(i)%name)))
     end do
+    if (allocated(into%load)) then
+      if (mod(into%load%period_deg, 360) == 0) call provide(values, into%file, 'bearing_load', 'table', crank_angle, load, &
+        into%load%curve, into%load%period_deg)   ! else refused by the rules
+    end if
     if (.not. allocated(into%measured)) return
     associate (gas => into%measured)
       if (gas%is_external() .or. all(gas%period_deg /= measured_pressure_periods)) return   ! without table, or refused by the rules
@@ -82,7 +86,7 @@ contains
     call finish_table(values, group, key, bore%table)
   end subroutine provide_compliances
 
-  !> Read one curve. A curve with a period is a pressure.
+  !> Read one curve. A curve with a period is a pressure or a load; a load may have two components.
   subroutine provide(values, case_file, group, key, x_is, y_is, curve, period)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: case_file, group, key
@@ -95,8 +99,13 @@ contains
     integer :: line
     call read_new(values, case_file, group, key, curve, text)
     if (allocated(text)) then
-      call parse_curve(text, x_is, y_is, curve%x, curve%y, lines, message, line)
-      if (message == '' .and. present(period)) call close_period(curve, period, lines, message, line)
+      if (y_is%name == load%name) then
+        call parse_curve(text, x_is, y_is, curve%x, curve%y, lines, message, line, curve%z)
+        if (message == '') call close_load(curve, period, lines, message, line)
+      else
+        call parse_curve(text, x_is, y_is, curve%x, curve%y, lines, message, line)
+        if (message == '' .and. present(period)) call close_period(curve, period, lines, message, line)
+      end if
       if (message /= '') then
         call fail(error, printable(curve%path, 200)//':'//integer_text(line)//': '//message, status_case_file)
         deallocate (curve%path)
@@ -181,6 +190,45 @@ contains
     curve%x = curve%x(:n - 1)
     curve%y = curve%y(:n - 1)
   end subroutine close_period
+
+  !> Check the load of a bearing over one period and remove a last row that repeats the first one. If it is wrong, `message` says
+  !> what is wrong and `line` where.
+  subroutine close_load(curve, period, lines, message, line)
+    type(measured_curve_t), intent(inout) :: curve
+    integer, intent(in) :: period   !! [degrees]
+    integer, intent(in) :: lines(:)
+    character(len=:), allocatable, intent(out) :: message
+    integer, intent(out) :: line
+    real(dp), parameter :: largest = 1e12_dp, closest = 1e-6_dp, rounding = 1e-9_dp   ! [N], [degrees], relative
+    real(dp) :: sizes(size(curve%x)), span
+    integer :: i, n
+    n = size(curve%x)
+    sizes = hypot(curve%y, curve%z)
+    span = curve%x(n) - curve%x(1)
+    message = ''
+    line = lines(n)
+    do i = 1, n
+      if (sizes(i) > largest) message = 'load = '//short_text(sizes(i))//' N: must be at most 1e12 N'
+      if (i > 1) then
+        if (curve%x(i) - curve%x(i - 1) < closest) message = 'crank angle: must be at least 1e-6 degrees after that of the row '// &
+          'before'
+      end if
+      if (message /= '') line = lines(i)
+      if (message /= '') return
+    end do
+    if (span > period + same_angle(period)) then
+      message = 'the table spans '//short_text(span)//' degrees, more than its period of '//integer_text(period)
+    else if (span > period - same_angle(period)) then
+      if (abs(curve%y(n) - curve%y(1)) > rounding*maxval(sizes) .or. abs(curve%z(n) - curve%z(1)) > rounding*maxval(sizes)) then
+        message = 'the load must be that of the first row, a period before'
+      else if (n == 2) then
+        message = 'needs a second row within the period'
+      end if
+      curve%x = curve%x(:n - 1)
+      curve%y = curve%y(:n - 1)
+      curve%z = curve%z(:n - 1)
+    end if
+  end subroutine close_load
 
   !> Find a fault in a pressure curve over one period, and the point at which it occurs. The message is empty if there is none.
   pure subroutine period_fault(angle, pressure, period, message, at)

@@ -50,6 +50,7 @@ contains
     end if
     call visit_case(into, loader)
     call provide_bodies(values, into)
+    if (allocated(into%load)) call hold_speed(values, into)
     call read_times(into%output%film_times, into%output%snapshot_times)
     do i = 1, n_places
       call read_positions(into%joints(i)%history)
@@ -88,6 +89,17 @@ contains
       call load_model(values, group, into%cylinders(i))
     end do
   end subroutine provide_bodies
+
+  !> The crank of a bearing by itself has a prescribed speed, which the case need not say.
+  subroutine hold_speed(values, into)
+    type(case_values_t), intent(inout) :: values
+    type(case_t), intent(inout) :: into
+    integer :: place
+    place = values%place_of('drive', 'kind')
+    if (values%values(place)%given(1)) return
+    into%drive%kind = 'constant_speed'
+    values%values(place)%text = into%drive%kind
+  end subroutine hold_speed
 
   !> Set the parameters of one model, which are the keys of one group.
   subroutine load_model(values, group, model)

@@ -71,7 +71,7 @@ contains
     character(len=:), allocatable :: key, path
     logical :: is_restored, is_named
     real(dp) :: began   ! [s]
-    if (.not. (allocated(joint%film) .and. joint%has_clearance())) return
+    if (.not. (allocated(joint%film) .and. joint%has_bearing())) return
     bearing = joint%bearing(case%mechanism%rod_length)
     associate (tolerance => case%integrator%relative_tolerance)
       key = joint%film%table_key(bearing, tolerance)
@@ -126,7 +126,7 @@ contains
     character(len=:), allocatable :: key, path
     logical :: is_restored, is_named
     text = ''
-    if (.not. (allocated(joint%film) .and. joint%has_clearance())) return
+    if (.not. (allocated(joint%film) .and. joint%has_bearing())) return
     allocate (film, source=joint%film)
     bearing = joint%bearing(case%mechanism%rod_length)
     key = film%table_key(bearing, case%integrator%relative_tolerance)

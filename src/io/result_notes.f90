@@ -55,7 +55,7 @@ contains
       character(len=*), intent(in) :: name
       character(len=*), parameter :: too_much = ': no bearing carries it'
       real(dp) :: length, area, limit
-      if (.not. joint%has_clearance()) return
+      if (.not. joint%has_bearing()) return
       if (allocated(joint%film) .and. pin%min_film_thickness > 0 .and. pin%min_film_thickness < thinnest_film) &
         call add_line(name//'a film of '//quantity_text(pin%min_film_thickness, 'm')//' is thinner than 10 nm, where oil is '// &
         'not a continuous fluid')

@@ -39,7 +39,7 @@ contains
       if (report%periods%is_on .and. report%status == 'done') text = text//', '//period_text(report%periods)
       do i = 1, n_places
         associate (place => in_order(i))
-          if (i > 1 .and. .not. case%joints(place)%has_clearance()) cycle
+          if (i > 1 .and. .not. case%joints(place)%has_bearing()) cycle
           text = text//'; '
           if (i > 1) text = text//trim(places(place)%title)//': '
           text = text//pin_text(case%joints(place), f%pin(place), case%integrator%relative_tolerance, report, place)
@@ -145,7 +145,7 @@ contains
     integer, intent(in) :: place   !! of the pin
     character(len=:), allocatable :: text
     text = ''
-    if (joint%has_clearance()) then
+    if (joint%has_bearing()) then
       if (joint%can_touch()) text = integer_text(pin%contacts)//' contacts'//beyond_text(pin)//', '
       if (joint%can_touch() .and. pin%contacts == 0) text = 'no contact, '
       if (pin%min_film_thickness < 0) then

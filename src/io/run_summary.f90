@@ -98,7 +98,7 @@ contains
       if (report%energy_is_poor) call table%add('energy_warning', energy_warning(case, report))
       call add_notes()
       do i = 1, n_places
-        if (.not. case%joints(in_order(i))%has_clearance()) cycle
+        if (.not. case%joints(in_order(i))%has_bearing()) cycle
         if (i > 1) call table%add('max_pin_force', f%pin(in_order(i))%max_force, name_prefix(in_order(i)))
         call add_joint(name_prefix(in_order(i)), case%joints(in_order(i)), f%pin(in_order(i)))
       end do

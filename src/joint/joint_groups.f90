@@ -14,7 +14,7 @@ contains
     type(wear_law_t) :: wear
     call list%group('joint', 'Joint of rod and piston (piston pin)', .false., place)
     call joint%parameters(list)
-    if (list%sets .and. another_has_clearance .and. .not. joint%has_clearance()) return
+    if (list%sets .and. another_has_bearing .and. .not. joint%has_bearing()) return
     call visit_contact(joint%contact, place, list)
     call visit_friction(joint%friction, joint%reports_friction_work, place, list)
     call visit_film(joint, place, list)

@@ -54,6 +54,7 @@ module cycle_watch
     procedure :: is_thinner
     procedure :: record_peaks
     procedure :: record_film
+    procedure :: film_pressure
     procedure :: record_turn
     procedure :: record_asperities
     procedure :: search_machine
@@ -156,6 +157,13 @@ contains
       end if
     end associate
   end subroutine record_film
+
+  !> Largest pressure in the film of a pin so far in the present revolution [Pa].
+  pure real(dp) function film_pressure(self, pin)
+    class(cycle_watch_t), intent(in) :: self
+    integer, intent(in) :: pin
+    film_pressure = self%present%pin(pin)%max_film_pressure
+  end function film_pressure
 
   !> Account for an angle [rad] that a pin has turned through in its bearing.
   pure subroutine record_turn(self, pin, angle)

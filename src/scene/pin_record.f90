@@ -4,7 +4,7 @@ module pin_record
   use ode_method, only: ode_method_t
   use run_state, only: run_state_t
   use joint_places, only: name_prefix
-  use scene_problem, only: scene_t, evaluation_t, phase_contact, event_contact_begins
+  use scene_problem, only: scene_t, evaluation_t, phase_film, phase_contact, event_contact_begins
   use joint_events, only: may_touch
   use inside_step, only: evaluate_inside
   use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks
@@ -13,6 +13,7 @@ module pin_record
   use wear_record, only: wear_record_t
   use trace_sink, only: trace_event_t
   use film_figures, only: film_figures_t
+  use film_peak, only: find_film_peak
   use run_figures, only: run_figures_t
   implicit none
   private
@@ -24,6 +25,7 @@ module pin_record
     type(trace_event_t), private :: contact    !! present or last contact
     logical, private :: reports_film = .false.
     real(dp), private :: film_time = 0         !! time up to which the results of its film have been integrated [s]
+    real(dp), private :: film_pressure = 0     !! largest pressure at that time [Pa]
     real(dp), private :: turn(3) = 0           !! time [s], angle [rad] and speed [rad/s] of the pin relative to its bearing there
     type(wear_record_t), allocatable :: wear   !! not allocated: wear is not counted
   contains
@@ -189,15 +191,19 @@ contains
     real(dp), parameter :: place(3) = 0.5_dp + sqrt(0.15_dp)*[-1, 0, 1], weight(3) = [5, 8, 5]/18.0_dp
     type(evaluation_t) :: halfway
     type(film_figures_t) :: film
-    real(dp) :: y(size(method%y)), span
+    real(dp) :: y(size(method%y)), span, times(0:4), pressures(0:4), known, peak, angle
     logical :: in_domain
     integer :: i
     span = t - self%film_time
+    times = self%film_time + span*[0.0_dp, place, 1.0_dp]
+    pressures = 0
+    pressures(0) = self%film_pressure
     associate (f => figures%pin(self%pin), joint => scene%joints(self%joint), k => self%joint)
       do i = 1, merge(3, 0, span > 0)
         call evaluate_inside(scene, method, self%film_time + place(i)*span, y, halfway, in_domain, figures%evaluations)
         if (.not. in_domain) cycle
         film = joint%film_figures(halfway%joint(k))
+        pressures(i) = film%max_pressure
         f%film_energy_lost = f%film_energy_lost + weight(i)*span*film%power
         f%neglected_shear_loss = f%neglected_shear_loss + weight(i)*span*film%neglected_power
         f%film_volume = f%film_volume + weight(i)*span*film%side_flow
@@ -210,8 +216,17 @@ contains
       film = joint%film_figures(now%joint(k))
       f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
       if (present(cycles)) call cycles%record_film(self%pin, film%max_pressure, now%motion%crank_angle, 0.0_dp)
+      pressures(4) = film%max_pressure
+      if (span > 0 .and. joint%slots(joint%acting(phase_film))%element%film%gives_pressure()) then
+        known = f%max_film_pressure
+        if (present(cycles)) known = min(known, cycles%film_pressure(self%pin))
+        call find_film_peak(method, scene, k, times, pressures, known, figures%evaluations, peak, angle)
+        f%max_film_pressure = max(f%max_film_pressure, peak)
+        if (present(cycles)) call cycles%record_film(self%pin, peak, angle, 0.0_dp)
+      end if
     end associate
     self%film_time = t
+    self%film_pressure = film%max_pressure
   end subroutine sum_film
 
   !> Account for the values of one evaluation, for the run, for the present contact and, if it is given, for the present revolution.
