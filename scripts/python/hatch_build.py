@@ -1,6 +1,7 @@
 """Build hook of hatchling: compiles the shared library and the program into the package."""
 
 import shutil
+import subprocess
 import sys
 import sysconfig
 import tempfile
@@ -21,6 +22,7 @@ class Hook(BuildHookInterface):
             shutil.copy(build_library.build(folder), package / "libgudgeon.so")
             (package / "bin").mkdir(exist_ok=True)
             shutil.copy(build_library.build_program(folder), package / "bin" / "gudgeon")
+        subprocess.run([sys.executable, str(Path(self.root) / "make_stubs.py")], check=True)
         build_data["pure_python"] = False
         build_data["tag"] = "py3-none-" + sysconfig.get_platform().replace("-", "_").replace(".", "_")
-        build_data["artifacts"] += ["src/gudgeon/libgudgeon.so", "src/gudgeon/bin/gudgeon"]
+        build_data["artifacts"] += ["src/gudgeon/libgudgeon.so", "src/gudgeon/bin/gudgeon", "src/gudgeon/_groups.pyi"]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-STEPS_BETWEEN_LOOKS = 2000  # of a run, after which interruptions are looked for
+SLICE = 0.03  # of a run, after which interruptions are looked for [s]
 EVENT_COLUMNS = ["time", "crank_angle", "event", "normal_speed", "duration", "max_penetration", "max_normal_force", "joint"]
 
 
@@ -83,6 +83,7 @@ class Run:
         self.summary = Summary(summary)
         self.twin: Run | None = None
         self.certificate: Certificate | None = None
+        self._resolved: str | None = None  # the complete case, if it was read from a file
 
     # columns
 
@@ -152,16 +153,37 @@ class Run:
     def cycle(self, i: int = -1, revolutions: int | None = None) -> Run:
         """The rows of one whole cycle: of the last one, or by number from 0. A cycle has the revolutions that the gas takes to
         repeat, or those given."""
-        import numpy as np
-
-        if revolutions is None:
-            revolutions = int(self.summary.get("cycle_revolutions", 1))
-        travel = np.abs(self["crank_angle"] - self["crank_angle"][0]) / (2 * math.pi * revolutions) + 1e-9
+        travel = self._cycles_turned(revolutions)
         whole = int(travel[-1])
         if not -whole <= i < whole:
             raise IndexError(f"the run has {whole} whole cycles")
         chosen = (travel >= i % whole) & (travel <= i % whole + 1 + 1e-9)
         return Run(self.case, self._columns, self._rows[chosen], None, [], f"{self.name}, cycle {i % whole}")
+
+    def _cycles_turned(self, revolutions: int | None = None) -> np.ndarray:
+        """Cycles that the crank has turned through until each row, raised by rounding."""
+        import numpy as np
+
+        if revolutions is None:
+            revolutions = int(self.summary.get("cycle_revolutions", 1))
+        return np.abs(self["crank_angle"] - self["crank_angle"][0]) / (2 * math.pi * revolutions) + 1e-9
+
+    @property
+    def cycles(self) -> pd.DataFrame:
+        """Least, mean and largest value of each column in the rows of each whole cycle. Answers of the last cycle that are searched
+        inside the steps are in the summary (`cycle_...`).
+
+        >>> cycles = gudgeon.template("engine").run().cycles
+        >>> cycles["crank_angle"].columns.tolist(), len(cycles) > 1
+        (['least', 'mean', 'largest'], True)
+        """
+        import numpy as np
+        import pandas as pd
+
+        parts = [self.cycle(i)._rows for i in range(int(self._cycles_turned()[-1]))]
+        names = pd.MultiIndex.from_product([self.names, ["least", "mean", "largest"]])
+        found = [np.stack([rows.min(axis=0), rows.mean(axis=0), rows.max(axis=0)], axis=1).ravel() for rows in parts]
+        return pd.DataFrame(found, columns=names)
 
     # tables and files
 
@@ -215,14 +237,22 @@ class Run:
         ax.legend()
         return ax
 
-    def report(self, path: str | Path | None = None) -> Path:
-        """Write the page of the run, as `gudgeon-plot report` does: animation, plots, case, summary, warnings. By default NAME.html."""
+    def animate(self, cycle: int | None = None, frames: int = 120) -> Any:
+        """The mechanism in motion, and the orbit of the pin in its clearance, as an animation of matplotlib."""
+        from .plots.animation import animated
+
+        return animated(self if cycle is None else self.cycle(cycle), frames)
+
+    def report(self, path: str | Path | None = None) -> Page:
+        """The page of the run, as `gudgeon-plot report` writes it: animation, plots, case, summary, notes. A notebook shows it; with a
+        path it is written."""
         from .report.page import page
         from .results import drawable
 
-        path = Path(path or f"{self.name}.html")
-        path.write_text(page(drawable(self), drawable(self.twin) if self.twin else None), encoding="utf-8")
-        return path
+        made = Page(page(drawable(self), drawable(self.twin) if self.twin else None))
+        if path is not None:
+            made.save(path)
+        return made
 
     def __repr__(self) -> str:
         return f"<Run {self.name}: {self.summary.get('status', '')}, {len(self)} rows, {len(self._columns)} columns>"
@@ -235,6 +265,23 @@ class Run:
         name = next((name for name in ("piston_acceleration", *self.names[1:]) if name in self._index), None)
         picture = _polyline(self["time"], self[name]) if name and len(self) > 1 else ""
         return f"<b>{escape(self.name)}</b>: {escape(str(self.summary.get('status', '')))}{picture}<br>{escape(name or '')}{_table(rows)}"
+
+
+class Page:
+    """A page of HTML that needs no other file and no network; notebooks show it."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+
+    def save(self, path: str | Path) -> Path:
+        path = Path(path)
+        path.write_text(self.text, encoding="utf-8")
+        return path
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        return f'<iframe width="100%" height="700" style="border:0" srcdoc="{escape(self.text)}"></iframe>'
 
 
 class _Owner:
@@ -259,7 +306,7 @@ def from_handle(case: Case, number: int) -> Run:
     if count.value * len(columns):
         buffer = (ctypes.c_double * (count.value * len(columns))).from_address(ctypes.addressof(address.contents))
         buffer._owner = owner  # type: ignore[attr-defined]
-        rows = np.frombuffer(buffer).reshape(count.value, len(columns))
+        rows = np.frombuffer(buffer).reshape(count.value, len(columns))  # pyright: ignore
         rows.flags.writeable = False
     else:
         rows = np.empty((0, len(columns)))
@@ -321,30 +368,34 @@ def carry_out(
 
 
 def advance(number: int, to: float, tell: Callable[[float], None] | None, timeout: float | None) -> int:
-    """Advance a run of the library in slices, between which Python looks for interruptions. Returns -1 at a pause, 0 at its end, 4 if
-    it cannot go on."""
-    began = time.monotonic()
+    """Advance a run of the library in slices of about `SLICE`, between which Python looks for interruptions. Returns -1 at a pause, 0
+    at its end, 4 if it cannot go on."""
+    began = before = time.monotonic()
+    steps = 100
     while True:
-        status = library().run_advance(number, to, STEPS_BETWEEN_LOOKS)
-        now = library().run_time(number)
+        status = library().run_advance(number, to, steps)
+        now, clock = library().run_time(number), time.monotonic()
+        steps = max(1, min(4 * steps, int(steps * SLICE / max(clock - before, 1e-6)), 1_000_000))
+        before = clock
         if tell is not None:
             tell(min(1.0, now / max(library().run_end(number), 1e-300)))
         if status != -1 or now >= to:
             return int(status)
-        if timeout is not None and time.monotonic() - began > timeout:
+        if timeout is not None and clock - began > timeout:
             raise TimeoutError(f"the run took more than {timeout} s")
 
 
 def _bar(share: float) -> None:
-    """Progress in one line, on a terminal alone."""
+    """Progress in one line, in a terminal or a notebook alone."""
     import sys
 
-    if sys.stderr.isatty():
+    if sys.stderr.isatty() or "ipykernel" in sys.modules:
         print(f"\r{share:4.0%} {'#' * round(40 * share)}", end="\n" if share >= 1 else "", file=sys.stderr, flush=True)
 
 
-def load(path: str | Path) -> Run:
-    """A run from its files: `load("results/sim_I")`, or a name that is looked for in `results/`."""
+def load(path: str | Path, folder: str | Path | None = None) -> Run:
+    """A run from its files: `load("results/sim_I")`, or a name that is looked for in `results/`. Its case may read the tables that it
+    names in the folder of the files, or in `folder`; "/": anywhere."""
     import numpy as np
     import pandas as pd
 
@@ -352,31 +403,61 @@ def load(path: str | Path) -> Run:
     if not Path(f"{base}.csv").is_file():
         base = Path("results") / base
     with open(f"{base}.csv") as file:
-        columns = [Column(*(part.rstrip("]") for part in name.split("[")), "") for name in file.readline().strip().split(",")]
+        headings = [name.partition("[") for name in file.readline().strip().split(",")]
+        columns = [Column(name, unit.rstrip("]"), "") for name, _, unit in headings]
         rows = np.loadtxt(file, delimiter=",", ndmin=2)
     rows.flags.writeable = False
     table = pd.read_csv(f"{base}.summary.csv", dtype=str, keep_default_na=False)
     events = None
     if Path(f"{base}.events.csv").is_file():
         events = pd.read_csv(f"{base}.events.csv").values.tolist()
-    case = None
-    if (resolved := Path(f"{base}.resolved.nml")).is_file():
-        case = Case.from_text(resolved.read_text(), base.name, "/")
-    return Run(case, columns, rows, events, table.values.tolist(), base.name)
+    case, resolved = None, Path(f"{base}.resolved.nml")
+    if resolved.is_file():
+        case = Case.from_text(resolved.read_text(), base.name, folder or base.parent)
+    run = Run(case, columns, rows, events, table.values.tolist(), base.name)
+    run._resolved = resolved.read_text() if case else None
+    if Path(f"{base}.ideal.csv").is_file():
+        run.twin = load(f"{base}.ideal.csv", folder)
+    return run
 
 
-def compare(a: Run, b: Run, *names: str) -> pd.DataFrame:
+def compare(a: Run, b: Run, *names: str, ax: Any = None) -> pd.DataFrame:
     """How far two runs are apart in these columns, or in all that both have: largest and root mean square difference, and the range
-    of `a`. Rows of `b` are interpolated at the times of `a`."""
+    of `a`. Rows of `b` are interpolated at the times of `a`. The differences are drawn into `ax`, axes of matplotlib, if given.
+
+    >>> case = gudgeon.template("dry")
+    >>> found = compare(case.run(end=0.02), case.run(end=0.02, accuracy="reference"), "piston_position")
+    >>> bool(0 < found.largest["piston_position"] < 1e-4 * found.range["piston_position"])
+    True
+    """
     import numpy as np
     import pandas as pd
 
     rows = []
+    inside = a["time"] <= b["time"][-1]
     for name in names or [name for name in a.names if name in b.names and name != "time"]:
-        inside = a["time"] <= b["time"][-1]
         apart = np.interp(a["time"][inside], b["time"], b[name]) - a[name][inside]
         rows.append((name, a.units[name], np.abs(apart).max(), math.sqrt(np.mean(apart**2)), np.ptp(a[name])))
+        if ax is not None:
+            ax.plot(a["time"][inside], apart, label=f"{name} [{a.units[name]}]")
+    if ax is not None:
+        ax.set(xlabel="time [s]", ylabel=f"{b.name} - {a.name}")
+        ax.legend()
     return pd.DataFrame(rows, columns=["column", "unit", "largest", "rms", "range"]).set_index("column")
+
+
+def orders(run: Run, name: str, settle: float | None = None) -> pd.DataFrame:
+    """Amplitude, phase [deg] and scatter of each order of a column, cycles in a revolution, over the whole cycles after `settle`
+    revolutions (default: half of the run).
+
+    >>> found = orders(gudgeon.template("engine").run(), "piston_acceleration")
+    >>> float(found.order[found.amplitude.idxmax()])
+    1.0
+    """
+    from .cycles import orders, whole_cycles
+    from .results import drawable
+
+    return orders(whole_cycles(drawable(run), settle), name)
 
 
 def _number(text: str) -> Any:
