@@ -336,6 +336,33 @@ def threads() -> None:
     check(not wrong, f"threads do not disturb each other: {wrong[:3]}")
 
 
+def static_lengths() -> None:
+    """gfortran keeps the length of a function's text in static memory, which threads share: no such function is called while a run
+    advances, neither directly nor by the models and integrators, whose procedures are called through tables."""
+    library = os.environ["GUDGEON_LIBRARY"]
+    symbols = subprocess.run(["nm", library], capture_output=True, text=True, check=True).stdout
+    lengths = {int(line.split()[0], 16) for line in symbols.splitlines() if " slen." in line}
+    users, calls, name = set(), {}, ""
+    for line in subprocess.run(["objdump", "-d", "--no-show-raw-insn", library], capture_output=True, text=True, check=True).stdout.splitlines():
+        if line.endswith(">:"):
+            name = line.partition("<")[2][:-2]
+        elif (found := re.search(r"# ([0-9a-f]+) <", line)) and int(found[1], 16) in lengths:
+            users.add(name)
+        elif found := re.search(r"\b(?:call|jmp) +[0-9a-f]+ <([^>+]+)>", line):
+            calls.setdefault(name, set()).add(found[1].removesuffix("@plt"))
+    reached, waiting = set(), ["gudgeon_run_advance"]
+    while waiting:
+        if (name := waiting.pop()) not in reached:
+            reached.add(name)
+            waiting += calls.get(name, ())
+    check(len(lengths) > 100 and len(reached) > 50 and not reached & users, f"an advance calls {reached & users}")
+    layers = "ode model chain contact friction film gas joint".split()
+    modules = {path.stem for layer in layers for path in (TOP / "src" / layer).rglob("*.f90")}
+    before = {"conflict", "static_conflict", "description", "declare", "make_table", "find_oil"}  # a run: checks, tables, names
+    wrong = [user for user in users if (of := re.match(r"__(\w+)_MOD_(\w+)", user)) and of[1] in modules and of[2] not in before]
+    check(not wrong, f"texts in models and integrators: {wrong}")
+
+
 def pages() -> None:
     """The page of a run of this process has its title, its case and its largest force."""
     run = case_of("sim_V_oscillating").run(end=0.02, ideal_twin=True)
@@ -405,7 +432,7 @@ def main() -> int:
     if "--all" in sys.argv:
         found = sorted((TOP / "cases").rglob("*.nml"))
         names = [str(p.relative_to(TOP / "cases").with_suffix("")) for p in found if "studies" not in p.parts]
-    for part in (lambda: against_program(program, names), cases, runs, steps, sweeps, threads, texts_of_the_package, pages, memory, lambda: writes_nowhere(program)):
+    for part in (lambda: against_program(program, names), cases, runs, steps, sweeps, threads, static_lengths, texts_of_the_package, pages, memory, lambda: writes_nowhere(program)):
         try:
             part()
         except Exception:

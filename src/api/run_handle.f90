@@ -37,6 +37,7 @@ module run_handle
     character(len=:), allocatable, private :: table, certificate_table   !! NAME.summary.csv, NAME.certificate.csv
   contains
     procedure :: advance
+    procedure :: advance_to_event
     procedure :: look
     procedure :: set_input
     procedure :: finish
@@ -102,6 +103,19 @@ contains
     status = -1
     if (self%run%is_over) status = merge(0, status_integration, self%run%is_complete())
   end subroutine advance
+
+  !> Go on to a time [s], or until a contact begins or ends, if that comes first.
+  subroutine advance_to_event(self, to, status)
+    class(run_handle_t), intent(inout) :: self
+    real(dp), intent(in) :: to
+    integer, intent(out) :: status   !! see `advance`
+    integer :: events
+    events = self%rows%events
+    do
+      call self%advance(to, 1, status)
+      if (status /= -1 .or. self%rows%events > events .or. .not. self%run%t < to) exit
+    end do
+  end subroutine advance_to_event
 
   !> Evaluate all columns at the present time, once for each time. Error: the state is outside the model.
   subroutine look(self, status)
