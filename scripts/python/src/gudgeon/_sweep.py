@@ -136,7 +136,7 @@ def _chunk(
 ) -> dict[int, dict[str, Any]]:  # fmt: skip
     """The results of several rows, of which the later ones cost less: only their numbers change. `shared` are the results of all rows
     in this process, and whether it is to stop."""
-    from .run import advance, from_handle
+    from .run import _Owner, advance, from_handle, summary_of
 
     found, stopped = shared or ({}, Event())
 
@@ -153,18 +153,17 @@ def _chunk(
         except CaseError as error:
             found[row] = {"status": str(error).splitlines()[0]}
             continue
-        try:
-            advance(number, 1e300, look, None)
-        finally:
-            run = from_handle(case.copy() if reduce is not None else case, number)
-        result: dict[str, Any] = {"status": run.status}
+        owner = _Owner(number)
+        advance(number, 1e300, look, None)
+        summary = summary_of(number)
+        result: dict[str, Any] = {"status": summary["status"]}
         if keep is None:
-            result.update({name: run.summary[name] for name in QUANTITIES if name in run.summary})
+            result.update({name: summary[name] for name in QUANTITIES if name in summary})
         else:
-            result.update({name: run.summary.get(name, math.nan) for name in keep})
+            result.update({name: summary.get(name, math.nan) for name in keep})
         if reduce is not None:
             try:
-                result.update(reduce(run))
+                result.update(reduce(from_handle(case.copy(), owner)))
             except Exception as error:
                 raise RuntimeError(f"reduce, row {row}: {error!r}") from error
         found[row] = result

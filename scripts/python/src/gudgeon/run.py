@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import ctypes
 import math
 import time
@@ -34,19 +35,25 @@ class Summary(Mapping[str, Any]):
     """The quantities of a run: numbers, or words. `units` are their units."""
 
     def __init__(self, rows: Sequence[tuple[str, str, str]]) -> None:
-        self._values = {name: _number(text) for name, text, _ in rows}
+        self._texts = {name: text for name, text, _ in rows}
         self.units = {name: unit for name, _, unit in rows}
 
     def __getitem__(self, name: str) -> Any:
-        if name not in self._values:
-            raise KeyError(f"no quantity {name}{_meant(name, list(self._values))}")
-        return self._values[name]
+        if name not in self._texts:
+            raise KeyError(f"no quantity {name}{_meant(name, list(self._texts))}")
+        return _number(self._texts[name])
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._texts
+
+    def get(self, name: str, default: Any = None) -> Any:
+        return self[name] if name in self._texts else default
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._values)
+        return iter(self._texts)
 
     def __len__(self) -> int:
-        return len(self._values)
+        return len(self._texts)
 
     def __repr__(self) -> str:
         width = max(map(len, self), default=0)
@@ -62,12 +69,12 @@ class Certificate(Summary):
     @property
     def digits(self) -> float:
         """Digits that agree until `until`; not a number if the run cannot be certified."""
-        return self._values.get("certified_digits", math.nan)
+        return self.get("certified_digits", math.nan)
 
     @property
     def until(self) -> float:
         """The time until which the trace is certified [s]."""
-        return self._values.get("certified_until", math.nan)
+        return self.get("certified_until", math.nan)
 
 
 class Run:
@@ -294,11 +301,12 @@ class _Owner:
         library().run_free(self.number)
 
 
-def from_handle(case: Case, number: int) -> Run:
+def from_handle(case: Case, owner: _Owner | int) -> Run:
     """The run of a handle, which is finished here. The run owns the handle from now on."""
     import numpy as np
 
-    owner = _Owner(number)
+    owner = _Owner(owner) if isinstance(owner, int) else owner
+    number = owner.number
     library().run_finish(number)
     columns = _columns(library().columns(number), library().column, number)
     count = ctypes.c_int64()
@@ -329,14 +337,16 @@ def _events(number: int) -> list[list[Any]] | None:
     return found
 
 
+def summary_of(number: int) -> Summary:
+    """The summary of a handle, whose run is finished here."""
+    library().run_finish(number)
+    return Summary(_quantities(number))
+
+
 def _quantities(number: int) -> list[tuple[str, str, str]]:
-    value, name, unit = ctypes.c_double(), ctypes.create_string_buffer(100), ctypes.create_string_buffer(20)
-    text = ctypes.create_string_buffer(4000)
-    found = []
-    for i in range(library().quantities(number)):
-        library().quantity(number, i, value, name, 100, unit, 20, text, 4000)
-        found.append((name.value.decode(), text.value.decode(), unit.value.decode()))
-    return found
+    """The rows of the summary of a handle: name, text, unit."""
+    text = _library.text_from(library().summary, number, guess=20000)
+    return [(name, value, unit) for name, value, unit in csv.reader(text.splitlines()[1:])]
 
 
 def carry_out(
@@ -355,7 +365,7 @@ def carry_out(
     if status == 4 or status == 0 and run.status != "done":
         raise RunError(run.status, run)
     if certify:
-        before = library().quantities(number)
+        before = len(run.summary)
         library().run_certify(number)
         rows = _quantities(number)
         run.summary = Summary(rows)
@@ -466,7 +476,7 @@ def _number(text: str) -> Any:
             return kind(text)
         except ValueError:
             continue
-    return text.replace('""', '"')
+    return text
 
 
 def _table(rows: Any) -> str:
