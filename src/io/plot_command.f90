@@ -64,6 +64,9 @@ contains
     character(len=*), intent(in) :: text
     character(kind=c_char) :: bytes(len(text) + 1)
     integer :: i
-    bytes = [(text(i:i), i=1, len(text)), c_null_char]
+    do i = 1, len(text)
+      bytes(i) = text(i:i)
+    end do
+    bytes(len(text) + 1) = c_null_char
   end function bytes
 end module plot_command

@@ -114,7 +114,7 @@ class Case(Groups):
         data = text.encode()
         return cls(library().case_new(data, len(data), name.encode(), place.encode()), name, place)
 
-    def __del__(self) -> None:
+    def __del__(self, library: Callable[[], Any] = library) -> None:  # also while Python ends
         if "_handle" in self.__dict__:
             library().case_free(self._handle)
 
@@ -342,7 +342,7 @@ def _write(key: Key, value: Any) -> str:
         return value
     if isinstance(value, (int, float)):
         return repr(value)
-    return ", ".join(repr(float(part)) for part in value)
+    return ", ".join(part if isinstance(part, str) else repr(float(part)) for part in value)
 
 
 def _given_text(case: Case, key: Key) -> str:

@@ -297,7 +297,7 @@ class _Owner:
     def __init__(self, number: int) -> None:
         self.number = number
 
-    def __del__(self) -> None:
+    def __del__(self, library: Callable[[], Any] = library) -> None:  # also while Python ends
         library().run_free(self.number)
 
 
