@@ -32,10 +32,11 @@ contains
   !> Become gudgeon-plot with the arguments after the first. Error: it cannot be started.
   subroutine become_plot(error)
     type(error_t), allocatable, intent(out) :: error
-    type(argument_t), target :: arguments(command_argument_count())
-    type(c_ptr) :: places(command_argument_count() + 1)
+    type(argument_t), allocatable, target :: arguments(:)
+    type(c_ptr), allocatable :: places(:)
     integer(c_int) :: unused
     integer :: i
+    allocate (arguments(command_argument_count()), places(command_argument_count() + 1))
     arguments(1)%bytes = bytes(program)
     do i = 2, size(arguments)
       arguments(i)%bytes = bytes(argument(i))
