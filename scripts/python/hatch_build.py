@@ -12,7 +12,6 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import build_library
 
-
 #: What the program prints, and where man and the shells look for it.
 PAGES = {
     ("--man",): "share/man/man1/gudgeon.1",
