@@ -216,7 +216,9 @@ contains
     integer :: i
     unit = '?'
     do i = 1, size(table)
-      if (table(i)%name == name) unit = trim(table(i)%unit)
+      if (table(i)%name /= name) cycle
+      unit = trim(table(i)%unit)
+      return
     end do
   end function unit_of
 end module summary_quantities

@@ -348,7 +348,10 @@ contains
     call self%stop()   ! no effect if it is over
     report = self%report
     report%periods = self%recorder%periods
-    if (allocated(self%measurement)) report%exponent = self%measurement%exponent
+    if (allocated(self%measurement)) then
+      call self%measurement%explain()
+      report%exponent = self%measurement%exponent
+    end if
     report%statistics = self%method%totals()
     if (allocated(self%method%time_with)) report%time_with = self%method%time_with
     report%figures = self%recorder%extremes%figures
