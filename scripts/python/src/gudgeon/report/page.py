@@ -8,6 +8,7 @@ import gzip
 import html
 import json
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -280,6 +281,26 @@ def film_columns(run: Run, rows: np.ndarray, fields: list[pd.DataFrame] | None =
     return np.rint(127 * levels).astype(np.int8), found.max(axis=1), bool((found < 0).any())
 
 
+def oil_of(run: Run, rows: np.ndarray, fields: list[pd.DataFrame] | None) -> np.ndarray | None:
+    """Part of the gap that oil fills, as bytes (rows, angles), of a film with memory; None of other films."""
+    if not fields or "film_fraction" not in fields[0]:
+        return None
+    angles = 2 * np.pi * np.arange(ANGLES) / ANGLES - np.pi
+    return np.rint(127 * film_pressure.from_fields(run, fields, angles, "film_fraction")[rows]).astype(np.int8)
+
+
+def supply_of(run: Run) -> list[dict[str, float]]:
+    """Middles and half widths [rad] of the grooves and holes that feed the piston pin's film, if they are in its bearing."""
+    if run.parameter("supply", "kind") in (None, "circumferential_groove") or run.parameter("supply", "fixed_to") == "pin":
+        return []
+    radius = float(run.parameter("joint", "bearing_radius"))
+    wide = float(run.parameter("supply", "width_deg", 0.0)) * np.pi / 360
+    half = wide or 0.5 * float(run.parameter("supply", "diameter", 0.0)) / radius
+    middles = run.parameter("supply", "position_deg")
+    middles = middles if isinstance(middles, list) else str(middles).split(",")
+    return [{"angle": float(np.radians(float(middle))), "half": half} for middle in middles]
+
+
 def largest_deflection(columns: dict[str, np.ndarray]) -> float:
     """Largest deflection of an elastic rod across its chord, anywhere along the rod [m]."""
     modes = [name for name in columns if name.startswith("rod_mode_")]
@@ -319,6 +340,7 @@ def page(
             used.append(plot["phase"])
     rows = chosen_rows([columns[name] for name in used])
     film = film_columns(run, rows, fields)
+    oil = oil_of(run, rows, fields)
     if film:
         columns["film_peak"] = np.zeros(len(run["time"]))
         columns["film_peak"][rows] = film[1]
@@ -334,9 +356,10 @@ def page(
         "line": time_line(columns, run) | {"title": say(time_line(columns, run)["title"])},
         "words": {word: say(word) for word in script_words()},
         "comma": bool(language and not language.is_english),
-        "start": first_moment(columns),
+        "start": first_moment(columns, [field["time"].iloc[0] for field in fields or []]),
         "angles": ANGLES if film else 0,
         "signed": bool(film and film[2]),
+        "supply": supply_of(run),
         "certified": run.certified_until,
         "clearance": run.clearance,
         "crank": float(run.parameter("mechanism", "crank_length")),
@@ -399,6 +422,7 @@ def page(
         "scene": json.dumps(scene, ensure_ascii=False).replace("</", "<\\/"),
         "trace": packed(data),
         "pressure": packed(film[0].tobytes()) if film else "",
+        "oil": packed(oil.tobytes()) if oil is not None else "",
         "library": packed(get_plotlyjs().encode("utf-8")),
     }
     text = (PAGE / "page.html").read_text(encoding="utf-8")
@@ -415,10 +439,14 @@ def wear_section(worn: list[tuple[str, pd.DataFrame]], language: Language) -> st
     return f'<section id="wear"><h2>{html.escape(heading)}</h2>{report_cycles.picture(drawing, said, language)}</section>'
 
 
-def first_moment(columns: dict[str, np.ndarray]) -> float:
-    """The time at which the page opens [s]: that of the largest pin force after the first tenth of the run."""
+def first_moment(columns: dict[str, np.ndarray], of_fields: Sequence[float] = ()) -> float:
+    """The time at which the page opens [s]: that of the largest pin force after the first tenth of the run, where there are fields of
+    a film between the first and the last of them."""
     time = columns["time"]
-    force = np.where(time >= time[0] + 0.1 * (time[-1] - time[0]), columns["pin_force"], 0.0)
+    shown = time >= time[0] + 0.1 * (time[-1] - time[0])
+    if of_fields:
+        shown = (time >= min(of_fields)) & (time <= max(of_fields))
+    force = np.where(shown, columns["pin_force"], 0.0)
     return float(time[int(np.argmax(force))])
 
 
