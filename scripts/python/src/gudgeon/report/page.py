@@ -8,6 +8,7 @@ import gzip
 import html
 import json
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -261,16 +262,8 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
 
 
 def warnings(run: Run) -> list[str]:
-    """Warnings about a run."""
+    """What the program says of a run: how far it is certified, why it ended early, and the notes of its summary."""
     found = []
-
-    def number(name: str) -> float | None:
-        text = run.summary.get(name, ("", ""))[0]
-        try:
-            return float(text)
-        except ValueError:
-            return None
-
     if (until := run.certified_until) is not None:
         found.append(
             f"The run is certified up to {1e3 * until:.4g} ms: beyond, shaded in the plots, single values are not reliable. How far "
@@ -279,49 +272,12 @@ def warnings(run: Run) -> list[str]:
     status = run.summary.get("status", ("unknown", ""))[0]
     if status != "done":
         found.append(f"The run did not end as requested: {status}.")
-    for prefix, place, at in (("", "", ""), ("crank_pin_", "crank_pin.", " at the crank pin")):
-        contacts = number(f"{prefix}contacts") or 0
-        if (beyond := number(f"{prefix}impacts_beyond_validity") or 0) > 0:
-            found.append(
-                f"{beyond:.0f} of {contacts:.0f} impacts{at} were faster than the contact law's limit of "
-                "validity, 1e-5 √(E/ρ)."
-            )
-        if (deep := number(f"{prefix}contacts_beyond_validity") or 0) > 0:
-            found.append(
-                f"{deep:.0f} of {contacts:.0f} contacts{at} penetrated deeper than the contact geometry is valid for."
-            )
-        clearance = float(run.parameter(f"{place}joint", "clearance", 0.0)) if f"{prefix}film_thickness" in run else 0.0
-        if clearance and (deepest := number(f"{prefix}max_penetration") or 0) > 0.1 * clearance:
-            found.append(
-                f"The deepest penetration{at}, {1e6 * deepest:.3g} µm, is {deepest / clearance:.2g} clearances; contact "
-                "laws assume that it is small."
-            )
-        film, rough = (run.case.get(f"{place}{group}", run.case.get(group)) for group in ("lubrication", "asperities"))
-        if film and not rough and clearance and 0 < (number(f"{prefix}min_film_thickness") or 0) < 1e-6:
-            found.append(
-                f"The film{at} gets as thin as {1e6 * number(f'{prefix}min_film_thickness'):.3g} µm, the order of surface "
-                "roughness, which the film law neglects."
-            )
-        if abs(change := number(f"{prefix}film_thickness_change") or 0) > 0.05:
-            found.append(
-                f"The film{at} has not settled: its smallest thickness changed by {100 * abs(change):.2g} % in the last cycle."
-            )
-    if (residual := number("max_energy_residual_relative") or 0) > 1e-6:
-        found.append(f"The energy residual is {residual:.1e} of the energy: use a smaller tolerance.")
-    if (
-        run.parameter("lubrication", "law") == "oscillating_film"
-        and (share := number("contact_time_fraction") or 0) > 0.5
-    ):
-        found.append(f"The pin is in contact {100 * share:.0f} % of the time: this film carries no radial load.")
-    if not run.contacts.empty:
-        duration = float((run.contacts["end"] - run.contacts["begin"]).median())
-        interval = float(np.median(np.diff(run["time"])))
-        if duration < 5 * interval:
-            found.append(
-                f"Half of the contacts are shorter than {duration / interval:.1f} samples of the trace: peaks in the "
-                "plots may be too low; the time line and the summary have the exact peaks."
-            )
     return found
+
+
+def notes(run: Run) -> list[str]:
+    """The notes of the summary, in the words of the program."""
+    return [text for name, (text, _) in run.summary.items() if name.startswith("note_")]
 
 
 def contacts(run: Run) -> list[dict]:
@@ -364,6 +320,26 @@ def film_columns(run: Run, rows: np.ndarray, fields: list[pd.DataFrame] | None =
     return np.rint(127 * levels).astype(np.int8), found.max(axis=1), bool((found < 0).any())
 
 
+def oil_of(run: Run, rows: np.ndarray, fields: list[pd.DataFrame] | None) -> np.ndarray | None:
+    """Part of the gap that oil fills, as bytes (rows, angles), of a film with memory; None of other films."""
+    if not fields or "film_fraction" not in fields[0]:
+        return None
+    angles = 2 * np.pi * np.arange(ANGLES) / ANGLES - np.pi
+    return np.rint(127 * film_pressure.from_fields(run, fields, angles, "film_fraction")[rows]).astype(np.int8)
+
+
+def supply_of(run: Run) -> list[dict[str, float]]:
+    """Middles and half widths [rad] of the grooves and holes that feed the piston pin's film, if they are in its bearing."""
+    if run.parameter("supply", "kind") in (None, "circumferential_groove") or run.parameter("supply", "fixed_to") == "pin":
+        return []
+    radius = float(run.parameter("joint", "bearing_radius"))
+    wide = float(run.parameter("supply", "width_deg", 0.0)) * np.pi / 360
+    half = wide or 0.5 * float(run.parameter("supply", "diameter", 0.0)) / radius
+    middles = run.parameter("supply", "position_deg")
+    middles = middles if isinstance(middles, list) else str(middles).split(",")
+    return [{"angle": float(np.radians(float(middle))), "half": half} for middle in middles]
+
+
 def largest_deflection(columns: dict[str, np.ndarray]) -> float:
     """Largest deflection of an elastic rod across its chord, anywhere along the rod [m]."""
     modes = [name for name in columns if name.startswith("rod_mode_")]
@@ -403,6 +379,7 @@ def page(
             used.append(plot["phase"])
     rows = chosen_rows([columns[name] for name in used])
     film = film_columns(run, rows, fields)
+    oil = oil_of(run, rows, fields)
     if film:
         columns["film_peak"] = np.zeros(len(run["time"]))
         columns["film_peak"][rows] = film[1]
@@ -418,9 +395,10 @@ def page(
         "line": time_line(columns, run) | {"title": say(time_line(columns, run)["title"])},
         "words": {word: say(word) for word in script_words()},
         "comma": bool(language and not language.is_english),
-        "start": first_moment(columns),
+        "start": first_moment(columns, [field["time"].iloc[0] for field in fields or []]),
         "angles": ANGLES if film else 0,
         "signed": bool(film and film[2]),
+        "supply": supply_of(run),
         "certified": run.certified_until,
         "cycle": last_cycle(run, columns),
         "clearance": run.clearance,
@@ -442,7 +420,7 @@ def page(
     }
     if "normal_force" in columns:
         scene["peak"]["normal_force"] = max(scene["peak"]["normal_force"], float(columns["normal_force"].max()))
-    said = [say(text) for text in warnings(run)]
+    said = [*(say(text) for text in warnings(run)), *notes(run)]
     case = "".join(
         rows_html([(key, shown(value)) for key, value in keys.items()], f"&{group}") for group, keys in run.case.items()
     )
@@ -452,7 +430,7 @@ def page(
             [
                 (name, summary_number(value), "" if unit == "1" else unit)
                 for name, (value, unit) in run.summary.items()
-                if not name.startswith("steps_of_order") and (name in OF_THE_PROGRAM) == of_program
+                if not name.startswith(("steps_of_order", "note_")) and (name in OF_THE_PROGRAM) == of_program
             ]
         )
 
@@ -485,6 +463,7 @@ def page(
         "scene": json.dumps(scene, ensure_ascii=False).replace("</", "<\\/"),
         "trace": packed(data),
         "pressure": packed(film[0].tobytes()) if film else "",
+        "oil": packed(oil.tobytes()) if oil is not None else "",
         "library": packed(get_plotlyjs().encode("utf-8")),
     }
     text = (PAGE / "page.html").read_text(encoding="utf-8")
@@ -514,10 +493,14 @@ def last_cycle(run: Run, columns: dict[str, np.ndarray]) -> dict[str, float] | N
     return {"begin": begin, "end": begin + length, "angle": float(np.interp(begin, time, columns["crank_angle"])), "degrees": 360 * turns}
 
 
-def first_moment(columns: dict[str, np.ndarray]) -> float:
-    """The time at which the page opens [s]: that of the largest pin force after the first tenth of the run."""
+def first_moment(columns: dict[str, np.ndarray], of_fields: Sequence[float] = ()) -> float:
+    """The time at which the page opens [s]: that of the largest pin force after the first tenth of the run, where there are fields of
+    a film between the first and the last of them."""
     time = columns["time"]
-    force = np.where(time >= time[0] + 0.1 * (time[-1] - time[0]), columns["pin_force"], 0.0)
+    shown = time >= time[0] + 0.1 * (time[-1] - time[0])
+    if of_fields:
+        shown = (time >= min(of_fields)) & (time <= max(of_fields))
+    force = np.where(shown, columns["pin_force"], 0.0)
     return float(time[int(np.argmax(force))])
 
 

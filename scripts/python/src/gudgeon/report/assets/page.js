@@ -24,6 +24,7 @@
     const values = new Float32Array(await unpack("trace"));
     scene.columns.forEach((name, i) => { column[name] = values.subarray(i * scene.rows, (i + 1) * scene.rows); });
   }
+  const oil = document.getElementById("oil").textContent ? new Int8Array(await unpack("oil")) : null;
   const pressure = scene.angles ? new Int8Array(await unpack("pressure")) : null;
   const time = column.time, begin = time[0], end = time[scene.rows - 1];
   const joint = scene.clearance > 0;
@@ -194,6 +195,20 @@
       }
     }
     circle(g, cx, cy, radius, "#fff", COLOUR.ink, 2);
+    if (oil) {   // where the gap is full the ring is dark, where the film has ruptured it is pale
+      const first = nearest() * scene.angles, direction = Math.atan2(uy, ux), step = 2 * Math.PI / scene.angles;
+      g.lineWidth = 5; g.strokeStyle = COLOUR.sky;
+      for (let i = 0; i < scene.angles; i++) {
+        const angle = direction + i * step - 1.5 * Math.PI;
+        g.globalAlpha = Math.max(0, oil[first + i]) / 127;
+        g.beginPath(); g.arc(cx, cy, radius - 4, angle - step / 2, angle + step / 2); g.stroke();
+      }
+      g.globalAlpha = 1;
+    }
+    for (const { angle, half } of scene.supply) {
+      g.beginPath(); g.arc(cx, cy, radius + 5, angle - half - Math.PI / 2, angle + half - Math.PI / 2);
+      g.lineWidth = 9; g.strokeStyle = COLOUR.sky; g.stroke();
+    }
     circle(g, pinX, pinY, radius - gap, COLOUR.steel, COLOUR.ink, 1.2);
     circle(g, cx, cy, radius, null, COLOUR.ink, 2);
     const turn = -at("rod_angle"), mark = radius - gap;   // a line on the pin shows that it turns with the rod
