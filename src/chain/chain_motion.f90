@@ -15,6 +15,7 @@
 !> p_y).
 module chain_motion
   use kinds, only: dp
+  use train_motion, only: train_motion_t, most_stations, most_rings
   implicit none
   private
   public :: motion_t, tilting_t, accelerations_t, crank_pin, piston_pin, n_pins, most_shapes
@@ -69,6 +70,7 @@ module chain_motion
     real(dp) :: shape_rate(most_shapes)     !! [m/s]
     real(dp) :: flywheel_angle              !! angle of the other end of an elastic crankshaft [rad]
     real(dp) :: flywheel_speed              !! [rad/s]
+    type(train_motion_t) :: train           !! of the stations of a crankshaft with several cylinders
   end type motion_t
 
   !> Accelerations of the three bodies.
@@ -81,6 +83,7 @@ module chain_motion
     real(dp) :: rod_end(n_pins)  !! of the rod's rotation at its ends, positive from x to y [rad/s^2]; needed if surfaces may stick
     real(dp) :: shape(most_shapes)  !! of the shapes of an elastic rod [m/s^2]
     real(dp) :: flywheel            !! of the other end of an elastic crankshaft [rad/s^2]
+    real(dp) :: station(most_stations), ring(most_rings)   !! of a crankshaft with several cylinders [rad/s^2]
   end type accelerations_t
 
 contains

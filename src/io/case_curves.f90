@@ -1,7 +1,7 @@
 !> Reads and checks the files of measured curves that a case names, and puts the curves into the case.
 module case_curves
   use kinds, only: dp
-  use error_handling, only: error_t
+  use error_handling, only: error_t, fail, status_case_file
   use checksums, only: checksum_t
   use posix_files, only: absolute_path
   use measured_curve, only: measured_curve_t
@@ -10,12 +10,15 @@ module case_curves
   use text_tools, only: printable, integer_text, path_beside
   use text_file, only: read_text_file
   use case_definition, only: case_t
+  use compliance_file, only: parse_compliances
+  use history_case, only: history_case_t, bore_case_t
+  use joint_places, only: places, n_places
   use case_schema, only: shown_group
   use case_values, only: case_values_t
   use curve_file, only: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque, load
   implicit none
   private
-  public :: provide_curves, period_fault
+  public :: provide_curves, provide_history, period_fault
 
   integer, parameter :: largest_file = 100   !! MB
   real(dp), parameter :: widest_gap = 30     !! largest interval between two points of a pressure curve [degrees]
@@ -31,8 +34,13 @@ contains
   subroutine provide_curves(values, into)
     type(case_values_t), intent(inout) :: values
     type(case_t), intent(inout) :: into
+    integer :: i
     if (into%drive%table%is_wanted()) call provide(values, into%file, 'drive', 'torque_table', turning_speed, torque, &
       into%drive%table)
+    do i = 1, n_places
+      call provide_history(values, into%file, into%joints(i)%history, values%law_group('supply', trim(places(i)%name)), &
+        values%law_group('bore', trim(places(i)%name)))
+    end do
     if (allocated(into%load)) then
       if (mod(into%load%period_deg, 360) == 0) call provide(values, into%file, 'bearing_load', 'table', crank_angle, load, &
         into%load%curve, into%load%period_deg)   ! else refused by the rules
@@ -44,6 +52,40 @@ contains
     end associate
   end subroutine provide_curves
 
+  !> Read the tables of a film with memory: the pressure of its supply over the crank angle, the compliances of its bore.
+  subroutine provide_history(values, case_file, history, supply_group, bore_group)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: case_file
+    type(history_case_t), intent(inout) :: history
+    character(len=*), intent(in) :: supply_group, bore_group
+    if (allocated(history%supply)) then
+      if (history%supply%feed%is_wanted()) call provide(values, case_file, supply_group, 'pressure_table', crank_angle, pressure, &
+        history%supply%feed)
+    end if
+    if (.not. allocated(history%bore)) return
+    if (history%bore%table%is_wanted()) call provide_compliances(values, case_file, bore_group, history%bore)
+  end subroutine provide_history
+
+  subroutine provide_compliances(values, case_file, group, bore)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: case_file, group
+    type(bore_case_t), intent(inout) :: bore
+    character(len=*), parameter :: key = 'compliance_table'
+    type(error_t), allocatable :: error
+    character(len=:), allocatable :: text, message
+    integer :: line
+    call read_new(values, case_file, group, key, bore%table, text)
+    if (allocated(text)) then
+      call parse_compliances(text, bore%compliances, message, line)
+      if (message /= '') then
+        call fail(error, printable(bore%table%path, 200)//':'//integer_text(line)//': '//message, status_case_file)
+        call note_error(values, group, key, error)
+        return
+      end if
+    end if
+    call finish_table(values, group, key, bore%table)
+  end subroutine provide_compliances
+
   !> Read one curve. A curve with a period is a pressure or a load; a load may have two components.
   subroutine provide(values, case_file, group, key, x_is, y_is, curve, period)
     type(case_values_t), intent(inout) :: values
@@ -51,30 +93,12 @@ contains
     type(quantity_t), intent(in) :: x_is, y_is
     type(measured_curve_t), intent(inout) :: curve
     integer, intent(in), optional :: period   !! [degrees]
-    character(len=:), allocatable :: path, text, message, head
+    character(len=:), allocatable :: text, message
     type(error_t), allocatable :: error
-    type(checksum_t) :: sum
     integer, allocatable :: lines(:)
-    integer :: line, place
-    logical :: is_read
-
-    if (curve%file == '') then
-      call values%refuse(group, key, trim(merge('must be the name of a file', 'required                  ', &
-        values%is_given(group, key))))
-      return
-    end if
-    path = path_beside(case_file, curve%file)
-    is_read = .false.
-    if (allocated(curve%path)) is_read = curve%path == path
-    head = values%file//': '//shown_group(group)//' '//key//': '
-    if (.not. is_read) then
-      if (allocated(curve%path)) deallocate (curve%path)
-      call read_text_file(path, largest_file, 'table', text, error)
-      if (allocated(error)) then
-        error%message = head//error%message
-        call values%problems%add_error(error, group, values%place_in_file(values%place_of(group, key)))
-        return
-      end if
+    integer :: line
+    call read_new(values, case_file, group, key, curve, text)
+    if (allocated(text)) then
       if (y_is%name == load%name) then
         call parse_curve(text, x_is, y_is, curve%x, curve%y, lines, message, line, curve%z)
         if (message == '') call close_load(curve, period, lines, message, line)
@@ -83,23 +107,70 @@ contains
         if (message == '' .and. present(period)) call close_period(curve, period, lines, message, line)
       end if
       if (message /= '') then
-        call values%problems%add(head//printable(path, 200)//':'//integer_text(line)//': '//message, group, &
-          values%place_in_file(values%place_of(group, key)))
+        call fail(error, printable(curve%path, 200)//':'//integer_text(line)//': '//message, status_case_file)
+        deallocate (curve%path)
+        call note_error(values, group, key, error)
         return
       end if
-      call sum%add(text)
-      curve%found = sum%hexadecimal()
-      curve%path = absolute_path(path)
     end if
-    if (curve%digest /= '' .and. curve%digest /= curve%found) then
-      call values%refuse(group, key//'_digest', printable(path, 200)//' has other content: its digest is '//curve%found)
+    call finish_table(values, group, key, curve)
+  end subroutine provide
+
+  !> Read the text of a table, unless it has been read before or cannot be read, which is noted.
+  subroutine read_new(values, case_file, group, key, table, text)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: case_file, group, key
+    type(measured_curve_t), intent(inout) :: table
+    character(len=:), allocatable, intent(out) :: text
+    character(len=:), allocatable :: path
+    type(error_t), allocatable :: error
+    type(checksum_t) :: sum
+    if (table%file == '') then
+      call values%refuse(group, key, trim(merge('must be the name of a file', 'required                  ', &
+        values%is_given(group, key))))
+      return
+    end if
+    path = path_beside(case_file, table%file)
+    if (allocated(table%path)) then
+      if (table%path == path) return
+      deallocate (table%path)
+    end if
+    call read_text_file(path, largest_file, 'table', text, error)
+    if (allocated(error)) then
+      deallocate (text)
+      call note_error(values, group, key, error)
+      return
+    end if
+    call sum%add(text)
+    table%found = sum%hexadecimal()
+    table%path = absolute_path(path)
+  end subroutine read_new
+
+  !> Note an error of a table.
+  subroutine note_error(values, group, key, error)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: group, key
+    type(error_t), allocatable, intent(inout) :: error
+    error%message = values%file//': '//shown_group(group)//' '//key//': '//error%message
+    call values%problems%add_error(error, group, values%place_in_file(values%place_of(group, key)))
+  end subroutine note_error
+
+  !> Check the digest of a table that has been read, and put its absolute path and digest into the values.
+  subroutine finish_table(values, group, key, table)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: group, key
+    type(measured_curve_t), intent(in) :: table
+    integer :: place
+    if (.not. allocated(table%path)) return
+    if (table%digest /= '' .and. table%digest /= table%found) then
+      call values%refuse(group, key//'_digest', printable(table%path, 200)//' has other content: its digest is '//table%found)
       return
     end if
     place = values%place_of(group, key)
-    values%values(place)%text = curve%path
+    values%values(place)%text = table%path
     place = values%place_of(group, key//'_digest')
-    values%values(place)%text = curve%found
-  end subroutine provide
+    values%values(place)%text = table%found
+  end subroutine finish_table
 
   !> Check a measured pressure over one period and remove a last point that repeats the first one. If it is wrong, `message` says
   !> what is wrong and `line` where.

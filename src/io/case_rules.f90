@@ -6,11 +6,14 @@ module case_rules
   use text_tools, only: integer_text
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
-  use case_schema, only: find_group
   use measured_pressure, only: measured_pressure_periods
+  use case_schema, only: find_group
   use case_values, only: case_values_t
   use archard_wear, only: of_bore
   use friction_law, only: friction_law_t
+  use history_rules, only: check_history
+  use train_rules, only: check_train
+  use train_builder, only: inertia_beside
   use body_rules, only: check_guide, check_elastic, bore_reach
   use chain_motion, only: crank_pin, piston_pin, n_pins, n_bodies, body_crank, body_big_end, body_small_end, body_piston
   use joint_places, only: places, n_places, in_order, name_prefix, joint_group, main_bearing
@@ -33,6 +36,8 @@ contains
     if (allocated(c%load)) then
       call check_load()
     else
+      call check_train(c, values)
+      if (has_train_problem()) return
       call check_bodies()
     end if
     do i = 1, n_places
@@ -53,6 +58,16 @@ contains
     call check_output()
 
   contains
+
+    !> Whether cylinders or crankshaft are wrong.
+    logical function has_train_problem()
+      integer :: k
+      has_train_problem = values%problems%concerns('crankshaft')
+      do k = 1, size(values%groups)
+        if (values%groups(k)%number > 0) has_train_problem = has_train_problem .or. &
+          values%problems%concerns(trim(values%groups(k)%name))
+      end do
+    end function has_train_problem
 
     !> Note an error of a value of the case if it is wrong.
     subroutine forbid(is_wrong, group, name, wanted)
@@ -79,7 +94,7 @@ contains
           call values%refuse('guide', key, 'lets the pin move '//short_text(bore_reach(c))//' m off the cylinder''s axis: must '// &
             'be less than rod_length - crank_length - clearance = '//short_text(m%rod_length - m%crank_length - play))
         end if
-        crank = m%crank_inertia + c%drive%flywheel_inertia + m%crank_mass*sum(m%crank_com**2)
+        crank = m%crank_inertia + c%drive%flywheel_inertia + m%crank_mass*sum(m%crank_com**2) + inertia_beside(c)
         rod = m%rod_inertia + m%rod_mass*sum(m%rod_com**2)
         is_loose = c%loose_pins()
         if (is_loose(crank_pin)) then
@@ -166,6 +181,7 @@ contains
       call forbid(allocated(joint%friction) .and. .not. (allocated(joint%contact) .or. joint%is_carried()), &
         law_group('friction', place), 'law', &
         'needs the group contact: dry friction follows the normal force')
+      call check_film_history(joint, group, place)
       if (values%problems%concerns(group)) return
       if (allocated(joint%asperities)) then
         call check_asperities(joint, law_group('asperities', place))
@@ -178,6 +194,51 @@ contains
       call check_transition(joint, law_group('lubrication', place))
       call check_elastic_film(joint, law_group('lubrication', place), law_group('contact', place))
     end subroutine check_joint
+
+    !> Check the groups of a film with memory.
+    subroutine check_film_history(joint, group, place)
+      type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: group   !! of the joint
+      integer, intent(in) :: place            !! index in `places`
+      character(len=:), allocatable :: own, oil, supply, bore, cavitation
+      integer :: key
+      own = law_group('film_history', place)
+      oil = law_group('lubrication', place)
+      supply = law_group('supply', place)
+      bore = law_group('bore', place)
+      cavitation = ''
+      key = values%place_of(oil, 'cavitation')
+      if (allocated(joint%film)) then
+        if (values%is_used(key)) cavitation = values%values(key)%text
+      end if
+      associate (history => joint%history)
+        if (.not. allocated(history%march)) then
+          call forbid(allocated(history%supply), supply, 'kind', 'needs the group film_history, whose film it feeds')
+          call forbid(allocated(history%bore), bore, 'outer_radius', 'needs the group film_history, whose film deforms it')
+          call forbid(joint%ambient_over_cavitation > 0, oil, 'ambient_over_cavitation', 'needs the group film_history')
+          call forbid(cavitation == 'mass_conserving', oil, 'cavitation', &
+            'needs the group film_history, whose film conserves its oil')
+          return
+        end if
+        call forbid(.not. allocated(joint%film), own, 'drive', 'needs the group lubrication: the film of that joint')
+        call forbid(history%march%table /= '', own, 'table', 'must not be given with &mechanism: the run gives the load')
+        call forbid(mod(history%march%cycle_deg, 360) /= 0, own, 'cycle_deg', 'must be a multiple of 360')
+        call forbid(cavitation == 'gumbel' .or. cavitation == 'none', oil, 'cavitation', &
+          'must be mass_conserving with film_history, or reynolds for a film without memory, for comparison')
+        call forbid(cavitation == 'reynolds' .and. .not. values%is_given(oil, 'cavitation'), oil, 'cavitation', &
+          'must be given with film_history: mass_conserving, or reynolds for a film without memory')
+        if (values%problems%concerns(group)) return
+        call check_history(values, history, joint%bearing_radius, joint%bearing_length, joint%elastic%pressure_viscosity, &
+          joint%ambient_over_cavitation, supply, bore)
+        if (.not. allocated(history%supply)) return
+        associate (feed => history%supply%feed)
+          if (.not. (feed%is_wanted() .and. allocated(feed%x))) return
+          call forbid(any(feed%y < 0), supply, 'pressure_table', 'must have pressures >= 0, above ambient')
+          call forbid(feed%x(size(feed%x)) - feed%x(1) > history%march%cycle_deg*(1 + rounding), supply, 'pressure_table', &
+            'must not span more than cycle_deg')
+        end associate
+      end associate
+    end subroutine check_film_history
 
     !> Check that a film alone carries the load of a pin that is ideal in the mechanism.
     subroutine check_carried(joint, place)
@@ -249,7 +310,7 @@ contains
       type(joint_case_t), intent(in) :: joint
       character(len=*), intent(in) :: own, contact   !! groups of the film and of the contact
       if (.not. joint%elastic%is_wanted) then
-        call forbid(joint%elastic%pressure_viscosity > 0, own, 'pressure_viscosity', &
+        call forbid(joint%elastic%pressure_viscosity > 0 .and. .not. allocated(joint%history%march), own, 'pressure_viscosity', &
           'needs elastic_film = .true.: the pressures between rigid walls are not realistic')
         return
       end if
@@ -366,8 +427,7 @@ contains
       character(len=*), intent(in) :: name
       integer, intent(in) :: place   !! index in `places`
       character(len=:), allocatable :: group
-      group = trim(places(place)%name)//'.'//name
-      if (.not. values%is_present(find_group(values%groups, group))) group = name
+      group = values%law_group(name, trim(places(place)%name))
     end function law_group
 
     !> Check that the initial positions of the pins are admissible.
@@ -420,7 +480,8 @@ contains
       if (c%output%film_times == '') return
       has_film = .false.
       do place = 1, n_places
-        if (allocated(c%joints(place)%film)) has_film = has_film .or. c%joints(place)%film%gives_pressure()
+        if (allocated(c%joints(place)%film)) has_film = has_film .or. c%joints(place)%film%gives_pressure() .or. &
+          allocated(c%joints(place)%history%march)
       end do
       call forbid(.not. allocated(c%output%snapshot_times), 'output', 'film_times', &
         'must be times >= 0 in rising order with commas, or from:to:count')

@@ -25,7 +25,7 @@ module film_files
   use text_file, only: read_whole
   implicit none
   private
-  public :: provide_tables, tell_tables, write_film_file
+  public :: provide_tables, tell_tables, write_film_file, progress_watch_t
 
   character(len=*), parameter :: newline = achar(10), title = 'gudgeon film table'//newline
 

@@ -13,6 +13,8 @@ module joint_case
   use oil_viscosity, only: oil_t
   use asperities, only: asperities_t
   use archard_wear, only: wear_law_t
+  use history_case, only: history_case_t
+  use film_history, only: film_history_t
   implicit none
   private
   public :: joint_case_t, visit_joint, drop_laws, select_contact, select_friction
@@ -39,6 +41,8 @@ module joint_case
     type(elastic_walls_t) :: elastic
     type(asperities_t), allocatable :: asperities
     type(wear_law_t), allocatable :: wear
+    real(dp) :: ambient_over_cavitation = 0   !! [Pa]
+    type(history_case_t) :: history           !! the film with memory that is marched after the run
   contains
     procedure :: parameters => joint_parameters
     procedure :: has_clearance
@@ -49,6 +53,7 @@ module joint_case
     procedure :: has_weighted_film
     procedure :: has_worn_bore
     procedure :: make_film
+    procedure :: make_history
     procedure :: bearing => bearing_of
   end type joint_case_t
 
@@ -100,6 +105,16 @@ contains
     film%kinematic_viscosity = self%oil%kinematic_viscosity()
   end subroutine make_film
 
+  !> The film with memory of the joint, which is marched after the run.
+  subroutine make_history(self, history)
+    class(joint_case_t), intent(in) :: self
+    type(film_history_t), intent(out) :: history
+    class(film_law_t), allocatable :: film
+    call self%make_film(film)
+    call self%history%make(self%bearing(rod_length=0.0_dp), film%viscosity, self%elastic%pressure_viscosity, &
+      self%ambient_over_cavitation, .not. film%is_without_memory(), history)
+  end subroutine make_history
+
   !> Whether the pin has clearance in its bearing and its position is one of the mechanism's.
   elemental logical function has_clearance(self)
     class(joint_case_t), intent(in) :: self
@@ -150,7 +165,7 @@ contains
     call list%add('elastic_film', self%is_wanted, &
       'elastic walls in series with the film; &contact with law = ''hertz'' gives their stiffness', '.false.')
     call list%add('pressure_viscosity', self%pressure_viscosity, &
-      'elastic_film: exponential growth of the viscosity with the mean pressure (Barus)', &
+      'exponential growth of the viscosity with the pressure (Barus), in an elastic_film and in &film_history', &
       '1/Pa', '>= 0 and <= 1e-6', default='0.0', usual='1e-9 to 1e-7')
   end subroutine wall_parameters
 
@@ -163,6 +178,7 @@ contains
     if (allocated(joint%film)) deallocate (joint%film)
     if (allocated(joint%asperities)) deallocate (joint%asperities)
     if (allocated(joint%wear)) deallocate (joint%wear)
+    joint%history = history_case_t()
   end subroutine drop_laws
 
   !> Select the contact law that a case names, if it names one.

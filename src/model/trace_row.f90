@@ -10,7 +10,7 @@ module trace_row
 
   integer, parameter :: name_length = 40
   integer, parameter :: meaning_length = 160
-  integer, parameter :: most_columns = 160
+  integer, parameter :: most_columns = 360
 
   !> The columns of one trace.
   type :: column_list_t

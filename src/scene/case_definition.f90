@@ -16,6 +16,7 @@ module case_definition
   use guide_case, only: guide_case_t, guide_clearance
   use elastic_rod, only: elastic_rod_t
   use elastic_crankshaft, only: elastic_crankshaft_t
+  use train_case, only: cylinder_case_t, shaft_case_t, damper_case_t
   use gas_law, only: gas_law_t
   use measured_curve, only: measured_curve_t
   use measured_pressure, only: measured_pressure_t
@@ -94,7 +95,10 @@ module case_definition
     type(joint_case_t) :: joints(n_places)   !! by place
     type(guide_case_t), allocatable :: guide   !! not allocated: the guide is ideal
     type(elastic_rod_t), allocatable :: elastic_rod          !! not allocated: the rod is rigid
-    type(elastic_crankshaft_t), allocatable :: crankshaft    !! not allocated: the crankshaft is rigid
+    type(elastic_crankshaft_t), allocatable :: crankshaft    !! not allocated: the crankshaft is rigid, or has stations
+    type(shaft_case_t), allocatable :: shaft                 !! a crankshaft of several stations
+    type(damper_case_t), allocatable :: dampers(:)           !! on it
+    type(cylinder_case_t), allocatable :: cylinders(:)       !! not allocated: there is one
     class(gas_law_t), allocatable :: combustion
     type(measured_pressure_t), allocatable :: measured   !! used instead of combustion
     type(run_length_t) :: run
@@ -109,6 +113,7 @@ module case_definition
     procedure :: has_loose_guide
     procedure :: has_clearance => has_clearance_anywhere
     procedure :: is_elastic
+    procedure :: has_train
   end type case_t
 
   interface
@@ -175,6 +180,13 @@ contains
     class(case_t), intent(in) :: self
     is_elastic = allocated(self%elastic_rod) .or. allocated(self%crankshaft)
   end function is_elastic
+
+  !> Whether there are several cylinders, or a crankshaft of several stations.
+  pure logical function has_train(self)
+    class(case_t), intent(in) :: self
+    has_train = allocated(self%shaft)
+    if (allocated(self%cylinders)) has_train = has_train .or. size(self%cylinders) > 1
+  end function has_train
 
   subroutine mechanism_parameters(self, list)
     class(mechanism_case_t), intent(inout) :: self

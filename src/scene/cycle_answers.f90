@@ -215,6 +215,7 @@ contains
       loss = work_of(by_gas) - shaft - sum(cycle%work(:scene%n_works))   ! by what is neither gas nor shaft
       call add('cycle_indicated_power', work_of(by_gas)/cycle%duration)
       call add('cycle_brake_power', shaft/cycle%duration)
+      if (allocated(scene%chain%train)) displacement = displacement*(1 + size(scene%chain%train%cylinders))
       call add('cycle_imep', work_of(by_gas)/displacement)
       call add('cycle_bmep', shaft/displacement)
       call add('cycle_fmep', loss/displacement)

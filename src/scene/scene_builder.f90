@@ -11,6 +11,7 @@ module scene_builder
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
   use joint_events, only: may_touch, may_pass_static
   use load_elements, only: add_elements
+  use train_builder, only: build_train, build_other_gas, axis_gravity
   use clearance_joint, only: clearance_joint_t
   use scene_problem, only: scene_t
   use monotone_cubic, only: new_monotone_cubic
@@ -59,7 +60,7 @@ contains
     call choose_entry(case, scene)
     if (.not. allocated(scene%given_load)) call build_bodies(case, ideal_joint, scene)
     if (scene%chain%has_elastic_rod()) call scene%chain%elastic%rod%prepare(scene%chain%bodies%rod)
-    scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping, 0.0_dp)
+    scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping, 0.0_dp, 0.0_dp)
     call vary_drive(case, scene)
     scene%start_angle = case%initial%crank_angle_deg*degree
     scene%start_speed = case%initial%crank_speed
@@ -93,7 +94,7 @@ contains
       piston = piston_t(m%piston_mass)
       if (case%has_loose_guide() .and. .not. ideal_joint) &
         piston = piston_t(m%piston_mass, .true., case%guide%piston_inertia, case%guide%piston_com)
-      gravity = [-m%gravity*cos(m%gravity_angle_deg*degree), 0 - m%gravity*sin(m%gravity_angle_deg*degree)]   ! no negative zero
+      gravity = axis_gravity(case)
       scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, &
         m%crank_inertia + case%drive%flywheel_inertia, m%crank_com), &
         rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston, gravity)
@@ -163,6 +164,7 @@ contains
       if (allocated(case%elastic_rod)) allocate (scene%chain%elastic%rod, source=case%elastic_rod)
       if (allocated(case%crankshaft)) allocate (scene%chain%elastic%crankshaft, source=case%crankshaft)
     end if
+    if (case%has_train()) call build_train(case, ideal_joint, scene%chain%train)
     if (allocated(case%combustion) .or. allocated(case%measured)) allocate (scene%gas)
   end subroutine assemble_scene
 
@@ -202,6 +204,12 @@ contains
     if (allocated(error)) return
     scene%gas%sense = sign(1.0_dp, scene%start_speed)   ! an engine that turns backwards is the mirror image of the other
     call scene%gas%start(scene%start_angle, merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
+    if (.not. allocated(scene%chain%train)) return
+    associate (train => scene%chain%train)
+      call build_other_gas(case, scene%gas, train, scene%other_gas)
+      call scene%other_gas%start(scene%gas, scene%start_angle + train%cylinders%shift, &
+        merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
+    end associate
   end subroutine prepare_gas
 
   !> How contacts begin, and which steps may be refused.

@@ -28,6 +28,7 @@ contains
       call number(i, scene%joints(i)%n_events)
     end do
     if (allocated(scene%gas)) call number(of_gas, scene%gas%n_events)
+    if (allocated(scene%other_gas)) call number(of_other_gas, scene%other_gas%n_events(scene%gas))
     if (allocated(scene%turns)) call number(of_turns, n_turn_events)
     if (allocated(scene%wear_cycle)) call number(of_wear, 1)
     if (allocated(scene%guide)) call number(of_guide, n_guide_events(scene%guide))
@@ -49,6 +50,7 @@ contains
   module procedure all_events
     integer :: i, k, n
     logical :: needs_forces
+    real(dp) :: angles(most_cylinders), speeds(most_cylinders)   ! of the other cylinders
     needs_forces = .false.
     k = 0
     do i = 1, self%n_joints
@@ -60,6 +62,14 @@ contains
     if (allocated(self%gas)) then
       n = self%gas%n_events
       call self%gas%events(self%crank_angle(t, y), self%crank_speed(t, y), g(k + 1:k + n), g_rate(k + 1:k + n))
+      k = k + n
+    end if
+    if (allocated(self%other_gas)) then
+      n = self%other_gas%n_events(self%gas)
+      if (n > 0) then
+        call other_cranks(self, t, y, angles, speeds)
+        call self%other_gas%events(self%gas, angles, speeds, g(k + 1:k + n), g_rate(k + 1:k + n))
+      end if
       k = k + n
     end if
     if (allocated(self%turns)) then
@@ -121,7 +131,10 @@ contains
     action = event_continue
     associate (i => self%event_of(index)%joint, event => self%event_of(index)%event)
       if (i == of_gas) then
+        if (allocated(self%other_gas)) call pass_others(self, event, t, y, .false.)
         call self%gas%pass(event, self%crank_angle(t, y), self%crank_speed(t, y))
+      else if (i == of_other_gas) then
+        call pass_others(self, event, t, y, .true.)
       else if (i == of_turns) then
         call self%turns%pass(event, self%crank_angle(t, y), action)
       else if (i == of_load) then
@@ -150,6 +163,24 @@ contains
     self%smooth_in_root = .not. t > self%entry_time   ! the penetration varies as t, the force as its power 1.5
     self%mode = mode_of(self)
   end procedure handle_event
+
+  !> Handle an event of the gas in the other cylinders, or in that of the mechanism, for those that pass a bound of the cycle with
+  !> it.
+  subroutine pass_others(scene, event, t, y, is_own)
+    class(scene_t), intent(inout) :: scene
+    integer, intent(in) :: event
+    real(dp), intent(in) :: t, y(:)
+    logical, intent(in) :: is_own   !! the event is that of the other cylinders
+    real(dp) :: angles(most_cylinders), speeds(most_cylinders), g(scene%gas%n_events), g_rate(scene%gas%n_events)
+    integer :: n
+    n = size(scene%chain%train%cylinders)
+    call other_cranks(scene, t, y, angles, speeds)
+    if (is_own .or. allocated(scene%gas%cycle)) call scene%other_gas%pass(scene%gas, event, angles(:n), speeds(:n), is_own)
+    if (.not. (is_own .and. allocated(scene%gas%cycle))) return
+    call scene%gas%events(scene%crank_angle(t, y), scene%crank_speed(t, y), g, g_rate)
+    if (scene%other_gas%is_now(g(event), scene%crank_angle(t, y))) &
+      call scene%gas%pass(event, scene%crank_angle(t, y), scene%crank_speed(t, y))
+  end subroutine pass_others
 
   !> The discrete state, for the choice of the integration method.
   pure integer function mode_of(scene)

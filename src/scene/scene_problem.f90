@@ -5,6 +5,7 @@ module scene_problem
   use state_layout, only: layout_t, coordinates_t, slice_t
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
+  use train_motion, only: most_cylinders
   use joint_places, only: places, n_places, in_order
   use chain_loads, only: loads_t, force_size
   use mechanism_chain, only: chain_t
@@ -18,6 +19,7 @@ module scene_problem
   use bearing_load, only: bearing_load_t
   use piston_guide, only: piston_guide_t, guide_loads_t
   use working_gas, only: working_gas_t
+  use other_cylinders, only: other_cylinders_t
   use crank_turns, only: crank_turns_t, wear_cycle_t
   implicit none
   private
@@ -42,11 +44,12 @@ module scene_problem
     real(dp) :: power               !! of all non-conservative forces and the drive [W]
   end type evaluation_t
 
-  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2, of_wear = -3, of_load = -4   !! owners of events other than joints
+  !> Owners of events other than joints.
+  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2, of_wear = -3, of_other_gas = -4, of_load = -5
 
   !> The owner of an event function of the integrator.
   type :: event_owner_t
-    integer :: joint = 0            !! or of_gas, of_turns, of_guide, of_wear, of_load
+    integer :: joint = 0            !! or of_gas, of_turns, of_guide, of_wear, of_other_gas, of_load
     integer :: event = 0            !! number of the event within its owner
   end type event_owner_t
 
@@ -74,6 +77,7 @@ module scene_problem
     integer, allocatable :: reported(:) !! places with results: the first one, and those with a joint
     type(piston_guide_t), allocatable :: guide   !! not allocated: the guide is ideal
     type(working_gas_t), allocatable :: gas
+    type(other_cylinders_t), allocatable :: other_gas   !! in the other cylinders of an engine with gas
     type(crank_turns_t), allocatable :: turns   !! turns of a free crank that end the run
     type(wear_cycle_t), allocatable :: wear_cycle   !! turns of the crank after which the shape of a worn bore changes
     real(dp) :: start_angle = 0     !! crank angle at t = 0 [rad]
@@ -243,6 +247,18 @@ module scene_problem
       class(scene_t), intent(inout) :: self
     end subroutine claim_elastic
 
+    !> Claim the states of stations and dampers.
+    module subroutine claim_train(self)
+      class(scene_t), intent(inout) :: self
+    end subroutine claim_train
+
+    !> Crank angles of the other cylinders from their axes [rad] and speeds of their stations [rad/s] at (t, y).
+    pure module subroutine other_cranks(self, t, y, angle, speed)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: t, y(:)
+      real(dp), intent(out) :: angle(most_cylinders), speed(most_cylinders)
+    end subroutine other_cranks
+
     !> Tell the parts of the work apart; must be called before the run. One part follows from the whole work, the others are
     !> quadratures without influence on the steps.
     module subroutine measure_works(self)
@@ -305,6 +321,7 @@ contains
     if (allocated(self%guide)) call self%guide%set_rates(now%motion%tilting, now%accelerations%offset, now%accelerations%tilt, &
       dydt)
     if (allocated(self%chain%elastic)) call self%chain%elastic%set_rates(now%motion, now%accelerations, dydt)
+    if (allocated(self%chain%train)) call self%chain%train%set_rates(now%motion, now%accelerations, dydt)
     do i = 1, self%n_joints
       if (self%joints(i)%has_own_rates) call self%joints(i)%set_own_rates(now%joint(i), dydt)
     end do
@@ -480,13 +497,14 @@ contains
     self%highest_mode = n_phases**self%n_joints - 1
     if (allocated(self%guide)) self%highest_mode = 2*(self%highest_mode + 1) - 1
     self%crank_moves = self%chain%drive%free_crank .or. self%chain%has_crankshaft()
+    if (allocated(self%chain%train)) self%crank_moves = self%chain%train%frees_crank(self%chain%drive)
     call claim_states(self)
     call self%layout%count_again()
     call claim_states(self)
     self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying) &
-      .or. allocated(self%given_load))
+      .or. allocated(self%chain%train) .or. allocated(self%given_load))
     self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide) &
-      .or. size(self%carried) > 0
+      .or. allocated(self%chain%train) .or. size(self%carried) > 0
     call self%set_layout()
   end subroutine claim
 
@@ -504,6 +522,7 @@ contains
     end do
     if (allocated(self%guide)) call self%guide%claim(self%layout, self%speed_scale(), self%span)
     if (allocated(self%chain%elastic)) call claim_elastic(self)
+    if (allocated(self%chain%train)) call claim_train(self)
     call self%layout%claim_quadratures(1, self%energy_scale(), work)
     self%work_at = work%first
   end subroutine claim_states
@@ -540,7 +559,8 @@ contains
   pure logical function work_tells(self)
     class(scene_t), intent(in) :: self
     work_tells = self%chain%drive%free_crank .and. .not. (self%chain%drive%damping > 0 .or. allocated(self%gas) &
-      .or. allocated(self%chain%varying) .or. allocated(self%guide) .or. allocated(self%chain%elastic))
+      .or. allocated(self%chain%varying) .or. allocated(self%guide) .or. allocated(self%chain%elastic) &
+      .or. allocated(self%chain%train))
   end function work_tells
 
   !> Force of the joint at a place on its pin [N]; at a place without joint that on the pin of its ideal pin.
@@ -681,6 +701,7 @@ contains
         + (b%crank%mass + b%rod%mass + b%piston%mass)*norm2(b%gravity)*b%crank%length
       if (self%chain%has_crankshaft()) energy_scale = energy_scale &
         + 0.5_dp*self%chain%elastic%crankshaft%flywheel_inertia*self%speed_scale()**2
+      if (allocated(self%chain%train)) energy_scale = energy_scale + self%chain%train%energy_scale(self%speed_scale())
       do i = 1, self%n_joints
         energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%joints(i)%own_speed(self%span)**2
       end do

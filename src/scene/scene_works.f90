@@ -17,7 +17,7 @@ contains
       end do
     end do
     if (allocated(self%guide)) call add(by_guide, 0)
-    if (allocated(self%chain%elastic)) call add(by_elastic, 0)
+    if (allocated(self%chain%elastic) .or. has_stations(self)) call add(by_elastic, 0)
     self%n_works = size(self%parts)
     do i = self%n_joints + 1, size(self%joints)
       do kind = 1, n_kinds
@@ -53,10 +53,18 @@ contains
     end do
   end subroutine choose_other_part
 
+  !> Whether the crankshaft has several stations.
+  pure logical function has_stations(scene)
+    type(scene_t), intent(in) :: scene
+    has_stations = .false.
+    if (allocated(scene%chain%train)) has_stations = scene%chain%train%is_chain
+  end function has_stations
+
   !> Whether the drive is a constant torque, whose work follows from the angle.
   pure logical function is_constant_torque(scene)
     type(scene_t), intent(in) :: scene
-    is_constant_torque = scene%chain%drive%free_crank .and. .not. (allocated(scene%chain%varying) .or. scene%chain%has_crankshaft())
+    is_constant_torque = scene%chain%drive%free_crank .and. .not. (allocated(scene%chain%varying) &
+      .or. scene%chain%has_crankshaft() .or. has_stations(scene))
   end function is_constant_torque
 
   !> Claim the quadrature of a part. Where the mechanism has nothing but quadratures it takes part in the error control, since
@@ -100,6 +108,7 @@ contains
       speed = now%motion%piston_velocity
       if (scene%chain%bodies%piston%is_loose) speed = now%motion%tilting%com_velocity
       power = -scene%gas%force(now%cylinder_pressure)*speed
+      if (allocated(scene%chain%train)) power = power + scene%chain%train%gas_power(now%motion)
     case (by_guide)
       if (scene%guide%is_loose) then
         associate (at => now%motion%tilting)
@@ -110,10 +119,10 @@ contains
         power = now%guide%friction_force*now%motion%piston_velocity
       end if
     case (by_elastic)
-      power = scene%chain%elastic%damping_power(now%motion)
+      if (allocated(scene%chain%elastic)) power = scene%chain%elastic%damping_power(now%motion)
+      if (has_stations(scene)) power = power + scene%chain%train%damping_power(now%motion)
     case default
-      speed = now%motion%crank_speed
-      if (allocated(scene%chain%elastic)) speed = scene%chain%elastic%driven_speed(now%motion)
+      speed = scene%chain%driven_speed(now%motion)
       power = now%crank_moment*speed
       if (what == by_damping) power = -scene%chain%drive%damping*speed**2
     end select
