@@ -78,6 +78,9 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
 }
 
 
+_LONG = ("run_new", "run_advance", "run_certify", "run_save")
+
+
 def path() -> Path:
     """The library of the package, or of the checkout in which the package is; the environment variable GUDGEON_LIBRARY names another."""
     own = Path(__file__).with_name("libgudgeon.so")
@@ -87,14 +90,14 @@ def path() -> Path:
 
 @cache
 def library() -> Any:
-    """The functions of the library."""
-    loaded = c.CDLL(str(path()))
+    """The functions of the library. Those that may take long leave other threads of Python free."""
+    free, held = c.CDLL(str(path())), c.PyDLL(str(path()))
 
     class Functions:
         """Functions by their names without gudgeon_."""
 
     for name, (result, arguments) in _FUNCTIONS.items():
-        function = getattr(loaded, f"gudgeon_{name}")
+        function = getattr(free if name in _LONG else held, f"gudgeon_{name}")
         function.restype, function.argtypes = result, arguments
         setattr(Functions, name, staticmethod(function))
     return Functions
