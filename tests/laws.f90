@@ -97,11 +97,12 @@ contains
     if (setter%missing /= '') call fail(error, 'tests/laws.f90: no '//setter%missing//' in'//setter%keys, status_internal)
   end subroutine set_group
 
-  subroutine begin_group(self, name, says, is_model, place, instead_of)
+  subroutine begin_group(self, name, says, is_model, place, instead_of, number)
     class(setter_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
     logical, intent(in) :: is_model
     character(len=*), intent(in), optional :: place, instead_of
+    integer, intent(in), optional :: number
     self%sets = name == self%only
     self%is_present = self%sets
     self%passes = .not. self%sets

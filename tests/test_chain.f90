@@ -59,7 +59,7 @@ contains
       [between(random, 0.2_dp, 0.7_dp), between(random, -0.2_dp, 0.2_dp)]*l), &
       piston_t(between(random, 0.1_dp, 1.0_dp)), 9.80665_dp*[-cos(tilt), -sin(tilt)])
     chain%drive = drive_t(between(random, 0.0_dp, 1.0_dp) < 0.5_dp, between(random, -20.0_dp, 20.0_dp), &
-      between(random, 0.0_dp, 0.1_dp), 0.0_dp)
+      between(random, 0.0_dp, 0.1_dp), 0.0_dp, 0.0_dp)
     chain%is_loose = [modulo(piece, 2) == 1, piece > 1]
     z(1) = between(random, -10.0_dp, 10.0_dp)
     z_rate(1) = between(random, -300.0_dp, 300.0_dp)
@@ -285,7 +285,7 @@ contains
     call accelerate_at(34.974_dp)
     call check%close_to(abs(moment), 138.521666_dp, 1e-6_dp, 'crank moment at 34.974 deg')
     call check%close_to(moment + same, 0.0_dp, 1e-9_dp, 'crank moment is odd')
-    chain%drive = drive_t(.true., moment, 0.0_dp, 0.0_dp)
+    chain%drive = drive_t(.true., moment, 0.0_dp, 0.0_dp, 0.0_dp)
     call chain%accelerate(ideal_motion(chain%bodies, 34.974_dp*degree, 5000*pi/30), loads, a, same, solvable)
     call check%close_to(a%crank, 0.0_dp, 1e-8_dp, 'the crank does not accelerate under the moment for constant speed')
 

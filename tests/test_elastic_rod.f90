@@ -65,7 +65,7 @@ contains
       [between(random, -0.5_dp, 1.0_dp), between(random, -0.5_dp, 0.5_dp)]*r), rod, &
       piston_t(between(random, 0.1_dp, 1.0_dp)), 9.80665_dp*[-cos(tilt), -sin(tilt)])
     chain%drive = drive_t(between(random, 0.0_dp, 1.0_dp) < 0.5_dp, between(random, -20.0_dp, 20.0_dp), &
-      between(random, 0.0_dp, 0.1_dp), 0.0_dp)
+      between(random, 0.0_dp, 0.1_dp), 0.0_dp, 0.0_dp)
     chain%is_loose = [modulo(piece, 2) == 1, piece > 1]
     allocate (chain%elastic)
     allocate (chain%elastic%rod)

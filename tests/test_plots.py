@@ -352,6 +352,18 @@ class FilmPressure(unittest.TestCase):
         wanted = np.outer([0, 10, 20, 30, 0], np.maximum(np.cos(self.ANGLES - 0.3), 0))
         self.assertLess(np.abs(found - wanted).max(), 0.5)
 
+    def test_film_with_memory(self) -> None:
+        """The rows of NAME.film_history.csv are drawn over the crank angle in its order, in both languages."""
+        names = ("crank_angle", "min_film_thickness", "quick_film_thickness", "max_film_pressure", "quick_film_pressure", "film_fill",
+                 "supply_flow", "side_flow")
+        table = pd.DataFrame({name: np.linspace(1.0, 2.0, 5) for name in names} | {"crank_angle": 4 * np.pi + np.radians([600, 719, 1, 90, 180])})
+        made = Run("made", pd.DataFrame(), {}, pd.DataFrame(), {}, {"supply": {"kind": "grooves"}})
+        drawing = film_pictures.with_memory(made, table, "made")
+        lines = drawing.axes[0].get_lines()
+        np.testing.assert_allclose(lines[0].get_xdata(), [1, 90, 180, 600, 719], atol=1e-9)
+        np.testing.assert_allclose(lines[0].get_ydata(), [1.5e6, 1.75e6, 2e6, 1e6, 1.25e6])
+        self.assertEqual([len(axis.get_lines()) for axis in drawing.axes], [2, 2, 1, 2])
+
     def test_oscillating_film(self) -> None:
         speed, rod, crank = 300.0, 0.2, 0.05
         radius = self.BEARING - self.CLEARANCE

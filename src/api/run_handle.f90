@@ -5,8 +5,9 @@ module run_handle
   use case_definition, only: case_t
   use joint_places, only: n_places
   use trace_columns, only: column_list_t, choose_columns
-  use film_files, only: provide_tables, write_film_file
-  use wear_file, only: write_wear_file
+  use film_files, only: provide_tables
+  use history_files, only: march_histories
+  use report_files, only: write_report_files
   use result_file, only: write_text
   use trace_files, only: trace_files_t
   use simulation, only: run_t, run_report_t
@@ -148,6 +149,7 @@ contains
     integer :: i
     if (.not. allocated(self%table)) then
       call self%run%finish(self%report, error)
+      if (.not. allocated(error)) call march_histories(self%case, .false., self%report, error)
       case = self%case
       do i = 1, merge(n_places, 0, self%is_twin)
         case%joints(i)%kind = 'ideal'
@@ -218,11 +220,7 @@ contains
       call files%file%conclude()
       call files%close(error)
     end if
-    if (.not. allocated(error) .and. allocated(self%report%films)) &
-      call write_film_file(path//'.film.csv', self%report%films, error)
-    if (.not. allocated(error) .and. allocated(self%report%wear)) then
-      if (size(self%report%wear) > 0) call write_wear_file(path//'.wear.csv', self%report%wear, self%case%output%digits, error)
-    end if
+    if (.not. allocated(error)) call write_report_files(path, self%case, self%report, error)
     if (.not. allocated(error) .and. allocated(self%certificate_table)) then
       if (self%certificate_table /= '') call write_text(path//'.certificate.csv', self%certificate_table, error)
     end if

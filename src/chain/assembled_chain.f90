@@ -108,7 +108,7 @@ contains
     associate (crank => bodies%crank, s => motion%sin_crank, c => motion%cos_crank)
       call body%begin(1, at%n)
       body%map(1, 1) = 1
-      body%mass(1, 1) = crank%inertia + crank%mass*(crank%com(1)**2 + crank%com(2)**2)
+      body%mass(1, 1) = crank%inertia + crank%mass*(crank%com(1)**2 + crank%com(2)**2) + drive%inertia
       com_by_angle = [-crank%com(1)*s - crank%com(2)*c, crank%com(1)*c - crank%com(2)*s]
       pin_by_angle = crank%length*[-s, c]
       body%load(1) = drive%torque - drive%damping*motion%crank_speed + loads%moment(crank_pin) &

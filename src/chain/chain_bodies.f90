@@ -39,9 +39,10 @@ module chain_bodies
     real(dp) :: torque               !! torque tau on a free crank [N m]
     real(dp) :: damping              !! D, damping moment per crank speed [N m s/rad]
     real(dp) :: acceleration         !! of a crank with prescribed speed [rad/s^2]
+    real(dp) :: inertia              !! that moves with the crank in addition to its own [kg m^2]
   end type drive_t
 
-  type(drive_t), parameter :: undriven = drive_t(.true., 0.0_dp, 0.0_dp, 0.0_dp)   !! a free crank without torque
+  type(drive_t), parameter :: undriven = drive_t(.true., 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)   !! a free crank without torque
 
   !> The bodies with derived constants; made by `new_bodies`.
   type :: bodies_t

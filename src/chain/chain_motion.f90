@@ -15,10 +15,11 @@
 !> p_y).
 module chain_motion
   use kinds, only: dp
+  use train_motion, only: train_motion_t, most_stations, most_rings
   implicit none
   private
   public :: motion_t, tilting_t, accelerations_t, crank_pin, piston_pin, n_pins, most_shapes
-  public :: body_crank, body_big_end, body_small_end, body_piston, n_bodies, angular_acceleration
+  public :: body_crank, body_big_end, body_small_end, body_piston, body_frame, n_bodies, angular_acceleration
   public :: turn_crank, follow_rod, follow_piston
 
   !> The pins of the chain.
@@ -29,6 +30,7 @@ module chain_motion
   !> The bodies as they turn at the pins; an elastic rod turns differently at its two ends.
   integer, parameter :: body_crank = 1, body_big_end = 2, body_small_end = 3, body_piston = 4
   integer, parameter :: n_bodies = 4
+  integer, parameter :: body_frame = 0   !! it does not turn
 
   integer, parameter :: most_shapes = 16   !! largest number of bending and axial shapes of an elastic rod
 
@@ -68,6 +70,7 @@ module chain_motion
     real(dp) :: shape_rate(most_shapes)     !! [m/s]
     real(dp) :: flywheel_angle              !! angle of the other end of an elastic crankshaft [rad]
     real(dp) :: flywheel_speed              !! [rad/s]
+    type(train_motion_t) :: train           !! of the stations of a crankshaft with several cylinders
   end type motion_t
 
   !> Accelerations of the three bodies.
@@ -80,6 +83,7 @@ module chain_motion
     real(dp) :: rod_end(n_pins)  !! of the rod's rotation at its ends, positive from x to y [rad/s^2]; needed if surfaces may stick
     real(dp) :: shape(most_shapes)  !! of the shapes of an elastic rod [m/s^2]
     real(dp) :: flywheel            !! of the other end of an elastic crankshaft [rad/s^2]
+    real(dp) :: station(most_stations), ring(most_rings)   !! of a crankshaft with several cylinders [rad/s^2]
   end type accelerations_t
 
 contains

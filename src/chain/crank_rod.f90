@@ -41,13 +41,13 @@ contains
         - (loads%moment(piston_pin) + f_x*rod(2) + f_y*rod(1)) - slope*motion%crank_speed**2
       if (drive%free_crank) then
         crank_moment = drive%torque
-        per_determinant = 1/(b%inertia_product - m12**2)
+        per_determinant = 1/(drive%inertia*b%rod_term + (b%inertia_product - m12**2))
         accelerations%crank = (on_crank*b%rod_term - on_rod*m12)*per_determinant
-        accelerations%rod = (on_rod*b%crank_term - on_crank*m12)*per_determinant
+        accelerations%rod = (on_rod*(b%crank_term + drive%inertia) - on_crank*m12)*per_determinant
       else
         accelerations%crank = drive%acceleration
         accelerations%rod = (on_rod - m12*drive%acceleration)/b%rod_term
-        crank_moment = b%crank_term*drive%acceleration + m12*accelerations%rod - (on_crank - drive%torque)
+        crank_moment = (b%crank_term + drive%inertia)*drive%acceleration + m12*accelerations%rod - (on_crank - drive%torque)
       end if
       accelerations%piston = b%gravity(1) - (loads%axial_force + f_x)*b%per_piston_mass
       accelerations%pin(:, crank_pin) = 0
@@ -76,7 +76,8 @@ contains
       on_rod = -(loads%moment(piston_pin) + f(1)*rod(2) + f(2)*rod(1))
       accelerations%crank = 0
       crank_moment = 0
-      if (drive%free_crank) accelerations%crank = (on_crank*bodies%rod_term - on_rod*m12)/(bodies%inertia_product - m12**2)
+      if (drive%free_crank) accelerations%crank = (on_crank*bodies%rod_term - on_rod*m12) &
+        /(drive%inertia*bodies%rod_term + (bodies%inertia_product - m12**2))
       accelerations%rod = (on_rod - m12*accelerations%crank)/bodies%rod_term
       if (.not. drive%free_crank) crank_moment = m12*accelerations%rod - on_crank
       accelerations%piston = -(loads%axial_force + f(1))*bodies%per_piston_mass

@@ -7,7 +7,7 @@ module crank_rod_tangent
   use chain_loads, only: loads_t
   implicit none
   private
-  public :: rod_slopes, acceleration_slopes
+  public :: rod_slopes, acceleration_slopes, torque_slopes
 
 contains
 
@@ -49,7 +49,7 @@ contains
       changes(2, :) = [r*(sq*qd**2 - cq*qdd), l*(sa*ad**2 - ca*add), -2*r*cq*qd, -2*l*ca*ad, bodies%per_piston_mass, 0.0_dp, 0.0_dp]
       changes(3, :) = [-r*(cq*qd**2 + sq*qdd), l*(ca*ad**2 + sa*add), -2*r*sq*qd, 2*l*sa*ad, 0.0_dp, 0.0_dp, 0.0_dp]
       per_determinant = 0
-      if (drive%free_crank) per_determinant = 1/(bodies%inertia_product - m12**2)
+      if (drive%free_crank) per_determinant = 1/(drive%inertia*m22 + (bodies%inertia_product - m12**2))
       per_rod_term = 1/m22
       do i = 1, 7
         crank = (on_crank(i)*m22 - on_rod(i)*m12)*per_determinant
@@ -60,4 +60,22 @@ contains
     by_motion = changes(:, :4)
     by_loads = changes(:, 5:)
   end subroutine acceleration_slopes
+
+  !> Derivatives of q'', e_x'' and e_y'' with respect to a torque on the crank.
+  pure subroutine torque_slopes(bodies, drive, motion, by_torque)
+    type(bodies_t), intent(in) :: bodies
+    type(drive_t), intent(in) :: drive
+    type(motion_t), intent(in) :: motion
+    real(dp), intent(out) :: by_torque(3)
+    real(dp) :: m12, slope, rod
+    by_torque = 0
+    if (.not. drive%free_crank) return
+    call bodies%coupling(motion, m12, slope)
+    associate (r => bodies%crank%length, l => bodies%rod%length, m22 => bodies%rod_term, crank => by_torque(1))
+      crank = m22/(drive%inertia*m22 + (bodies%inertia_product - m12**2))
+      rod = -m12*crank/m22
+      by_torque(2) = -r*motion%sin_crank*crank - l*motion%sin_rod*rod
+      by_torque(3) = r*motion%cos_crank*crank - l*motion%cos_rod*rod
+    end associate
+  end subroutine torque_slopes
 end module crank_rod_tangent

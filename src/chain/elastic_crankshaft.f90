@@ -33,9 +33,10 @@ contains
     class(elastic_crankshaft_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%add('flywheel_inertia', self%flywheel_inertia, &
-      'moment of inertia of the flywheel at the driven end', 'kg m^2', '> 0', example='0.02', usual='1e-7 to 1e6')
+      'moment of inertia of the flywheel at the driven end', 'kg m^2', '> 0', default='0.0', example='0.02', &
+      usual='1e-7 to 1e6')
     call list%add('torsional_stiffness', self%stiffness, &
-      'torsional stiffness between flywheel and crank', 'N m/rad', '> 0', example='2.0e4', usual='10 to 1e9')
+      'torsional stiffness between flywheel and crank', 'N m/rad', '> 0', default='0.0', example='2.0e4', usual='10 to 1e9')
     call list%add('torsional_damping', self%damping, 'damping moment per rate of twist', 'N m s/rad', '>= 0', default='0.0', &
       usual='0 to 1e4')
   end subroutine parameters

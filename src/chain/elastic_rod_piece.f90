@@ -130,7 +130,7 @@ contains
       arm = r*[-sq, cq]
       by_crank = [dot_product(arm, terms%e1), dot_product(arm, terms%e2), 0.0_dp]
       centripetal = -r*motion%crank_speed**2*[cq*terms%e1(1) + sq*terms%e1(2), cq*terms%e2(1) + sq*terms%e2(2), 0.0_dp]
-      m11 = bodies%crank_inertia + dot_product(by_crank, matmul(mass, by_crank))
+      m11 = bodies%crank_inertia + drive%inertia + dot_product(by_crank, matmul(mass, by_crank))
       m12 = dot_product(by_crank, mass(:, 3))
       on_crank = drive%torque - drive%damping*motion%crank_speed &
         + (bodies%crank_own_weight(1)*sq + bodies%crank_own_weight(2)*cq) &

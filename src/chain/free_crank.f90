@@ -25,9 +25,9 @@ contains
       + bodies%crank%length*(loads%force(2, crank_pin)*motion%cos_crank - loads%force(1, crank_pin)*motion%sin_crank)
     if (drive%free_crank) then
       crank_moment = drive%torque
-      acceleration = on_crank/bodies%crank_inertia
+      acceleration = on_crank/(bodies%crank_inertia + drive%inertia)
     else
-      crank_moment = drive%torque - on_crank + bodies%crank_inertia*drive%acceleration
+      crank_moment = drive%torque - on_crank + (bodies%crank_inertia + drive%inertia)*drive%acceleration
       acceleration = drive%acceleration
     end if
   end subroutine accelerate_crank

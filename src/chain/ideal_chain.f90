@@ -52,7 +52,7 @@ contains
 
     call bodies%coupling(motion, m12, slope)
     associate (b => bodies, across => bodies%crank%length*motion%sin_crank, m22 => bodies%rod_term)
-      call find_ratios(b, motion, m12, per_arm, ratio, rate, inertia)
+      call find_ratios(b, drive, motion, m12, per_arm, ratio, rate, inertia)
       ratio_slope = b%rod%length*motion%sin_rod*per_arm*((ratio - 1)*(ratio + 1))
       rate_slope = -(across*ratio_slope + b%crank%length*motion%cos_crank*(1 + ratio))
       speed_square = motion%crank_speed**2
@@ -89,7 +89,7 @@ contains
     real(dp), intent(out) :: crank_moment
     real(dp) :: m12, slope, per_arm, ratio, rate, inertia
     call bodies%coupling(motion, m12, slope)
-    call find_ratios(bodies, motion, m12, per_arm, ratio, rate, inertia)
+    call find_ratios(bodies, drive, motion, m12, per_arm, ratio, rate, inertia)
     accelerations%crank = 0
     crank_moment = 0
     if (drive%free_crank) then
@@ -104,8 +104,9 @@ contains
 
   !> k = dA/dq = R cos q/(L cos A), p = dx/dq, and the generalised inertia for q. With them A'' = k q'' + k' q'^2, x'' = p q'' + p'
   !> q'^2, and k' = tan A (k^2 - 1).
-  pure subroutine find_ratios(bodies, motion, m12, per_arm, ratio, rate, inertia)
+  pure subroutine find_ratios(bodies, drive, motion, m12, per_arm, ratio, rate, inertia)
     type(bodies_t), intent(in) :: bodies
+    type(drive_t), intent(in) :: drive
     type(motion_t), intent(in) :: motion
     real(dp), intent(in) :: m12                !! coupling of crank and rod [kg m^2]
     real(dp), intent(out) :: per_arm           !! 1/(L cos A) [1/m]
@@ -114,6 +115,6 @@ contains
     per_arm = bodies%per_rod_length/((1 - motion%sin_rod)*(1 + motion%sin_rod))*motion%cos_rod
     ratio = bodies%crank%length*motion%cos_crank*per_arm
     rate = -bodies%crank%length*motion%sin_crank*(1 + ratio)
-    inertia = bodies%crank_term + ratio*(2*m12 + ratio*bodies%rod_term) + bodies%piston%mass*rate**2
+    inertia = drive%inertia + (bodies%crank_term + ratio*(2*m12 + ratio*bodies%rod_term) + bodies%piston%mass*rate**2)
   end subroutine find_ratios
 end module ideal_chain

@@ -15,6 +15,8 @@ module mechanism_chain
   use loose_piston, only: free_piston, add_energy_beside
   use varying_drive, only: varying_drive_t
   use elastic_members, only: elastic_members_t
+  use crank_train, only: crank_train_t
+  use train_motion, only: train_rows_t
   use elastic_rod, only: elastic_rod_t
   use elastic_rod_piece, only: accelerate_elastic_rod
   use elastic_rod_body, only: elastic_rod_energy, elastic_end_forces
@@ -28,11 +30,13 @@ module mechanism_chain
     type(varying_drive_t), allocatable :: varying   !! not allocated: the drive is constant
     logical :: is_loose(n_pins) = .false.   !! pins with clearance
     type(elastic_members_t), allocatable :: elastic   !! not allocated: all bodies are rigid
+    type(crank_train_t), allocatable :: train   !! not allocated: one cylinder, and no stations of the crankshaft
   contains
     procedure, non_overridable :: accelerate
     procedure, non_overridable :: accelerate_rigid
     procedure, non_overridable :: has_elastic_rod
     procedure :: has_crankshaft
+    procedure :: driven_speed
     procedure, non_overridable :: move_rod
     procedure, non_overridable :: move_piston
     procedure :: body_angle
@@ -57,15 +61,15 @@ contains
     real(dp), intent(out) :: crank_moment
     logical, intent(out) :: solvable
     type(drive_t) :: drive, of_crank
-    real(dp) :: speed
+    type(train_rows_t) :: rows
     solvable = .true.
     drive = self%drive
-    if (allocated(self%varying)) then
-      speed = motion%crank_speed
-      if (allocated(self%elastic)) speed = self%elastic%driven_speed(motion)
-      drive = self%varying%at(self%drive, speed, motion)
-    end if
+    if (allocated(self%varying)) drive = self%varying%at(self%drive, self%driven_speed(motion), motion)
     of_crank = drive
+    if (allocated(self%train)) then
+      call self%train%find_rows(motion, rows)
+      of_crank = self%train%drive_of_crank(drive, rows)
+    end if
     if (self%has_crankshaft()) of_crank = self%elastic%crankshaft%drive_of_crank(motion)
     if (self%has_elastic_rod()) then
       call accelerate_with_elastic_rod(self, of_crank, motion, loads, accelerations, crank_moment, solvable)
@@ -74,6 +78,8 @@ contains
     end if
     if (self%has_crankshaft()) &
       call self%elastic%crankshaft%accelerate_flywheel(drive, motion, accelerations%flywheel, crank_moment)
+    if (allocated(self%train) .and. solvable) &
+      call self%train%accelerate_stations(drive, motion, rows, accelerations, crank_moment)
   end subroutine accelerate
 
   !> The same with a rigid rod and a given drive of the crank; `crank_moment` is the moment of this drive [N m].
@@ -147,6 +153,15 @@ contains
     if (allocated(self%elastic)) has_crankshaft = allocated(self%elastic%crankshaft)
   end function has_crankshaft
 
+  !> Angular speed of the part on which the drive acts: the crank, the flywheel of an elastic crankshaft, or a station [rad/s].
+  pure real(dp) function driven_speed(self, motion) result(speed)
+    class(chain_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    speed = motion%crank_speed
+    if (allocated(self%elastic)) speed = self%elastic%driven_speed(motion)
+    if (allocated(self%train)) speed = motion%train%speed(self%train%driven)
+  end function driven_speed
+
   !> Set the rod of a motion whose crank and offset are known, and the shapes of an elastic rod. `reachable` is false if there is no
   !> rod angle.
   pure subroutine move_rod(self, motion, reachable)
@@ -202,11 +217,16 @@ contains
     type(motion_t) :: rest
     type(drive_t) :: drive
     type(elastic_rod_t), allocatable :: slack
+    drive = self%drive
+    if (allocated(self%train)) then
+      drive%inertia = self%train%inertia_beside(motion)
+      drive%free_crank = self%train%frees_crank(self%drive)
+    end if
     if (.not. (self%is_loose(crank_pin) .or. self%bodies%piston%is_loose .or. allocated(self%elastic))) then
       if (self%is_loose(piston_pin)) then
-        call respond_crank_rod(self%bodies, self%drive, loads, motion, accelerations, crank_moment)
+        call respond_crank_rod(self%bodies, drive, loads, motion, accelerations, crank_moment)
       else
-        call respond_ideal_chain(self%bodies, self%drive, loads, motion, accelerations, crank_moment)
+        call respond_ideal_chain(self%bodies, drive, loads, motion, accelerations, crank_moment)
       end if
       accelerations%rod_end = -accelerations%rod
       return
@@ -217,8 +237,10 @@ contains
     rest%tilting%tilt_rate = 0
     rest%chord_rate = 0
     rest%shape_rate = 0
-    drive = undriven
-    drive%free_crank = self%drive%free_crank .or. self%has_crankshaft()
+    drive%torque = 0
+    drive%damping = 0
+    drive%acceleration = 0
+    drive%free_crank = drive%free_crank .or. self%has_crankshaft()
     if (self%has_elastic_rod()) then
       slack = self%elastic%rod
       slack%stiffness = 0
@@ -244,6 +266,9 @@ contains
     if (self%bodies%piston%is_loose) then
       accelerations%offset = accelerations%offset + factor*change%offset
       accelerations%tilt = accelerations%tilt + factor*change%tilt
+    end if
+    if (allocated(self%train)) then
+      accelerations%station(self%train%full) = accelerations%station(self%train%full) + factor*change%crank
     end if
     if (.not. allocated(self%elastic)) return
     n = self%elastic%n_shapes()
@@ -292,6 +317,7 @@ contains
     else
       energy = self%bodies%kinetic_energy(motion) + self%bodies%potential_energy(motion)
     end if
+    if (allocated(self%train)) energy = energy + self%train%energy(motion)
     if (self%has_crankshaft()) energy = energy + self%elastic%crankshaft%energy(motion)
     if (self%bodies%piston%is_loose) call add_energy_beside(self%bodies, motion, energy)
   end function energy

@@ -47,6 +47,7 @@ module gas_cycle
     procedure :: pressure
     procedure :: pressure_slope
     procedure :: part_at
+    procedure :: next_part
   end type gas_cycle_t
 
   !> Equation (A.9) as a function of xi, for one part; y is the pressure.
@@ -264,6 +265,24 @@ contains
       if (angle < self%bound(part) .or. backwards .and. angle <= self%bound(part)) exit
     end do
   end subroutine part_at
+
+  !> Enter the next part of the cycle that is not empty, forwards or backwards.
+  pure subroutine next_part(self, forwards, part, cycle_start)
+    class(gas_cycle_t), intent(in) :: self
+    logical, intent(in) :: forwards
+    integer, intent(inout) :: part
+    real(dp), intent(inout) :: cycle_start   !! angle at which the present cycle began [rad]
+    integer :: way
+    way = merge(1, -1, forwards)
+    do
+      part = part + way
+      if (part > n_parts .or. part < 1) then
+        part = merge(1, n_parts, forwards)
+        cycle_start = cycle_start + way*self%period
+      end if
+      if (self%bound(part) > self%bound(part - 1)) exit
+    end do
+  end subroutine next_part
 
   !> Cylinder pressure [Pa] at the crank angle q [rad] in a part of the cycle that began at cycle_start [rad]. Near its bounds a
   !> part is continued smoothly for trial states.

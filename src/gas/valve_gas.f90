@@ -64,19 +64,20 @@ contains
     end if
   end subroutine find_state
 
-  !> Declare the state of the valves.
-  subroutine declare(self, list, q, crank_speed)
+  !> Declare the state of the valves, with a prefix for its names.
+  subroutine declare(self, list, q, crank_speed, prefix)
     class(valve_gas_t), intent(inout) :: self
     type(run_state_t), intent(inout) :: list
     real(dp), intent(in) :: q, crank_speed   !! crank angle [rad] and crank speed [rad/s]
+    character(len=*), intent(in) :: prefix
     integer :: state
     state = self%state
-    call list%add('valve', state, '1: both valves are closed, 2: the discharge valve is open, 3: the suction valve is open')
-    call list%add('held_pressure', self%held_pressure, 'Pa', 'pressure of the gas when the last valve closed')
-    call list%add('held_volume', self%held_volume, 'm3', 'volume of the gas when the last valve closed')
+    call list%add(prefix//'valve', state, '1: both valves are closed, 2: the discharge valve is open, 3: the suction valve is open')
+    call list%add(prefix//'held_pressure', self%held_pressure, 'Pa', 'pressure of the gas when the last valve closed')
+    call list%add(prefix//'held_volume', self%held_volume, 'm3', 'volume of the gas when the last valve closed')
     if (.not. list%sets) return
     call close_valves(self, self%held_pressure, self%held_volume)
-    if (all(state /= [both_closed, discharge_open, suction_open])) call list%refuse('valve', 'must be 1, 2 or 3')
+    if (all(state /= [both_closed, discharge_open, suction_open])) call list%refuse(prefix//'valve', 'must be 1, 2 or 3')
     if (state /= both_closed) call open_valve(self, state, q, crank_speed)
   end subroutine declare
 

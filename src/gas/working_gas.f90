@@ -7,7 +7,7 @@ module working_gas
   use run_state, only: run_state_t
   use monotone_cubic, only: monotone_cubic_t
   use cylinder, only: cylinder_t
-  use gas_cycle, only: gas_cycle_t, n_parts
+  use gas_cycle, only: gas_cycle_t
   use valve_gas, only: valve_gas_t, n_valve_events
   implicit none
   private
@@ -28,6 +28,8 @@ module working_gas
     type(cylinder_t) :: cylinder
     real(dp) :: crankcase_pressure = 0   !! [Pa]
     real(dp) :: held_pressure = 0        !! constant until it is set anew [Pa]
+    real(dp) :: scale = 1                !! factor on the pressure
+    logical :: has_force = .true.        !! otherwise the piston is moved without gas
     type(gas_cycle_t), allocatable :: cycle
     type(valve_gas_t), allocatable :: valves
     type(monotone_cubic_t), allocatable :: curve   !! measured pressure [Pa] over the crank angle [rad]
@@ -65,7 +67,7 @@ contains
     type(run_state_t), intent(inout) :: list
     real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
     if (allocated(self%valves)) then
-      call self%valves%declare(list, crank_angle, crank_speed)
+      call self%valves%declare(list, crank_angle, crank_speed, '')
     else if (list%sets) then
       call self%start(crank_angle, crank_speed)
     end if
@@ -99,13 +101,15 @@ contains
     else
       pressure = self%held_pressure
     end if
+    pressure = self%scale*pressure
   end function pressure
 
   !> Force on the piston along -x [N] at a pressure [Pa]: (p - p_crankcase) pi b^2/4.
   pure real(dp) function force(self, pressure)
     class(working_gas_t), intent(in) :: self
     real(dp), value, intent(in) :: pressure
-    force = (pressure - self%crankcase_pressure)*self%cylinder%area
+    force = 0
+    if (self%has_force) force = (pressure - self%crankcase_pressure)*self%cylinder%area
   end function force
 
   !> Add pressure [Pa], force and volume at a crank angle with this sine and cosine to a row.
@@ -135,7 +139,8 @@ contains
     else
       force_slope = 0
     end if
-    force_slope = self%cylinder%area*force_slope
+    force_slope = self%scale*self%cylinder%area*force_slope
+    if (.not. self%has_force) force_slope = 0
   end function force_slope
 
   !> Event functions: for a cycle the bounds of the present part, for valves see valve_gas.
@@ -159,25 +164,9 @@ contains
     integer, intent(in) :: event
     real(dp), intent(in) :: crank_angle, crank_speed
     if (allocated(self%cycle)) then
-      call pass_bound(self, event)
+      call self%cycle%next_part(event == 1, self%part, self%cycle_start)
     else if (allocated(self%valves)) then
       call self%valves%pass(event, crank_angle, crank_speed)
     end if
   end subroutine pass
-
-  !> Enter the next part of the cycle that is not empty, forwards (1) or backwards (2).
-  subroutine pass_bound(gas, direction)
-    class(working_gas_t), intent(inout) :: gas
-    integer, intent(in) :: direction
-    integer :: way
-    way = merge(1, -1, direction == 1)
-    do
-      gas%part = gas%part + way
-      if (gas%part > n_parts .or. gas%part < 1) then
-        gas%part = merge(1, n_parts, way > 0)
-        gas%cycle_start = gas%cycle_start + way*gas%cycle%period
-      end if
-      if (gas%cycle%bound(gas%part) > gas%cycle%bound(gas%part - 1)) exit
-    end do
-  end subroutine pass_bound
 end module working_gas

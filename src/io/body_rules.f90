@@ -11,6 +11,7 @@ module body_rules
   use chain_bodies, only: rod_t, crank_t, piston_t, bodies_t, new_bodies, drive_t
   use chain_loads, only: loads_t, unloaded
   use elastic_rod, only: elastic_rod_t, largest_shank
+  use train_builder, only: inertia_beside
   use assembled_chain, only: accelerate_assembled
   implicit none
   private
@@ -165,8 +166,8 @@ contains
     do i = 1, angles
       call turn_crank(motion, 2*pi*i/angles, 0.0_dp)
       call rod%follow(bodies%crank%length, motion, reachable)
-      call accelerate_assembled(bodies, drive_t(c%drive%kind == 'free' .or. allocated(c%crankshaft), 0.0_dp, 0.0_dp, 0.0_dp), &
-        c%loose_pins(), loads, motion, accelerations, crank_moment, rod, definite)
+      call accelerate_assembled(bodies, drive_t(c%drive%kind == 'free' .or. allocated(c%crankshaft), 0.0_dp, 0.0_dp, 0.0_dp, &
+        inertia_beside(c)), c%loose_pins(), loads, motion, accelerations, crank_moment, rod, definite)
       if (.not. definite) return
     end do
   end function is_definite

@@ -2,7 +2,7 @@
 !> or group and key, value as written, and what is allowed.
 module case_file
   use error_handling, only: error_t, fail, status_case_file
-  use text_tools, only: lowercase, printable, case_name, likely_word, joined
+  use text_tools, only: lowercase, printable, case_name, likely_word, joined, integer_text
   use text_file, only: read_text_file
   use joint_places, only: places, n_places, in_order, joint_group
   use case_definition, only: case_t
@@ -201,7 +201,8 @@ contains
     end if
   end subroutine begin_group
 
-  !> Write the place of a joint in front of the name of its group: crank_pin.joint.
+  !> Write the place of a joint in front of the name of its group, crank_pin.joint, or the number of a group that may be repeated
+  !> behind it, cylinder_3.
   subroutine name_place(values, list, number, error)
     type(case_values_t), intent(in) :: values
     type(namelist_t), intent(inout) :: list
@@ -209,6 +210,10 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: wanted, place, found
     integer :: i
+    if (find_group(values%groups, list%groups(number)%name//'_1') > 0) then
+      call number_group(values, list, number, error)
+      return
+    end if
     if (.not. has_places(values, list%groups(number)%name)) return
     found = ''
     do i = 1, size(list%entries)
@@ -235,6 +240,27 @@ contains
     list%groups(number)%name = found//'.'//list%groups(number)%name
   end subroutine name_place
 
+  !> Write its number behind the name of a group that may be repeated. Error: there are too many.
+  subroutine number_group(values, list, at, error)
+    type(case_values_t), intent(in) :: values
+    type(namelist_t), intent(inout) :: list
+    integer, intent(in) :: at   !! number of the group in the file
+    type(error_t), allocatable, intent(out) :: error
+    character(len=:), allocatable :: name
+    integer :: i, n
+    name = list%groups(at)%name
+    n = 1
+    do i = 1, at - 1
+      if (index(list%groups(i)%name, name//'_') == 1) n = n + 1
+    end do
+    if (find_group(values%groups, name//'_'//integer_text(n)) > 0) then
+      list%groups(at)%name = name//'_'//integer_text(n)
+    else
+      call fail(error, list%at(list%groups(at)%line)//'&'//name//': at most '//integer_text(n - 1)//' of these groups', &
+        status_case_file)
+    end if
+  end subroutine number_group
+
   !> Whether a group may appear once for each joint.
   pure logical function has_places(values, name)
     type(case_values_t), intent(in) :: values
@@ -250,14 +276,20 @@ contains
     integer, intent(in) :: line   !! for the order of messages
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: at, group, key, text
-    integer :: dot, equals, place
+    integer :: dot, equals, place, i
     at = values%file//': --set '//printable(override, 60)//': '
     equals = index(override, '=')
     dot = index(override(:max(0, equals - 1)), '.', back=.true.)
     text = lowercase(trim(adjustl(override(equals + 1:))))
     group = trim(adjustl(lowercase(override(:max(0, equals - 1)))))
     if (equals > 1 .and. text == 'none' .and. (dot == 0 .or. find_group(values%groups, group) > 0)) then
-      if (is_shared(values, group)) then
+      if (find_group(values%groups, group//'_1') > 0) then
+        i = 1
+        do while (find_group(values%groups, group//'_'//integer_text(i)) > 0)
+          call values%remove_group(group//'_'//integer_text(i), at, error)
+          i = i + 1
+        end do
+      else if (is_shared(values, group)) then
         call fail(error, at//'no group of the '//trim(places(findloc(places%name == group(:dot - 1), .true., 1))%title)// &
           ' alone is given: the group '//group(dot + 1:)//' is for all pins, and --set '//group(dot + 1:)// &
           '=none removes it from all', status_case_file)

@@ -1,11 +1,15 @@
 !> Builds a case from the values of a case file: a visitor that sets every parameter and selects the laws that the case names.
 module case_loader
   use kinds, only: dp
+  use text_tools, only: integer_text
   use model_parameters, only: parameter_list_t, has_parameters_t, law_t, key_t, word_kind
   use case_definition, only: case_t, visit_case
   use case_schema, only: find_group, find_key, is_listed
   use value_reader, only: set_to_default, read_times
   use case_values, only: case_values_t
+  use history_rules, only: read_positions
+  use joint_places, only: n_places
+  use train_case, only: number_throws, most_cylinders
   use case_curves, only: provide_curves
   use state_file, only: provide_state
   implicit none
@@ -34,18 +38,68 @@ contains
     logical, intent(in), optional :: only(:)  !! groups to be set. A group of a joint may change the laws of the other joint; if one
                                               !! such group changes, set all groups of joints.
     type(loader_t) :: loader
+    integer :: i
     loader%values => values
     allocate (loader%only(size(values%groups)), source=.true.)
     if (present(only)) then
       loader%only = only
       where (values%groups%place /= '' .or. values%groups%is_law) loader%only = any(only .and. (values%groups%place /= '' .or. &
         values%groups%is_law))
+      where (values%groups%number > 0) loader%only = any(only .and. (values%groups%number > 0 .or. &
+        values%groups%name == 'mechanism'))
     end if
     call visit_case(into, loader)
+    call provide_bodies(values, into)
+    if (allocated(into%load)) call hold_speed(values, into)
     call read_times(into%output%film_times, into%output%snapshot_times)
+    do i = 1, n_places
+      call read_positions(into%joints(i)%history)
+    end do
     call provide_curves(values, into)
     call provide_state(values, into)
   end subroutine load_case
+
+  !> Give each cylinder the bodies of the mechanism as far as the case does not say its own, also in the values. The crank of a
+  !> throw belongs to one of its cylinders.
+  subroutine provide_bodies(values, into)
+    type(case_values_t), intent(inout) :: values
+    type(case_t), intent(inout) :: into
+    character(len=*), parameter :: keys(7) = [character(len=13) :: 'piston_mass', 'rod_mass', 'rod_inertia', 'rod_com', &
+      'crank_mass', 'crank_inertia', 'crank_com']
+    logical, allocatable :: has_crank(:)
+    integer, allocatable :: throw(:)
+    character(len=:), allocatable :: group
+    integer :: i, k, n
+    if (.not. allocated(into%cylinders)) return
+    allocate (throw(size(into%cylinders)), has_crank(size(into%cylinders)))
+    call number_throws(into%cylinders, throw, has_crank)
+    i = 0
+    do n = 1, most_cylinders
+      group = 'cylinder_'//integer_text(n)
+      if (.not. values%is_present(find_group(values%groups, group))) cycle
+      i = i + 1
+      do k = 1, size(keys)
+        associate (own => values%values(values%place_of(group, trim(keys(k)))), &
+                   shared => values%values(values%place_of('mechanism', trim(keys(k)))))
+          if (own%given(1)) cycle
+          own%reals = shared%reals
+          if (index(keys(k), 'crank_') == 1 .and. .not. has_crank(i)) own%reals = 0
+        end associate
+      end do
+      call load_model(values, group, into%cylinders(i))
+    end do
+  end subroutine provide_bodies
+
+  !> The crank of a bearing by itself has a prescribed speed, which the case need not say.
+  subroutine hold_speed(values, into)
+    type(case_values_t), intent(inout) :: values
+    type(case_t), intent(inout) :: into
+    integer :: place
+    place = values%place_of('drive', 'kind')
+    if (values%values(place)%given(1)) return
+    into%drive%kind = 'constant_speed'
+    values%values(place)%text = into%drive%kind
+  end subroutine hold_speed
 
   !> Set the parameters of one model, which are the keys of one group.
   subroutine load_model(values, group, model)
@@ -61,13 +115,18 @@ contains
 
   !> Visit a group. For a joint, the group with its place is used or else, for laws, the group without a place. Laws of an ideal
   !> joint are not set.
-  subroutine load_group(self, name, says, is_model, place, instead_of)
+  subroutine load_group(self, name, says, is_model, place, instead_of, number)
     class(loader_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
     logical, intent(in) :: is_model
     character(len=*), intent(in), optional :: place, instead_of
+    integer, intent(in), optional :: number
     integer :: of_place
-    self%at = find_group(self%values%groups, name)
+    if (present(number)) then
+      self%at = find_group(self%values%groups, name//'_'//integer_text(number))
+    else
+      self%at = find_group(self%values%groups, name)
+    end if
     if (present(place)) then
       of_place = find_group(self%values%groups, place//'.'//name)
       if (of_place > 0) then

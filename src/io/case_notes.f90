@@ -12,7 +12,7 @@ module case_notes
   use number_text, only: short_text
   use text_tools, only: replaced
   use unit_hints, only: likely_unit
-  use value_reader, only: read_bounds
+  use value_reader, only: n_values, read_bounds
   implicit none
   private
   public :: note_case, count_lines
@@ -78,7 +78,7 @@ contains
         if (key%usual == '' .or. .not. value%given(1)) return
         if (.not. (values%is_present(find_group(values%groups, trim(key%group))) .and. values%is_used(place))) return
         call read_bounds(trim(key%usual), least, most)
-        do element = 1, key%count
+        do element = 1, n_values(key, value)
           if (.not. abs(value%reals(element)) > 0) cycle
           if (abs(value%reals(element)) < least .or. abs(value%reals(element)) > most) return
         end do
@@ -251,7 +251,7 @@ contains
       integer, intent(in) :: place   !! index in `places`
       logical :: at_piston
       real(dp) :: room   !! [m]
-      if (.not. joint%has_clearance()) return
+      if (.not. joint%has_bearing()) return
       at_piston = places(place)%bearing == body_piston
       associate (r => joint%bearing_radius, length => c%mechanism%crank_length)
         call expect(group, 'clearance', joint%clearance, r, 1e-4_dp, 0.1_dp, 'is # of bearing_radius = @ m', &

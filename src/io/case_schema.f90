@@ -4,12 +4,13 @@
 module case_schema
   use kinds, only: dp
   use model_parameters, only: parameter_list_t, law_t, key_t, real_kind, integer_kind, logical_kind, word_kind, text_kind
+  use text_tools, only: integer_text
   use joint_places, only: places, in_order
   use case_definition, only: case_t, visit_case
   implicit none
   private
   public :: key_t, group_definition_t, key_table_t, schema_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases
-  public :: shown_group, real_kind, integer_kind, logical_kind, word_kind, text_kind
+  public :: shown_group, name_in_file, is_first_of_name, real_kind, integer_kind, logical_kind, word_kind, text_kind
 
   !> A group. The group of an optional model may be missing in a case; its model is then absent from the scene.
   type :: group_definition_t
@@ -19,6 +20,7 @@ module case_schema
     logical :: is_model = .false.
     character(len=24) :: instead_of = ''  !! group that a case cannot have together with this one
     character(len=170) :: description = ''
+    integer :: number = 0                 !! of a group that may be repeated, and end of its name: cylinder_3; 0: it may not
     integer :: first = 1, last = 0        !! range of its keys in the table
   end type group_definition_t
 
@@ -63,7 +65,7 @@ contains
   !> Initialise the visitor.
   subroutine begin(self)
     class(schema_t), intent(inout) :: self
-    allocate (self%groups(50), self%keys(600))
+    allocate (self%groups(80), self%keys(900))
     self%law_name = ''
     self%difference = ''
   end subroutine begin
@@ -119,12 +121,27 @@ contains
     if (dot > 0) text = text//' of '//name(:dot - 1)
   end function shown_group
 
+  !> The name of a group in a case file, without place or number.
+  pure function name_in_file(group) result(name)
+    type(group_definition_t), intent(in) :: group
+    character(len=:), allocatable :: name
+    name = trim(group%name(index(group%name, '.') + 1:))
+    if (group%number > 0) name = name(:index(name, '_', back=.true.) - 1)
+  end function name_in_file
+
+  !> Whether no group before this one has its name in a case file.
+  pure logical function is_first_of_name(group)
+    type(group_definition_t), intent(in) :: group
+    is_first_of_name = index(group%name, '.') == 0 .and. group%number <= 1
+  end function is_first_of_name
+
   !> Collect a group. The groups of the second joint are separate groups, all of them optional.
-  subroutine collect_group(self, name, says, is_model, place, instead_of)
+  subroutine collect_group(self, name, says, is_model, place, instead_of, number)
     class(schema_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
     logical, intent(in) :: is_model
     character(len=*), intent(in), optional :: place, instead_of
+    integer, intent(in), optional :: number
     self%n_groups = self%n_groups + 1
     associate (group => self%groups(self%n_groups))
       group = group_definition_t(name=name, is_model=is_model, description=says, first=self%n_keys + 1, last=self%n_keys)
@@ -135,6 +152,10 @@ contains
           group%name = place//'.'//name
           group%is_model = .true.
         end if
+      end if
+      if (present(number)) then
+        group%number = number
+        group%name = name//'_'//integer_text(number)
       end if
     end associate
     self%present_choice = 0
@@ -204,7 +225,8 @@ contains
   !> Whether two laws give a key the same meaning. Its words and its default may differ for words, its default for switches.
   pure logical function same_meaning(a, b)
     type(key_t), intent(in) :: a, b
-    same_meaning = a%kind == b%kind .and. a%count == b%count .and. (a%required .eqv. b%required) .and. a%unit == b%unit .and. &
+    same_meaning = a%kind == b%kind .and. a%count == b%count .and. (a%is_list .eqv. b%is_list) .and. &
+      (a%required .eqv. b%required) .and. a%unit == b%unit .and. &
       a%range == b%range .and. a%usual == b%usual .and. &
       (a%default == b%default .or. a%kind == word_kind .or. a%kind == logical_kind)
   end function same_meaning

@@ -4,7 +4,8 @@ module case_text
   use text_tools, only: integer_text, quoted
   use number_text, only: exact_text
   use model_parameters, only: key_t, real_kind, integer_kind, logical_kind
-  use case_schema, only: group_definition_t, key_table_t, find_key, is_listed
+  use case_schema, only: group_definition_t, key_table_t, find_key, is_listed, name_in_file, is_first_of_name
+  use value_reader, only: n_values
   use case_values, only: case_values_t, value_t
   implicit none
   private
@@ -24,14 +25,14 @@ contains
     text = '! '//first_line//newline
     do group = 1, size(table%groups)
       associate (it => table%groups(group))
-        if (index(it%name, '.') > 0) cycle   ! copies of groups for another joint
+        if (.not. is_first_of_name(it)) cycle
         out = ''
         text = text//newline//'! '//trim(it%description)//newline
         if (it%instead_of /= '') then
           text = text//'! (cannot be combined with &'//trim(it%instead_of)//', therefore commented out here)'//newline
           out = '! '
         end if
-        text = text//out//'&'//trim(it%name)//newline
+        text = text//out//'&'//name_in_file(it)//newline
         if (it%place /= '' .or. it%is_law) text = text//'  ! place = ''crank_pin''                   '// &
           'in a second group of this name: '//trim(merge('the joint of crank and rod', 'laws for that joint alone ', &
           it%place /= ''))//newline
@@ -52,7 +53,8 @@ contains
     value = trim(key%default)
     if (key%example /= '') value = trim(key%example)
     if (key%kind > logical_kind) value = quoted(value, '''')
-    if (key%kind == real_kind .and. key%count > 1 .and. index(value, ',') == 0) value = value//repeat(', '//value, key%count - 1)
+    if (key%kind == real_kind .and. .not. key%is_list .and. index(value, ',') == 0) &
+      value = value//repeat(', '//value, key%count - 1)
     line = '  '//trim(key%name)//' = '//value
     line = line//repeat(' ', max(1, 42 - len(line)))//'! '
     note = ''
@@ -96,9 +98,9 @@ contains
     integer :: group, i, dot
     text = ''
     do group = 1, size(values%groups)
-      if (values%groups(group)%is_model .and. .not. values%is_present(group)) cycle
+      if (values%groups(group)%is_model .and. .not. values%is_present(group) .or. values%is_replaced(group)) cycle
       dot = index(values%groups(group)%name, '.')
-      text = text//'&'//trim(values%groups(group)%name(dot + 1:))//newline
+      text = text//'&'//name_in_file(values%groups(group))//newline
       if (dot > 0) text = text//'  place = '''//values%groups(group)%name(:dot - 1)//''''//newline
       do i = values%groups(group)%first, values%groups(group)%last
         if (values%is_used(i)) text = text//resolved_line(values%keys(i), values%values(i))//newline
@@ -125,7 +127,7 @@ contains
     select case (key%kind)
     case (real_kind)
       text = real_literal(value%reals(1))
-      do element = 2, key%count
+      do element = 2, n_values(key, value)
         text = text//', '//real_literal(value%reals(element))
       end do
     case (integer_kind)

@@ -4,14 +4,14 @@ module case_values
   use kinds, only: dp
   use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, nearest_word, allowed
-  use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, real_kind, integer_kind, &
-    word_kind, text_kind
+  use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, name_in_file, &
+    is_first_of_name, real_kind, integer_kind, word_kind, text_kind
   use namelist_reader, only: entry_t, token_t, read_values
   use unit_hints, only: likely_unit
   use problem_list, only: problem_list_t, behind_file
   use number_text, only: short_text
-  use value_reader, only: value_t, set_to_default, convert, find_decimal_comma, is_default, unit_of, has_unit, most_reals, &
-    is_within, read_bounds
+  use value_reader, only: value_t, set_to_default, n_values, convert, find_decimal_comma, is_default, unit_of, has_unit, &
+    most_reals, is_within, read_bounds
   implicit none
   private
   public :: case_values_t, value_t
@@ -41,13 +41,16 @@ module case_values
     procedure :: check        !! required keys and ranges
     procedure :: check_required
     procedure :: by_law       !! text that names the laws that have a key
+    procedure :: is_replaced  !! whether another group stands in the place of a group
     procedure :: is_used      !! whether the selected law has this key
     procedure :: check_range  !! range of one key
     procedure :: refuse       !! note an error of a value
+    procedure :: refuse_group !! note that a group must not be given
     procedure :: forbid       !! the same if a condition holds
     procedure :: demand       !! the same for a value that is missing or 0
     procedure :: place_in_file   !! line of a value
     procedure :: is_given
+    procedure :: law_group    !! group in which a law of a joint is given
   end type case_values_t
 
 contains
@@ -191,11 +194,11 @@ contains
     place = self%place_of(group, key)
     if (place > 0) return
     if (find_group(self%groups, group) == 0) then
-      names = [character(len=name_length) :: (self%groups(i)%name, i=1, size(self%groups))]
+      names = [character(len=name_length) :: (name_in_file(self%groups(i)), i=1, size(self%groups))]
       near = nearest_word(group, names)
       if (near /= '') near = '; did you mean '//near//'?'
-      call fail(error, at//'&'//printable(group, 40)//': unknown group'//near//allowed(pack(names, index(names, '.') == 0)), &
-        status_case_file)
+      call fail(error, at//'&'//printable(group, 40)//': unknown group'//near// &
+        allowed(pack(names, [(is_first_of_name(self%groups(i)), i=1, size(names))])), status_case_file)
       return
     end if
     text = shown_group(group)//' '//printable(key, 40)//': unknown key'
@@ -268,11 +271,11 @@ contains
       total = sum([(tokens(i)%repeat, i=1, size(tokens))]) + first - 1
       if (total > key%count) wanted = 'takes '//integer_text(key%count)//' value'//trim(merge('s', ' ', key%count > 1))// &
         ', not '//integer_text(total)
-      if (total < key%count .and. index == 0 .and. key%kind == real_kind) wanted = 'takes '// &
+      if (total < key%count .and. index == 0 .and. key%kind == real_kind .and. .not. key%is_list) wanted = 'takes '// &
         integer_text(key%count)//' values; as '//integer_text(key%count)//'*'//printable(tokens(1)%text, 40)// &
         ' where they are the same'
-      if (index > 0 .and. key%count /= most_reals) wanted = 'takes no index'
-      if (key%kind == real_kind) call find_decimal_comma(tokens, key%count, wanted)
+      if (index > 0 .and. key%count /= 2) wanted = 'takes no index'
+      if (key%kind == real_kind) call find_decimal_comma(tokens, merge(size(tokens), key%count, key%is_list), wanted)
       if (key%kind == real_kind .and. .not. allocated(wanted)) call compare_units(tokens, name, wanted)
       if (allocated(wanted)) then
         call fail(error, name//': '//wanted, status_case_file)
@@ -317,7 +320,7 @@ contains
       list = list//', '//printable(tokens(i)%text, 20)
     end do
     name = name//' = '//list
-    wanted = 'a unit for both numbers or for neither'
+    wanted = 'a unit for '//trim(merge('both numbers or for neither', 'all numbers or for none    ', size(tokens) == 2))
   end subroutine compare_units
 
   !> Give the key at `place` the values in a text, as an override. A key that is a text takes it unchanged; without `is_plain` it
@@ -370,6 +373,7 @@ contains
     associate (key => self%keys(place))
       if (.not. key%required .or. self%values(place)%given(1)) return
       group = find_group(self%groups, trim(key%group))
+      if (self%is_replaced(group)) return
       if (self%is_present(group)) then
         call self%refuse(trim(key%group), trim(key%name), 'required'//self%by_law(key))
       else if (.not. (self%groups(group)%is_model .or. self%problems%concerns(''))) then
@@ -378,6 +382,14 @@ contains
       end if
     end associate
   end subroutine check_required
+
+  !> Whether the case has another group instead of this required one.
+  pure logical function is_replaced(self, group)
+    class(case_values_t), intent(in) :: self
+    integer, intent(in) :: group   !! index in the table
+    is_replaced = .not. self%groups(group)%is_model .and. &
+      any(self%is_present .and. self%groups%instead_of == self%groups(group)%name)
+  end function is_replaced
 
   !> Whether the selected model has the key at `place`; a group may also contain keys of other laws.
   pure logical function is_used(self, place)
@@ -408,7 +420,7 @@ contains
     integer :: element
     associate (key => self%keys(place), value => self%values(place))
       if (key%kind > integer_kind .or. key%required .and. value%written(1) == '') return   ! not given, or unreadable
-      do element = 1, key%count
+      do element = 1, n_values(key, value)
         if (is_within(merge(value%reals(element), real(value%whole, dp), key%kind == real_kind), key%range)) cycle
         if (is_default(key, value, element)) cycle
         call self%refuse(trim(key%group), trim(key%name), 'must be '//trim(key%range), element)
@@ -454,6 +466,13 @@ contains
     call self%problems%add(text, group, self%place_in_file(place))
   end subroutine refuse
 
+  !> Note that a group must not be given.
+  subroutine refuse_group(self, name, why)
+    class(case_values_t), intent(inout) :: self
+    character(len=*), intent(in) :: name, why
+    call self%problems%add(self%file//': '//shown_group(name)//': '//why, name, self%line(find_group(self%groups, name)))
+  end subroutine refuse_group
+
   !> Line of the file on which the key at `place` is given, or else on which its group begins.
   pure integer function place_in_file(self, place)
     class(case_values_t), intent(in) :: self
@@ -489,4 +508,13 @@ contains
     character(len=*), intent(in) :: group, name
     given = self%values(self%place_of(group, name))%given(1)
   end function is_given
+
+  !> Name of the group in which a law of the joint at a place is given.
+  function law_group(self, name, place) result(group)
+    class(case_values_t), intent(in) :: self
+    character(len=*), intent(in) :: name, place   !! of the law's group and of the place
+    character(len=:), allocatable :: group
+    group = place//'.'//name
+    if (.not. self%is_present(find_group(self%groups, group))) group = name
+  end function law_group
 end module case_values

@@ -223,7 +223,8 @@ contains
       case ('reference')
         line%reference = value
         call case_schema_of(table)
-        if (.not. is_listed(value, subjects) .and. find_group(table%groups, value) == 0) &
+        if (.not. is_listed(value, subjects) .and. find_group(table%groups, value) == 0 .and. &
+            find_group(table%groups, value//'_1') == 0) &
           wanted = 'must be '//subjects//' or a group of cases'
       case ('completion')
         line%completion = value

@@ -1,8 +1,9 @@
 !> The groups and keys of case files as a JSON Schema (2020-12), for a case as JSON, TOML or f90nml has it: an object of groups,
-!> each an object of keys. A group that a case may have once for each joint is one object or an array of objects.
+!> each an object of keys. A group that a case may have several times is one object or an array of objects.
 module json_schema
   use text_tools, only: replaced, integer_text
-  use case_schema, only: key_t, group_definition_t, key_table_t, find_group, real_kind, integer_kind, logical_kind, word_kind
+  use case_schema, only: key_t, group_definition_t, key_table_t, find_group, name_in_file, is_first_of_name, &
+    real_kind, integer_kind, logical_kind, word_kind
   use joint_places, only: places, in_order
   implicit none
   private
@@ -22,9 +23,9 @@ contains
     required = ''
     do group = 1, size(table%groups)
       associate (it => table%groups(group))
-        if (index(it%name, '.') > 0) cycle   ! copies of groups for another joint
+        if (.not. is_first_of_name(it)) cycle
         if (group > 1) text = text//','//n
-        text = text//string(trim(it%name))//': '//group_schema(table, it)
+        text = text//string(name_in_file(it))//': '//group_schema(table, it)
         if (.not. it%is_model .and. it%place == '' .and. any(table%keys(it%first:it%last)%required)) &
           required = required//', '//string(trim(it%name))
       end associate
@@ -53,7 +54,8 @@ contains
     text = text//'}'
     if (required /= '') text = text//', "required": ['//required(3:)//']'
     text = text//'}'
-    if (has_places(table, group)) text = '{"anyOf": ['//text//','//n//'{"type": "array", "items": {"type": "object"}}]}'
+    if (has_places(table, group) .or. group%number > 0) &
+      text = '{"anyOf": ['//text//','//n//'{"type": "array", "items": {"type": "object"}}]}'
   end function group_schema
 
   !> Whether a group may appear once for each joint.
@@ -69,8 +71,8 @@ contains
     select case (key%kind)
     case (real_kind)
       text = number_schema('number', key)
-      if (key%count > 1) text = '{"type": "array", "items": '//text//', "minItems": '//integer_text(key%count)// &
-        ', "maxItems": '//integer_text(key%count)//'}'
+      if (key%count > 1) text = '{"type": "array", "items": '//text//', "minItems": '// &
+        integer_text(merge(1, key%count, key%is_list))//', "maxItems": '//integer_text(key%count)//'}'
     case (integer_kind)
       text = number_schema('integer', key)
     case (logical_kind)

@@ -31,9 +31,9 @@ contains
           case ('viscosity_law')
             value%text = 'walther'
           case ('known_temperatures')
-            value%reals = known_temperatures
+            value%reals(:2) = known_temperatures
           case ('known_viscosities')
-            value%reals = oil%viscosities
+            value%reals(:2) = oil%viscosities
           case default   ! density
             value%reals(1) = oil%density
           end select

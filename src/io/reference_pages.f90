@@ -4,7 +4,7 @@ module reference_pages
   use kinds, only: dp
   use error_handling, only: error_t
   use model_parameters, only: key_t, logical_kind
-  use case_schema, only: group_definition_t, key_table_t, find_key
+  use case_schema, only: group_definition_t, key_table_t, find_key, name_in_file, is_first_of_name
   use case_definition, only: case_t
   use case_file, only: parse_case, template
   use trace_columns, only: choose_columns
@@ -64,9 +64,9 @@ contains
     text = ''
     do group = 1, size(table%groups)
       associate (it => table%groups(group))
-        if (only_group /= '' .and. it%name /= only_group) cycle
-        if (only_group == '' .and. index(it%name, '.') > 0) cycle   ! copies of groups for another joint
-        text = text//'## &'//trim(it%name)//newline//newline//sentence(trim(it%description))//newline
+        if (only_group /= '' .and. it%name /= only_group .and. .not. (it%number == 1 .and. name_in_file(it) == only_group)) cycle
+        if (only_group == '' .and. .not. is_first_of_name(it)) cycle
+        text = text//'## &'//name_in_file(it)//newline//newline//sentence(trim(it%description))//newline
         if (it%instead_of /= '') text = text//'Cannot be combined with `&'//trim(it%instead_of)//'`.'//newline
         if (it%place /= '' .or. it%is_law) &
           text = text//'`place = ''crank_pin''` in a second group of this name makes it that of the crank pin.'//newline

@@ -14,6 +14,7 @@ module result_table
   contains
     generic :: add => add_real, add_integer, add_words
     procedure, private :: add_real, add_integer, add_words
+    procedure :: add_numbered
   end type result_table_t
 
 contains
@@ -33,6 +34,22 @@ contains
     call self%add_text(unit_of(quantities_of_runs, name))
     call self%end_row()
   end subroutine add_words
+
+  !> Add a row whose own name has numbers in the place of letters of the declared one. It has a value unless it has a text.
+  pure subroutine add_numbered(self, declared, name, value, text)
+    class(result_table_t), intent(inout) :: self
+    character(len=*), intent(in) :: declared, name
+    real(dp), intent(in) :: value
+    character(len=*), intent(in), optional :: text
+    call self%add_text(name)
+    if (present(text)) then
+      call self%add_text(text)
+    else
+      call self%add_text(real_text(value, self%digits))
+    end if
+    call self%add_text(unit_of(quantities_of_runs, declared))
+    call self%end_row()
+  end subroutine add_numbered
 
   pure subroutine add_real(self, name, value, prefix, for)
     class(result_table_t), intent(inout) :: self

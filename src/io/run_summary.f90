@@ -5,7 +5,9 @@ module run_summary
   use constants, only: two_pi
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
   use simulation, only: run_report_t
+  use train_record, only: train_result_t
   use cycle_answers, only: answer_t, cycle_quantities
+  use history_files, only: add_histories
   use result_table, only: result_table_t
   use run_figures, only: pin_figures_t, elastic_figures_t
   use piston_guide, only: n_corners, corner_names
@@ -96,7 +98,7 @@ contains
       if (report%energy_is_poor) call table%add('energy_warning', energy_warning(case, report))
       call add_notes()
       do i = 1, n_places
-        if (.not. case%joints(in_order(i))%has_clearance()) cycle
+        if (.not. case%joints(in_order(i))%has_bearing()) cycle
         if (i > 1) call table%add('max_pin_force', f%pin(in_order(i))%max_force, name_prefix(in_order(i)))
         call add_joint(name_prefix(in_order(i)), case%joints(in_order(i)), f%pin(in_order(i)))
       end do
@@ -109,8 +111,10 @@ contains
         end do
       end if
       if (case%is_elastic()) call add_elastic(f%elastic)
+      if (allocated(report%train)) call add_train(report%train)
     end associate
     if (allocated(report%answers)) call add_answers(report%answers)
+    if (allocated(report%histories)) call add_histories(table, report%histories)
     call table%add('version', program_version)
     call table%add('compiler', compiler_version())
     call table%add('compiler_options', compiler_options())
@@ -227,6 +231,19 @@ contains
       call table%add('crankshaft_frequency', largest%twist_frequency/two_pi)
       call table%add('max_crankshaft_twist', largest%twist)
     end subroutine add_elastic
+
+    !> Rows of several cylinders on one crankshaft.
+    subroutine add_train(results)
+      type(train_result_t), intent(in) :: results(:)
+      integer :: i
+      do i = 1, size(results)
+        if (allocated(results(i)%text)) then
+          call table%add_numbered(trim(results(i)%declared), trim(results(i)%name), 0.0_dp, results(i)%text)
+        else
+          call table%add_numbered(trim(results(i)%declared), trim(results(i)%name), results(i)%value)
+        end if
+      end do
+    end subroutine add_train
 
     !> Rows of the last whole cycle.
     subroutine add_answers(answers)

@@ -1,7 +1,7 @@
 !> What a shell shows of the program: completion of its command line, and its page of the manual.
 module shell_pages
   use text_tools, only: replaced, next_line
-  use case_schema, only: key_table_t, case_schema_of
+  use case_schema, only: key_table_t, case_schema_of, name_in_file, is_first_of_name
   use command_line, only: options, help_text, subjects, shells, progress_words
   use accuracy_presets, only: accuracy_levels
   use case_templates, only: template_kinds
@@ -126,7 +126,7 @@ contains
     call case_schema_of(table)
     text = listed(subjects)
     do i = 1, size(table%groups)
-      if (index(table%groups(i)%name, '.') == 0) text = text//' '//trim(table%groups(i)%name)
+      if (is_first_of_name(table%groups(i))) text = text//' '//name_in_file(table%groups(i))
     end do
   end function all_subjects
 

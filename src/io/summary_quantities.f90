@@ -102,6 +102,37 @@ module summary_quantities
     quantity_t('max_rod_strain_energy', 'J', 'largest elastic energy in the rod'), &
     quantity_t('crankshaft_frequency', 'Hz', 'natural frequency of the crank and the flywheel on the elastic shaft'), &
     quantity_t('max_crankshaft_twist', 'rad', 'largest twist'), &
+    quantity_t('film_history_cycles', '1', 'cycles that the film with memory was marched (film_history)'), &
+    quantity_t('film_history_cycle_change', '1', 'change of its oil from the end of a cycle to that of the next, over the oil'), &
+    quantity_t('film_history_min_film_thickness', 'm', 'thinnest film of the last cycle'), &
+    quantity_t('film_history_max_film_pressure', 'Pa', 'its largest pressure, above that of cavitation'), &
+    quantity_t('film_history_mean_supply_flow', 'm3/s', 'its mean flow from the supply'), &
+    quantity_t('film_history_mean_side_flow', 'm3/s', 'its mean flow out of both ends of the bearing'), &
+    quantity_t('film_history_least_fill', '1', 'smallest part of the gap that oil fills'), &
+    quantity_t('film_history_mean_power_loss', 'W', 'mean power that the shear of the film takes from the pin'), &
+    quantity_t('film_history_mass_residual', '1', 'largest error of the balance of its oil, over the largest flow'), &
+    quantity_t('film_history_cells_per_gap', '1', &
+      'cells over the length in which the thinnest gap doubles; fewer than 4: too coarse'), &
+    quantity_t('film_history_min_film_thickness_angle', 'deg', 'crank angle of the thinnest film'), &
+    quantity_t('film_history_quick_min_film_thickness', 'm', 'thinnest film of the run in the rows of that cycle'), &
+    quantity_t('film_history_quick_max_film_pressure', 'Pa', 'largest pressure of the film of the run in these rows'), &
+    quantity_t('film_history_thickness_ratio', '1', &
+      'thickness of the film with memory over that of the film of the run, where they differ most'), &
+    quantity_t('film_history_thickness_ratio_time', 's', 'time of that row'), &
+    quantity_t('firing_order', '', 'cylinders in the order in which the shaft brings them to one point of the cycle, from 1 on'), &
+    quantity_t('natural_frequency_N', 'Hz', 'natural frequencies of the crankshaft with mean inertias, undamped, above 0; with '// &
+      'its driven station held if the speed is prescribed'), &
+    quantity_t('mode_N_station_J', '1', 'shape of the mode N (the first three) at station J; the largest is 1'), &
+    quantity_t('mode_N_damper_R', '1', 'the same of the ring of a damper of rubber'), &
+    quantity_t('cyclic_irregularity', '1', &
+      'largest less smallest speed of the driven station in the last cycle, over the mean speed'), &
+    quantity_t('front_irregularity', '1', 'the same of the first station'), &
+    quantity_t('max_damper_R_power', 'W', 'power that the damping of damper R takes, mean of the last cycle'), &
+    quantity_t('cycle_front_twist_order_H', 'rad', 'amplitude at order H of the twist of the first station against the '// &
+      'driven one in the last cycle'), &
+    quantity_t('cycle_segment_J_torque_order_H', 'N.m', 'amplitude at order H of the torque of segment J in the last cycle'), &
+    quantity_t('max_segment_J_torque', 'N.m', 'largest torque of segment J of the crankshaft'), &
+    quantity_t('max_station_J_twist', 'rad', 'largest twist of station J against the crank of the full cylinder'), &
     quantity_t('version', '', 'version of the program'), &
     quantity_t('compiler', '', 'compiler of the program'), &
     quantity_t('compiler_options', '', 'its options')]

@@ -10,10 +10,10 @@ module value_reader
   use physical_units, only: unit_t, split_number, find_unit, shifted
   implicit none
   private
-  public :: value_t, set_to_default, convert, convert_list, find_decimal_comma, is_default, unit_of, has_unit, most_reals
+  public :: value_t, n_values, set_to_default, convert, convert_list, find_decimal_comma, is_default, unit_of, has_unit, most_reals
   public :: read_real, read_times, read_integer, is_within, read_bounds
 
-  integer, parameter :: most_reals = 2   !! longest array of reals in the schema
+  integer, parameter :: most_reals = 16  !! longest list of reals in the schema
   integer, parameter :: longest_text = 4000
   integer, parameter :: most_times = 10000   !! longest list of times
   character(len=*), parameter :: digits = '0123456789'
@@ -26,7 +26,7 @@ module value_reader
     logical :: is_override = .false.         !! set by an override
     logical :: replaces = .false.            !! an override that replaces a different value of the file
     real(dp) :: reals(most_reals) = 0
-    integer :: whole = 0
+    integer :: whole = 0                     !! of a list the number of its reals
     logical :: switch = .false.
     character(len=:), allocatable :: text
     character(len=70) :: written(most_reals) = ''   !! as the user wrote it, for messages
@@ -46,10 +46,17 @@ contains
     value%text = ''
     if (key%required) return
     token%text = trim(key%default)
-    do element = 1, min(key%count, most_reals)
+    do element = 1, merge(1, min(key%count, most_reals), key%is_list)
       call convert(key, token, value, element, wanted)
     end do
   end subroutine set_to_default
+
+  !> Number of the values of a key.
+  pure integer function n_values(key, value)
+    type(key_t), intent(in) :: key
+    type(value_t), intent(in) :: value
+    n_values = merge(value%whole, key%count, key%is_list)
+  end function n_values
 
   !> Convert a text to a value of the key's kind; if that is not possible, `wanted` says what is allowed, with the unit of the key.
   subroutine convert(key, token, value, element, wanted)
@@ -60,6 +67,7 @@ contains
     character(len=:), allocatable, intent(out) :: wanted
     select case (key%kind)
     case (real_kind)
+      if (key%is_list) value%whole = element
       value%has_unit = has_unit(token%text) .and. .not. token%quoted
       if (token%quoted) then
         wanted = 'must be a number, without quotes'

@@ -19,6 +19,7 @@ module model_parameters
     character(len=32) :: name = ''
     integer :: kind = real_kind
     integer :: count = 1                     !! number of values
+    logical :: is_list = .false.             !! reals of which one is enough; `count` of them at most
     logical :: required = .false.            !! must be given if its group is present, or if a law that has it is selected
     character(len=24) :: default = ''        !! value if it is not given, without quotes; for all elements of an array
     character(len=24) :: example = ''        !! value in the template, if the default is not suitable there
@@ -51,6 +52,7 @@ module model_parameters
     procedure :: law => pass_law
     procedure, private, non_overridable :: add_real, add_pair, add_integer, add_logical
     generic :: add => add_real, add_pair, add_integer, add_logical
+    procedure, non_overridable :: list_of_reals
     procedure, non_overridable :: word
     procedure, non_overridable :: text
     procedure, non_overridable :: make_optional
@@ -92,13 +94,15 @@ module model_parameters
 contains
 
   !> The following parameters belong to this group. The group of an optional model may be missing in a case; its model is then
-  !> absent from the scene. A group with a place may appear once for each place.
-  subroutine pass_group(self, name, says, is_model, place, instead_of)
+  !> absent from the scene. A group with a place may appear once for each place; one that may be repeated is declared once for each
+  !> number, from 1 on.
+  subroutine pass_group(self, name, says, is_model, place, instead_of, number)
     class(parameter_list_t), intent(inout) :: self
     character(len=*), intent(in) :: name, says
     logical, intent(in) :: is_model
     character(len=*), intent(in), optional :: place
     character(len=*), intent(in), optional :: instead_of   !! group that a case cannot have together with this one
+    integer, intent(in), optional :: number
   end subroutine pass_group
 
   !> The key of the present group that names a law; the laws follow.
@@ -155,6 +159,21 @@ contains
     new%count = size(value)
     call self%visit(new, reals=value)
   end subroutine add_pair
+
+  !> Declare a list of reals, `n` of them; a default is the only one. It is required if it has no default.
+  subroutine list_of_reals(self, key, values, n, says, unit, range, default, example, usual)
+    class(parameter_list_t), intent(inout) :: self
+    character(len=*), intent(in) :: key, says
+    real(dp), intent(inout) :: values(:)
+    integer, intent(inout) :: n
+    character(len=*), intent(in), optional :: unit, range, default, example, usual
+    type(key_t) :: new
+    if (self%passes) return
+    new = described(key, real_kind, says, unit, range, default, example, usual)
+    new%count = size(values)
+    new%is_list = .true.
+    call self%visit(new, reals=values, whole=n)
+  end subroutine list_of_reals
 
   !> Declare an integer.
   subroutine add_integer(self, key, value, says, range, default, example)

@@ -11,14 +11,16 @@ module case_definition
   use model_parameters, only: has_parameters_t, parameter_list_t
   use run_length, only: run_length_t
   use chain_motion, only: n_pins
-  use joint_places, only: places, n_places, in_order, name_prefix
+  use joint_places, only: places, n_places, in_order, name_prefix, main_bearing
   use joint_case, only: joint_case_t
   use guide_case, only: guide_case_t, guide_clearance
   use elastic_rod, only: elastic_rod_t
   use elastic_crankshaft, only: elastic_crankshaft_t
+  use train_case, only: cylinder_case_t, shaft_case_t, damper_case_t
   use gas_law, only: gas_law_t
   use measured_curve, only: measured_curve_t
   use measured_pressure, only: measured_pressure_t
+  use bearing_load, only: bearing_load_t
   implicit none
   private
   public :: case_t, output_case_t, visit_case
@@ -87,12 +89,16 @@ module case_definition
     character(len=:), allocatable :: cache   !! folder that keeps film tables; empty: none; not allocated: that of the user
     character(len=:), allocatable :: notes   !! on values that are not of usual sizes, one line each; not allocated: none
     type(mechanism_case_t) :: mechanism
+    type(bearing_load_t), allocatable :: load   !! a bearing under this load instead of the mechanism
     type(drive_case_t) :: drive
     type(initial_case_t) :: initial
     type(joint_case_t) :: joints(n_places)   !! by place
     type(guide_case_t), allocatable :: guide   !! not allocated: the guide is ideal
     type(elastic_rod_t), allocatable :: elastic_rod          !! not allocated: the rod is rigid
-    type(elastic_crankshaft_t), allocatable :: crankshaft    !! not allocated: the crankshaft is rigid
+    type(elastic_crankshaft_t), allocatable :: crankshaft    !! not allocated: the crankshaft is rigid, or has stations
+    type(shaft_case_t), allocatable :: shaft                 !! a crankshaft of several stations
+    type(damper_case_t), allocatable :: dampers(:)           !! on it
+    type(cylinder_case_t), allocatable :: cylinders(:)       !! not allocated: there is one
     class(gas_law_t), allocatable :: combustion
     type(measured_pressure_t), allocatable :: measured   !! used instead of combustion
     type(run_length_t) :: run
@@ -100,13 +106,14 @@ module case_definition
     type(output_case_t) :: output
   contains
     procedure :: has_contact
-    procedure :: gas_revolutions
+    procedure :: forced_revolutions
     procedure :: has_play
     procedure :: loose_pins
     procedure :: has_wear
     procedure :: has_loose_guide
     procedure :: has_clearance => has_clearance_anywhere
     procedure :: is_elastic
+    procedure :: has_train
   end type case_t
 
   interface
@@ -119,13 +126,14 @@ module case_definition
 
 contains
 
-  !> Number of revolutions after which the gas pressure repeats; 1 without gas.
-  pure integer function gas_revolutions(self)
+  !> Number of revolutions after which the gas pressure, or the given load of a bearing, repeats; else 1.
+  pure integer function forced_revolutions(self) result(revolutions)
     class(case_t), intent(in) :: self
-    gas_revolutions = 1
-    if (allocated(self%combustion)) gas_revolutions = self%combustion%revolutions()
-    if (allocated(self%measured)) gas_revolutions = self%measured%revolutions()
-  end function gas_revolutions
+    revolutions = 1
+    if (allocated(self%combustion)) revolutions = self%combustion%revolutions()
+    if (allocated(self%measured)) revolutions = self%measured%revolutions()
+    if (allocated(self%load)) revolutions = self%load%revolutions()
+  end function forced_revolutions
 
   !> Whether a joint has a contact law, or the piston has clearance in its bore.
   pure logical function has_contact(self)
@@ -150,11 +158,8 @@ contains
   pure function loose_pins(self) result(is_loose)
     class(case_t), intent(in) :: self
     logical :: is_loose(n_pins)
-    integer :: i
-    is_loose = .false.
-    do i = 1, n_places
-      is_loose(places(i)%pin) = is_loose(places(i)%pin) .or. self%joints(i)%has_clearance()
-    end do
+    integer :: pin
+    is_loose = [(any(places%pin == pin .and. self%joints%has_clearance()), pin=1, n_pins)]
   end function loose_pins
 
   !> Whether the piston has clearance in its bore.
@@ -175,6 +180,13 @@ contains
     class(case_t), intent(in) :: self
     is_elastic = allocated(self%elastic_rod) .or. allocated(self%crankshaft)
   end function is_elastic
+
+  !> Whether there are several cylinders, or a crankshaft of several stations.
+  pure logical function has_train(self)
+    class(case_t), intent(in) :: self
+    has_train = allocated(self%shaft)
+    if (allocated(self%cylinders)) has_train = has_train .or. size(self%cylinders) > 1
+  end function has_train
 
   subroutine mechanism_parameters(self, list)
     class(mechanism_case_t), intent(inout) :: self
@@ -238,6 +250,7 @@ contains
       name = name_prefix(in_order(i))//'eccentricity'
       call list%add(name, self%eccentricity(:, in_order(i)), 'centre of the '//trim(places(in_order(i))%title)// &
         ' from the centre of its bearing (x, y); in contact if longer than the clearance', 'm', default='0.0', usual='0 to 1e-2')
+      if (in_order(i) == main_bearing) cycle   ! its rate follows from the load
       call list%add(name//'_rate', self%eccentricity_rate(:, in_order(i)), 'rate of '//name, 'm/s', default='0.0', &
         usual='0 to 100')
     end do

@@ -5,6 +5,7 @@ submodule (case_definition) case_groups
   use friction_laws, only: offer_speed_laws
   use joint_case, only: visit_joint, drop_laws, select_contact, select_friction
   use gas_laws, only: offer_gas_cycles
+  use train_case, only: most_rings, most_cylinders
   implicit none
 
 contains
@@ -12,13 +13,21 @@ contains
   module procedure visit_case
     type(elastic_rod_t) :: rod
     type(elastic_crankshaft_t) :: crankshaft
+    type(shaft_case_t) :: shaft
     type(measured_pressure_t) :: measured
+    type(bearing_load_t) :: load
     integer :: i
     call list%group('case', 'All values are in SI units; angles are in degrees only where the key ends in _deg', .false.)
     call list%text('title', case%title, 'title of the case, for pictures and pages', '')
     call list%group('mechanism', &
       'Crank, rod and piston. A centre of mass is given along and across its body, from the end nearer to the crank axis', .false.)
     call case%mechanism%parameters(list)
+    call list%group('bearing_load', 'A bearing by itself under a load over the crank angle, &joint kind = ''quasi_static''', &
+      .true., instead_of='mechanism')
+    if (list%sets .and. allocated(case%load)) load = case%load   ! its table has been read
+    call load%parameters(list)
+    if (list%sets) case%load = load
+    if (list%is_absent()) deallocate (case%load)
     call list%group('drive', 'Drive of the crank', .false.)
     call case%drive%parameters(list)
     call list%group('initial', &
@@ -26,9 +35,9 @@ contains
     call case%initial%parameters(list)
     do i = 1, n_places
       call visit_joint(case%joints(in_order(i)), trim(places(in_order(i))%name), &
-        any(case%joints(in_order(:i - 1))%has_clearance()), list)
+        any(case%joints(in_order(:i - 1))%has_bearing()), list)
     end do
-    do i = 1, merge(n_places, 0, list%sets .and. case%has_play())
+    do i = 1, merge(n_places, 0, list%sets .and. any(case%joints%has_bearing()))
       call drop_laws(case%joints(i))
     end do
     call visit_guide(case%guide, list)
@@ -36,10 +45,18 @@ contains
     call rod%parameters(list)
     if (list%sets) case%elastic_rod = rod
     if (list%is_absent()) deallocate (case%elastic_rod)
-    call list%group('crankshaft', 'Elastic crankshaft with a driven flywheel. Without this group the crankshaft is rigid', .true.)
+    call list%group('crankshaft', 'Elastic crankshaft: with a driven flywheel, or with stations for several cylinders. '// &
+      'Without this group the crankshaft is rigid', .true.)
     call crankshaft%parameters(list)
-    if (list%sets) case%crankshaft = crankshaft
-    if (list%is_absent()) deallocate (case%crankshaft)
+    call shaft%parameters(list)
+    if (list%sets) then
+      case%crankshaft = crankshaft
+      case%shaft = shaft
+      if (list%is_absent() .or. shaft%is_given()) deallocate (case%crankshaft)
+      if (list%is_absent() .or. .not. shaft%is_given()) deallocate (case%shaft)
+    end if
+    call visit_dampers(case%dampers, list)
+    call visit_cylinders(case%cylinders, list)
     call list%group('combustion', &
       'Gas pressure on the piston, of an engine or a compressor. Without this group there is none', .true.)
     call list%choice('cycle', 'four_stroke', 'working cycle; compressor: without combustion')
@@ -69,6 +86,44 @@ contains
       allocate (law, source=chosen)
     end select
   end subroutine select_gas
+
+  subroutine visit_dampers(dampers, list)
+    type(damper_case_t), allocatable, intent(inout) :: dampers(:)
+    class(parameter_list_t), intent(inout) :: list
+    type(damper_case_t) :: found(most_rings), one
+    integer :: i, n
+    n = 0
+    do i = 1, most_rings
+      call list%group('damper', 'Damper of torsional vibrations: a ring on a station of the crankshaft', .true., &
+        instead_of='crankshaft flywheel_inertia', number=i)
+      call one%parameters(list)
+      if (.not. (list%sets .and. list%is_present)) cycle
+      n = n + 1
+      found(n) = one
+    end do
+    if (.not. list%sets) return
+    if (allocated(dampers)) deallocate (dampers)
+    if (n > 0) allocate (dampers, source=found(:n))
+  end subroutine visit_dampers
+
+  subroutine visit_cylinders(cylinders, list)
+    type(cylinder_case_t), allocatable, intent(inout) :: cylinders(:)
+    class(parameter_list_t), intent(inout) :: list
+    type(cylinder_case_t) :: found(most_cylinders), one
+    integer :: i, n
+    n = 0
+    do i = 1, most_cylinders
+      call list%group('cylinder', 'Cylinders on the crankshaft, a group for each in order; all but one have ideal joints. '// &
+        'Without this group there is one', .true., number=i)
+      call one%parameters(list)
+      if (.not. (list%sets .and. list%is_present)) cycle
+      n = n + 1
+      found(n) = one
+    end do
+    if (.not. list%sets) return
+    if (allocated(cylinders)) deallocate (cylinders)
+    if (n > 0) allocate (cylinders, source=found(:n))
+  end subroutine visit_cylinders
 
   subroutine visit_guide(guide, list)
     type(guide_case_t), allocatable, intent(inout) :: guide

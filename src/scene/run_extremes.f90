@@ -13,6 +13,7 @@ module run_extremes
   use pin_record, only: pin_record_t
   use guide_record, only: guide_record_t
   use elastic_record, only: elastic_record_t
+  use train_record, only: train_record_t
   use run_figures, only: run_figures_t
   use wear_record, only: wear_profile_t
   use trace_sink, only: trace_event_t
@@ -26,6 +27,7 @@ module run_extremes
     type(pin_record_t), private :: pins(n_places)
     type(guide_record_t), private :: guide         !! of a piston with clearance in its bore
     type(elastic_record_t), private :: elastic     !! of elastic members
+    type(train_record_t) :: train                  !! of several cylinders on one crankshaft
   contains
     procedure :: prepare
     procedure :: declare
@@ -59,6 +61,7 @@ contains
     end do
     call self%guide%prepare(scene)
     call self%elastic%prepare(scene, self%figures%elastic)
+    call self%train%prepare(scene)
   end subroutine prepare
 
   !> Declare the totals so far.
@@ -73,6 +76,7 @@ contains
     end do
     call self%guide%declare(list, self%figures)
     if (self%elastic%is_present) call self%figures%elastic%declare(list)
+    call self%train%declare(list)
   end subroutine declare
 
   !> Begin at time t, where the scene has been evaluated if that is `in_domain` the model.
@@ -85,6 +89,7 @@ contains
     type(cycle_watch_t), intent(inout), optional :: cycles
     integer :: i
     if (in_domain) call self%elastic%begin(scene, t, now)
+    if (in_domain) call self%train%begin(scene, t, now)
     if (present(cycles)) call self%guide%begin_revolution()
     do i = 1, self%n_pins
       call self%pins(i)%begin(scene, t, now)
@@ -111,6 +116,7 @@ contains
     type(cycle_watch_t), intent(inout) :: cycles
     integer :: i
     call self%guide%end_revolution(cycles)
+    call self%train%end_revolution(cycles%ended + 1)
     do i = 1, self%n_pins
       if (allocated(self%pins(i)%wear)) call self%pins(i)%wear%mark_revolution(cycles%ended + 1)
     end do
@@ -146,6 +152,7 @@ contains
     end do
     call self%guide%search(method, scene, t, now, self%figures)
     call self%elastic%search(method, scene, t, now, self%figures%elastic)
+    call self%train%search(scene, t, now)
     if (present(cycles)) call cycles%search_machine(method, scene, t, now)
   end subroutine search
 
@@ -161,12 +168,13 @@ contains
     call self%guide%record_values(scene, now, self%figures)
   end subroutine add_row
 
-  !> Account for the elastic members in an evaluation.
+  !> Account for the elastic members and the crankshaft in an evaluation.
   subroutine add_elastic(self, scene, now)
     class(run_extremes_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     type(evaluation_t), intent(in) :: now
     call self%elastic%record_values(scene, now, self%figures%elastic)
+    call self%train%record_values(scene, now)
   end subroutine add_elastic
 
   !> Account for the time since the last accepted point, and for the work of friction up to (t, y).
@@ -192,6 +200,7 @@ contains
   subroutine change_phases(self)
     class(run_extremes_t), intent(inout) :: self
     integer :: i
+    call self%train%change_rates()
     do i = 1, self%n_pins
       call self%pins(i)%change_phase()
     end do
@@ -229,9 +238,8 @@ contains
     type(scene_t), intent(in) :: scene
     type(cycle_watch_t), intent(in) :: cycles
     integer :: i, revolutions
-    revolutions = 1
-    if (allocated(scene%gas)) revolutions = scene%gas%revolutions
-    do i = 1, scene%n_joints
+    revolutions = scene%forced_revolutions()
+    do i = 1, size(scene%joints)
       associate (place => scene%joints(i)%place)
         self%figures%pin(place)%film_change = cycles%film_change(place, revolutions)
       end associate

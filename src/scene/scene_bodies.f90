@@ -10,9 +10,14 @@ contains
 
   module procedure find_general_accelerations
     logical :: solvable
+    if (allocated(self%given_load)) then
+      call move_without_mechanism(self, t, y, now, in_domain)
+      return
+    end if
     call move_bodies(self, joints, t, y, now, in_domain)
     if (.not. in_domain) return
     call self%find_loads(self%n_joints, joints, y, now)
+    if (allocated(self%chain%train)) call load_train(self, now)
     call load_guide(self, now)
     call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment, solvable)
     if (solvable) call add_guide_friction(self, joints, now, solvable)
@@ -48,7 +53,21 @@ contains
       if (in_domain) call place_piston(self%chain%bodies%piston, now%motion)
     end if
     if (allocated(self%chain%elastic)) call self%chain%elastic%read_state(t, y, now%motion)
+    if (allocated(self%chain%train)) call self%chain%train%read_state(t, y, now%motion)
   end subroutine place_more_bodies
+
+  !> Set the forces of the gas in the other cylinders.
+  pure subroutine load_train(self, now)
+    class(scene_t), intent(in) :: self
+    type(evaluation_t), intent(inout) :: now
+    integer :: i
+    associate (train => now%motion%train)
+      do i = 1, size(self%chain%train%cylinders)
+        train%gas_force(i) = 0
+        if (allocated(self%gas)) train%gas_force(i) = self%other_gas%force(self%gas, i, train%angle(i))
+      end do
+    end associate
+  end subroutine load_train
 
   !> Add the loads of the guide to those of joints and gas; the friction force only if it follows from the loads of the piston pin
   !> known so far.
@@ -141,7 +160,13 @@ contains
     class(scene_t), intent(in) :: self
     type(evaluation_t), intent(inout) :: now
     associate (chain => self%chain, motion => now%motion, loads => now%loads)
-      if (allocated(chain%elastic)) then
+      if (allocated(chain%train)) then
+        associate (speed => chain%driven_speed(motion))
+          now%power = now%power + (now%crank_moment - chain%drive%damping*speed)*speed + chain%train%damping_power(motion) &
+            + chain%train%gas_power(motion)
+        end associate
+        if (allocated(chain%elastic)) now%power = now%power + chain%elastic%damping_power(motion)
+      else if (allocated(chain%elastic)) then
         now%power = now%power + chain%elastic%power(motion, now%crank_moment, chain%drive%damping)
       else
         now%power = (now%crank_moment - chain%drive%damping*motion%crank_speed)*motion%crank_speed + now%power
@@ -176,6 +201,29 @@ contains
       call elastic%claim(self%layout, self%chain%bodies, self%speed_scale(), own_speed)
     end associate
   end procedure claim_elastic
+
+  module procedure claim_train
+    associate (train => self%chain%train)
+      train%start_angle = self%start_angle
+      train%start_speed = self%start_speed
+      train%holds_station = .not. self%chain%drive%free_crank .and. train%driven /= train%full
+      if (self%runs_up .and. train%holds_station) train%run_up = self%chain%varying
+      call train%claim(self%layout, self%chain%bodies, self%speed_scale())
+    end associate
+  end procedure claim_train
+
+  module procedure other_cranks
+    type(motion_t) :: motion
+    integer :: i
+    associate (train => self%chain%train)
+      call self%read_crank(t, y, motion)
+      call train%read_state(t, y, motion)
+      do i = 1, size(train%cylinders)
+        angle(i) = motion%train%angle(i)
+        speed(i) = motion%train%speed(train%cylinders(i)%station)
+      end do
+    end associate
+  end procedure other_cranks
 
   module procedure twist_frequency
     associate (bodies => self%chain%bodies)

@@ -28,9 +28,11 @@ contains
       call number(i, scene%joints(i)%n_events)
     end do
     if (allocated(scene%gas)) call number(of_gas, scene%gas%n_events)
+    if (allocated(scene%other_gas)) call number(of_other_gas, scene%other_gas%n_events(scene%gas))
     if (allocated(scene%turns)) call number(of_turns, n_turn_events)
     if (allocated(scene%wear_cycle)) call number(of_wear, 1)
     if (allocated(scene%guide)) call number(of_guide, n_guide_events(scene%guide))
+    if (allocated(scene%given_load)) call number(of_load, scene%given_load%n_events())
 
   contains
 
@@ -48,6 +50,7 @@ contains
   module procedure all_events
     integer :: i, k, n
     logical :: needs_forces
+    real(dp) :: angles(most_cylinders), speeds(most_cylinders)   ! of the other cylinders
     needs_forces = .false.
     k = 0
     do i = 1, self%n_joints
@@ -59,6 +62,14 @@ contains
     if (allocated(self%gas)) then
       n = self%gas%n_events
       call self%gas%events(self%crank_angle(t, y), self%crank_speed(t, y), g(k + 1:k + n), g_rate(k + 1:k + n))
+      k = k + n
+    end if
+    if (allocated(self%other_gas)) then
+      n = self%other_gas%n_events(self%gas)
+      if (n > 0) then
+        call other_cranks(self, t, y, angles, speeds)
+        call self%other_gas%events(self%gas, angles, speeds, g(k + 1:k + n), g_rate(k + 1:k + n))
+      end if
       k = k + n
     end if
     if (allocated(self%turns)) then
@@ -76,6 +87,10 @@ contains
       g(k + n_corners + 1:k + n) = -1
       g_rate(k + n_corners + 1:k + n) = 0
       needs_forces = needs_forces .or. corners_may_lose_force(self)
+    end if
+    if (allocated(self%given_load)) then   ! there is no guide then
+      if (self%given_load%n_events() > 0) &
+        call self%given_load%event(self%crank_angle(t, y), self%crank_speed(t, y), g(k + 1), g_rate(k + 1))
     end if
     if (needs_forces) call find_force_events(self, t, y, g, g_rate)
   end procedure all_events
@@ -116,9 +131,14 @@ contains
     action = event_continue
     associate (i => self%event_of(index)%joint, event => self%event_of(index)%event)
       if (i == of_gas) then
+        if (allocated(self%other_gas)) call pass_others(self, event, t, y, .false.)
         call self%gas%pass(event, self%crank_angle(t, y), self%crank_speed(t, y))
+      else if (i == of_other_gas) then
+        call pass_others(self, event, t, y, .true.)
       else if (i == of_turns) then
         call self%turns%pass(event, self%crank_angle(t, y), action)
+      else if (i == of_load) then
+        call self%given_load%pass(self%crank_speed(t, y))
       else if (i == of_wear) then
         self%wear_cycle%begin = self%crank_angle(t, y)
       else if (i == of_guide .and. event > n_corners) then
@@ -144,16 +164,34 @@ contains
     self%mode = mode_of(self)
   end procedure handle_event
 
+  !> Handle an event of the gas in the other cylinders, or in that of the mechanism, for those that pass a bound of the cycle with
+  !> it.
+  subroutine pass_others(scene, event, t, y, is_own)
+    class(scene_t), intent(inout) :: scene
+    integer, intent(in) :: event
+    real(dp), intent(in) :: t, y(:)
+    logical, intent(in) :: is_own   !! the event is that of the other cylinders
+    real(dp) :: angles(most_cylinders), speeds(most_cylinders), g(scene%gas%n_events), g_rate(scene%gas%n_events)
+    integer :: n
+    n = size(scene%chain%train%cylinders)
+    call other_cranks(scene, t, y, angles, speeds)
+    if (is_own .or. allocated(scene%gas%cycle)) call scene%other_gas%pass(scene%gas, event, angles(:n), speeds(:n), is_own)
+    if (.not. (is_own .and. allocated(scene%gas%cycle))) return
+    call scene%gas%events(scene%crank_angle(t, y), scene%crank_speed(t, y), g, g_rate)
+    if (scene%other_gas%is_now(g(event), scene%crank_angle(t, y))) &
+      call scene%gas%pass(event, scene%crank_angle(t, y), scene%crank_speed(t, y))
+  end subroutine pass_others
+
   !> The discrete state, for the choice of the integration method.
   pure integer function mode_of(scene)
     class(scene_t), intent(in) :: scene
     integer :: i
     mode_of = 0
-    do i = 1, size(scene%joints)
+    do i = 1, scene%n_joints
       mode_of = mode_of + scene%joints(i)%phase*n_phases**(i - 1)
     end do
     if (.not. allocated(scene%guide)) return
-    if (any(scene%guide%touches)) mode_of = mode_of + n_phases**size(scene%joints)
+    if (any(scene%guide%touches)) mode_of = mode_of + n_phases**scene%n_joints
   end function mode_of
 
   !> Choose the state of set-valued friction of one joint: its direction of sliding, or sticking.
@@ -236,6 +274,10 @@ contains
       if (.not. may_touch(self%joints(i))) cycle
       if (contact(1) >= -rounding*self%joints(i)%bearing%clearance) call self%joints(i)%begin_contact(contact(2))
     end do
+    do i = self%n_joints + 1, size(self%joints)
+      self%joints(i)%phase = self%joints(i)%phase_apart()
+    end do
+    if (allocated(self%given_load)) call self%given_load%start(self%crank_angle(0.0_dp, y), self%start_speed)
     if (allocated(self%guide)) call prepare_corners(self, y)
     do i = 1, self%n_joints
       if (self%joints(i)%phase == phase_contact) call decide_at_wall(self, i, y)
@@ -253,6 +295,7 @@ contains
     if (allocated(self%guide)) then
       if (self%guide%is_loose .and. .not. any(self%guide%touches)) call prepare_corners(self, y)
     end if
+    if (allocated(self%given_load)) call self%given_load%start(self%crank_angle(t, y), self%start_speed)
     call find_lost_forces(self, t, y)
     self%mode = mode_of(self)
   end procedure complete_state

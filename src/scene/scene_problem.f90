@@ -5,17 +5,21 @@ module scene_problem
   use state_layout, only: layout_t, coordinates_t, slice_t
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
+  use train_motion, only: most_cylinders
   use joint_places, only: places, n_places, in_order
   use chain_loads, only: loads_t, force_size
   use mechanism_chain, only: chain_t
   use crank_rod, only: accelerate_crank_rod
   use ideal_chain, only: accelerate_ideal_chain
   use joint_evaluation, only: joint_evaluation_t, clear_loads
-  use clearance_joint, only: clearance_joint_t, most_joints, n_phases, phase_free, phase_film, phase_contact
+  use clearance_joint, only: clearance_joint_t, most_bearings, n_phases, phase_free, phase_film, phase_contact
   use joint_events, only: penetration_and_rate
   use sticking, only: hold_surfaces
+  use carried_bearing, only: carried_bearing_t
+  use bearing_load, only: bearing_load_t
   use piston_guide, only: piston_guide_t, guide_loads_t
   use working_gas, only: working_gas_t
+  use other_cylinders, only: other_cylinders_t
   use crank_turns, only: crank_turns_t, wear_cycle_t
   implicit none
   private
@@ -27,24 +31,25 @@ module scene_problem
   !> Events reported in the trace.
   integer, parameter :: event_none = 0, event_contact_begins = 1, event_contact_ends = 2
 
-  !> The results of one evaluation of a scene. Arrays have one element for each joint with clearance. The right-hand side sets only
-  !> the components that it needs.
+  !> The results of one evaluation of a scene. Arrays have one element for each joint that is not ideal. The right-hand side sets
+  !> only the components that it needs.
   type :: evaluation_t
     type(motion_t) :: motion
     type(accelerations_t) :: accelerations
     type(loads_t) :: loads
-    type(joint_evaluation_t) :: joint(most_joints)
+    type(joint_evaluation_t) :: joint(most_bearings)
     type(guide_loads_t) :: guide    !! of a guide that is not ideal
     real(dp) :: crank_moment        !! moment of the drive on the crank [N m]
     real(dp) :: cylinder_pressure   !! [Pa]
     real(dp) :: power               !! of all non-conservative forces and the drive [W]
   end type evaluation_t
 
-  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2, of_wear = -3   !! owners of events other than joints
+  !> Owners of events other than joints.
+  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2, of_wear = -3, of_other_gas = -4, of_load = -5
 
   !> The owner of an event function of the integrator.
   type :: event_owner_t
-    integer :: joint = 0            !! or of_gas, of_turns, of_guide, of_wear
+    integer :: joint = 0            !! or of_gas, of_turns, of_guide, of_wear, of_other_gas, of_load
     integer :: event = 0            !! number of the event within its owner
   end type event_owner_t
 
@@ -65,11 +70,14 @@ module scene_problem
   type, extends(ode_problem_t) :: scene_t
     type(chain_t) :: chain
     integer :: n_joints = 0         !! number of joints with clearance
-    type(clearance_joint_t), allocatable :: joints(:)
-    integer :: joint_at(n_places) = 0   !! index of the joint with clearance at each place; 0: an ideal pin, or none
+    type(clearance_joint_t), allocatable :: joints(:)      !! these, and then the joints of the carried bearings
+    type(carried_bearing_t), allocatable :: carried(:)     !! bearings without influence on the mechanism
+    type(bearing_load_t), allocatable :: given_load        !! of a bearing by itself; there is no mechanism
+    integer :: joint_at(n_places) = 0   !! index of the joint at each place; 0: an ideal pin, or none
     integer, allocatable :: reported(:) !! places with results: the first one, and those with a joint
     type(piston_guide_t), allocatable :: guide   !! not allocated: the guide is ideal
     type(working_gas_t), allocatable :: gas
+    type(other_cylinders_t), allocatable :: other_gas   !! in the other cylinders of an engine with gas
     type(crank_turns_t), allocatable :: turns   !! turns of a free crank that end the run
     type(wear_cycle_t), allocatable :: wear_cycle   !! turns of the crank after which the shape of a worn bore changes
     real(dp) :: start_angle = 0     !! crank angle at t = 0 [rad]
@@ -84,6 +92,7 @@ module scene_problem
     type(slice_t) :: measures       !! indices of the integrals on request
     logical :: measures_loss = .false.   !! the last of them is the energy taken by the joints
     type(work_part_t), allocatable :: parts(:)   !! parts of the work, if they are told apart
+    integer :: n_works = 0          !! number of them; the following ones are works in carried bearings, which no body feels
     logical :: has_shared_loads = .false.   !! of these, film and contact act at the same time in a joint
     integer :: other_part = 0       !! the part that is the whole work without that of the others; 0: none
     logical :: is_plain = .true.    !! rigid bodies, an ideal guide and a drive that does not vary
@@ -114,6 +123,7 @@ module scene_problem
     procedure :: is_singular
     procedure :: crank_angle
     procedure :: crank_speed
+    procedure :: forced_revolutions
     procedure :: work
     procedure :: work_of_torque
     procedure :: measure_joint
@@ -216,10 +226,38 @@ module scene_problem
       logical, intent(out) :: in_domain
     end subroutine move_bodies
 
+    !> Motion and loads of the carried bearings, from the forces in the chain. `in_domain` is false if a pin is at the wall.
+    pure module subroutine look_at_carried(self, y, now, in_domain)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: y(self%n)
+      type(evaluation_t), intent(inout) :: now
+      logical, intent(out) :: in_domain
+    end subroutine look_at_carried
+
+    !> Set the motion of crank and rod in a scene without mechanism. `in_domain` is false if there is no rod angle.
+    pure module subroutine move_without_mechanism(self, t, y, now, in_domain)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: t, y(self%n)
+      type(evaluation_t), intent(inout) :: now
+      logical, intent(out) :: in_domain
+    end subroutine move_without_mechanism
+
     !> Claim the states of the elastic members.
     module subroutine claim_elastic(self)
       class(scene_t), intent(inout) :: self
     end subroutine claim_elastic
+
+    !> Claim the states of stations and dampers.
+    module subroutine claim_train(self)
+      class(scene_t), intent(inout) :: self
+    end subroutine claim_train
+
+    !> Crank angles of the other cylinders from their axes [rad] and speeds of their stations [rad/s] at (t, y).
+    pure module subroutine other_cranks(self, t, y, angle, speed)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: t, y(:)
+      real(dp), intent(out) :: angle(most_cylinders), speed(most_cylinders)
+    end subroutine other_cranks
 
     !> Tell the parts of the work apart; must be called before the run. One part follows from the whole work, the others are
     !> quadratures without influence on the steps.
@@ -263,7 +301,10 @@ contains
         call clear_loads(now%joint(i))
       end do
     end if
+    if (size(self%carried) > 0) call clear_chain(now)
     call find_accelerations(self, self%n_joints, self%joints, t, y, now, in_domain)
+    if (.not. in_domain) return
+    if (size(self%carried) > 0) call look_at_carried(self, y, now, in_domain)
     if (.not. in_domain) return
     if (self%crank_moves) then
       dydt(self%crank%position) = now%motion%crank_speed
@@ -272,9 +313,15 @@ contains
     call set_rates(self%n_joints, self%joints, now, dydt)
     dydt(self%work_at) = now%power
     if (.not. self%has_more_rates) return
+    do i = 1, size(self%carried)
+      associate (it => self%carried(i))
+        dydt(it%place%first:it%place%last) = now%joint(it%joint)%eccentricity_rate
+      end associate
+    end do
     if (allocated(self%guide)) call self%guide%set_rates(now%motion%tilting, now%accelerations%offset, now%accelerations%tilt, &
       dydt)
     if (allocated(self%chain%elastic)) call self%chain%elastic%set_rates(now%motion, now%accelerations, dydt)
+    if (allocated(self%chain%train)) call self%chain%train%set_rates(now%motion, now%accelerations, dydt)
     do i = 1, self%n_joints
       if (self%joints(i)%has_own_rates) call self%joints(i)%set_own_rates(now%joint(i), dydt)
     end do
@@ -312,19 +359,26 @@ contains
     logical, intent(out) :: in_domain
     integer :: i
     evaluation%cylinder_pressure = 0
-    evaluation%loads%force = 0
-    evaluation%loads%moment = 0
-    evaluation%motion%crank_pin = 0
-    evaluation%motion%crank_pin_rate = 0
+    call clear_chain(evaluation)
     do i = 1, self%n_joints
       call clear_loads(evaluation%joint(i))
     end do
     call find_accelerations(self, self%n_joints, self%joints, t, y, evaluation, in_domain)
-    if (in_domain) call self%chain%move_piston(evaluation%motion)
+    if (in_domain .and. .not. allocated(self%given_load)) call self%chain%move_piston(evaluation%motion)
     do i = 1, self%n_joints
       call self%joints(i)%complete(evaluation%motion, in_domain, y, evaluation%joint(i))
     end do
+    if (in_domain .and. size(self%carried) > 0) call look_at_carried(self, y, evaluation, in_domain)
   end subroutine evaluate
+
+  !> Set what forces between the bodies depend on, and what a chain without clearance leaves as it is.
+  pure subroutine clear_chain(now)
+    type(evaluation_t), intent(inout) :: now
+    now%loads%force = 0
+    now%loads%moment = 0
+    now%motion%crank_pin = 0
+    now%motion%crank_pin_rate = 0
+  end subroutine clear_chain
 
   !> Compute motion, loads, accelerations and power. `in_domain` is false if an eccentricity is not admissible. (The joints are
   !> passed as an argument of fixed size, which avoids looking up bounds and strides. The equations of the two most common chains
@@ -435,20 +489,22 @@ contains
   subroutine claim(self)
     class(scene_t), intent(inout) :: self
     integer :: i
-    self%n_joints = size(self%joints)
     self%joint_at = 0
-    do i = 1, self%n_joints
+    do i = 1, size(self%joints)
       self%joint_at(self%joints(i)%place) = i
     end do
     self%reported = pack(in_order, in_order == in_order(1) .or. self%joint_at(in_order) > 0)
     self%highest_mode = n_phases**self%n_joints - 1
     if (allocated(self%guide)) self%highest_mode = 2*(self%highest_mode + 1) - 1
     self%crank_moves = self%chain%drive%free_crank .or. self%chain%has_crankshaft()
+    if (allocated(self%chain%train)) self%crank_moves = self%chain%train%frees_crank(self%chain%drive)
     call claim_states(self)
     call self%layout%count_again()
     call claim_states(self)
-    self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying))
-    self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide)
+    self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying) &
+      .or. allocated(self%chain%train) .or. allocated(self%given_load))
+    self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide) &
+      .or. allocated(self%chain%train) .or. size(self%carried) > 0
     call self%set_layout()
   end subroutine claim
 
@@ -461,8 +517,12 @@ contains
     do i = 1, self%n_joints
       call self%joints(i)%claim(self%layout, self%speed_scale(), self%span)
     end do
+    do i = 1, size(self%carried)
+      call self%carried(i)%claim(self%layout, self%joints(self%carried(i)%joint))
+    end do
     if (allocated(self%guide)) call self%guide%claim(self%layout, self%speed_scale(), self%span)
     if (allocated(self%chain%elastic)) call claim_elastic(self)
+    if (allocated(self%chain%train)) call claim_train(self)
     call self%layout%claim_quadratures(1, self%energy_scale(), work)
     self%work_at = work%first
   end subroutine claim_states
@@ -499,7 +559,8 @@ contains
   pure logical function work_tells(self)
     class(scene_t), intent(in) :: self
     work_tells = self%chain%drive%free_crank .and. .not. (self%chain%drive%damping > 0 .or. allocated(self%gas) &
-      .or. allocated(self%chain%varying) .or. allocated(self%guide) .or. allocated(self%chain%elastic))
+      .or. allocated(self%chain%varying) .or. allocated(self%guide) .or. allocated(self%chain%elastic) &
+      .or. allocated(self%chain%train))
   end function work_tells
 
   !> Force of the joint at a place on its pin [N]; at a place without joint that on the pin of its ideal pin.
@@ -554,6 +615,9 @@ contains
     do i = 1, self%n_joints
       call self%joints(i)%set_start(y)
     end do
+    do i = 1, size(self%carried)
+      call self%carried(i)%set_start(self%joints(self%carried(i)%joint), y)
+    end do
     if (allocated(self%guide)) call self%guide%set_start(y)
   end function initial_state
 
@@ -563,7 +627,7 @@ contains
     real(dp), intent(in) :: y(:)
     integer :: i
     is_singular = .false.
-    do i = 1, self%n_joints
+    do i = 1, size(self%joints)
       is_singular = is_singular .or. self%joints(i)%is_singular(y)
     end do
   end function is_singular
@@ -591,6 +655,14 @@ contains
       if (self%runs_up) crank_speed = self%chain%varying%speed(t)
     end if
   end function crank_speed
+
+  !> Number of revolutions after which the gas pressure, or the given load of a bearing, repeats; else 1.
+  pure integer function forced_revolutions(self) result(revolutions)
+    class(scene_t), intent(in) :: self
+    revolutions = 1
+    if (allocated(self%gas)) revolutions = self%gas%revolutions
+    if (allocated(self%given_load)) revolutions = self%given_load%revolutions()
+  end function forced_revolutions
 
   !> Work of all non-conservative forces and the drive so far [J].
   pure real(dp) function work(self, y)
@@ -629,6 +701,7 @@ contains
         + (b%crank%mass + b%rod%mass + b%piston%mass)*norm2(b%gravity)*b%crank%length
       if (self%chain%has_crankshaft()) energy_scale = energy_scale &
         + 0.5_dp*self%chain%elastic%crankshaft%flywheel_inertia*self%speed_scale()**2
+      if (allocated(self%chain%train)) energy_scale = energy_scale + self%chain%train%energy_scale(self%speed_scale())
       do i = 1, self%n_joints
         energy_scale = energy_scale + 0.5_dp*(b%rod%mass + b%piston%mass)*self%joints(i)%own_speed(self%span)**2
       end do

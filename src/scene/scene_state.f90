@@ -8,6 +8,8 @@ contains
 
   module procedure declare
     real(dp) :: angle, speed, since_wear
+    real(dp) :: angles(most_cylinders), speeds(most_cylinders)   ! of the other cylinders
+    integer :: n
     integer :: i
     list%of_totals = .true.
     call list%add('time', t, 's', 'time that the run has reached')
@@ -21,9 +23,18 @@ contains
     do i = 1, self%n_joints
       call self%joints(i)%declare(list, y)
     end do
+    do i = 1, size(self%carried)
+      call self%carried(i)%declare(list, self%joints(self%carried(i)%joint), y)
+    end do
     if (allocated(self%guide)) call self%guide%declare(list, y)
     if (allocated(self%chain%elastic)) call self%chain%elastic%declare(list, t, y, angle, speed)
+    if (allocated(self%chain%train)) call self%chain%train%declare(list, t, y, angle, speed)
     if (allocated(self%gas)) call self%gas%declare(list, angle, speed)
+    if (allocated(self%other_gas)) then
+      call other_cranks(self, t, y, angles, speeds)
+      n = size(self%chain%train%cylinders)
+      if (n > 0) call self%other_gas%declare(list, self%gas, angles(:n), speeds(:n))
+    end if
     if (.not. allocated(self%wear_cycle)) return
     since_wear = angle - self%wear_cycle%begin
     list%of_totals = .true.
@@ -44,8 +55,7 @@ contains
     character(len=:), allocatable :: key
     real(dp) :: cycle
     if (.not. goes_on) then
-      cycle = two_pi
-      if (allocated(scene%gas)) cycle = scene%gas%revolutions*two_pi
+      cycle = scene%forced_revolutions()*two_pi
       angle = modulo(angle, cycle)
       scene%start_angle = angle
     end if

@@ -9,7 +9,7 @@ contains
     integer :: i, kind
     allocate (self%parts(0))
     if (allocated(self%gas)) call add(by_gas, 0)
-    call add(by_drive, 0)
+    if (.not. allocated(self%given_load)) call add(by_drive, 0)
     if (self%chain%drive%damping > 0) call add(by_damping, 0)
     do i = 1, self%n_joints
       do kind = 1, n_kinds
@@ -17,7 +17,13 @@ contains
       end do
     end do
     if (allocated(self%guide)) call add(by_guide, 0)
-    if (allocated(self%chain%elastic)) call add(by_elastic, 0)
+    if (allocated(self%chain%elastic) .or. has_stations(self)) call add(by_elastic, 0)
+    self%n_works = size(self%parts)
+    do i = self%n_joints + 1, size(self%joints)
+      do kind = 1, n_kinds
+        if (self%joints(i)%has_kind(kind)) call add(kind, i)
+      end do
+    end do
     self%has_shared_loads = any([(self%joints(i)%shares_load(), i=1, self%n_joints)])
     call choose_other_part(self)
     do i = 1, size(self%parts)
@@ -41,25 +47,34 @@ contains
     type(scene_t), intent(inout) :: scene
     integer :: i
     scene%other_part = 0
-    if (size(scene%parts) > 1 .or. .not. is_constant_torque(scene)) scene%other_part = size(scene%parts)
-    do i = size(scene%parts), 1, -1
+    if (scene%n_works > 1 .or. .not. is_constant_torque(scene)) scene%other_part = scene%n_works
+    do i = scene%n_works, 1, -1
       if (scene%parts(i)%what == of_film) scene%other_part = i
     end do
   end subroutine choose_other_part
 
+  !> Whether the crankshaft has several stations.
+  pure logical function has_stations(scene)
+    type(scene_t), intent(in) :: scene
+    has_stations = .false.
+    if (allocated(scene%chain%train)) has_stations = scene%chain%train%is_chain
+  end function has_stations
+
   !> Whether the drive is a constant torque, whose work follows from the angle.
   pure logical function is_constant_torque(scene)
     type(scene_t), intent(in) :: scene
-    is_constant_torque = scene%chain%drive%free_crank .and. .not. (allocated(scene%chain%varying) .or. scene%chain%has_crankshaft())
+    is_constant_torque = scene%chain%drive%free_crank .and. .not. (allocated(scene%chain%varying) &
+      .or. scene%chain%has_crankshaft() .or. has_stations(scene))
   end function is_constant_torque
 
-  !> Claim the quadrature of a part. Where the state has nothing but quadratures it takes part in the error control, since otherwise
-  !> the steps would be too long for it.
+  !> Claim the quadrature of a part. Where the mechanism has nothing but quadratures it takes part in the error control, since
+  !> otherwise the steps would be too long for it.
   subroutine claim_quadrature(scene, part)
     type(scene_t), intent(inout) :: scene
     type(work_part_t), intent(inout) :: part
     type(slice_t) :: one
-    call scene%layout%claim_quadratures(1, merge(0.0_dp, scene%energy_scale(), scene%n_positions > 0), one)
+    call scene%layout%claim_quadratures(1, merge(0.0_dp, scene%energy_scale(), scene%n_positions > 0 .or. &
+      part%joint > scene%n_joints), one)
     part%at = one%first
   end subroutine claim_quadrature
 
@@ -93,6 +108,7 @@ contains
       speed = now%motion%piston_velocity
       if (scene%chain%bodies%piston%is_loose) speed = now%motion%tilting%com_velocity
       power = -scene%gas%force(now%cylinder_pressure)*speed
+      if (allocated(scene%chain%train)) power = power + scene%chain%train%gas_power(now%motion)
     case (by_guide)
       if (scene%guide%is_loose) then
         associate (at => now%motion%tilting)
@@ -103,10 +119,10 @@ contains
         power = now%guide%friction_force*now%motion%piston_velocity
       end if
     case (by_elastic)
-      power = scene%chain%elastic%damping_power(now%motion)
+      if (allocated(scene%chain%elastic)) power = scene%chain%elastic%damping_power(now%motion)
+      if (has_stations(scene)) power = power + scene%chain%train%damping_power(now%motion)
     case default
-      speed = now%motion%crank_speed
-      if (allocated(scene%chain%elastic)) speed = scene%chain%elastic%driven_speed(now%motion)
+      speed = scene%chain%driven_speed(now%motion)
       power = now%crank_moment*speed
       if (what == by_damping) power = -scene%chain%drive%damping*speed**2
     end select
@@ -122,6 +138,6 @@ contains
         works(i) = self%work_of_torque(t, y)
       end if
     end do
-    if (self%other_part > 0) works(self%other_part) = self%work(y) - sum(works)
+    if (self%other_part > 0) works(self%other_part) = self%work(y) - sum(works(:self%n_works))
   end procedure works
 end submodule scene_works

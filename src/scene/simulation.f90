@@ -23,7 +23,10 @@ module simulation
   use run_start, only: find_start
   use run_figures, only: run_figures_t
   use film_snapshots, only: film_field_t
+  use history_record, only: history_record_t
+  use joint_places, only: n_places, in_order
   use wear_record, only: wear_profile_t
+  use train_record, only: train_result_t
   use trace_sink, only: trace_sink_t
   use constants, only: two_pi, degree
   implicit none
@@ -36,12 +39,14 @@ module simulation
     type(step_statistics_t) :: statistics
     type(run_figures_t) :: figures
     type(film_field_t), allocatable :: films(:)  !! pressure fields, if the case asks for them
+    type(history_record_t), allocatable :: histories(:)  !! films with memory, to be marched, if the case asks for them
     type(wear_profile_t), allocatable :: wear(:) !! worn surfaces, if the case asks for them
     real(dp), allocatable :: time_with(:, :)  !! method auto: time with Adams and with Radau, for each mode, (2, 0:highest mode) [s]
     logical :: can_go_on = .false.  !! the run was stopped from outside or by a limit
     logical :: energy_is_poor = .false.          !! the run is done, but the user must be told of its energy residual
     type(period_watch_t) :: periods              !! search for a periodic motion that ends the run
     type(answer_t), allocatable :: answers(:)    !! of the last whole cycle, if the case asks for them
+    type(train_result_t), allocatable :: train(:)    !! of several cylinders on one crankshaft
     type(exponent_t) :: exponent                 !! Lyapunov exponent, if it is requested
   end type run_report_t
 
@@ -152,6 +157,7 @@ contains
         allocate (recorder%films)
         call recorder%films%prepare(pack(case%output%snapshot_times, case%output%snapshot_times >= t), scene)
       end if
+      if (.not. ideal_joint) call prepare_histories(case, recorder%histories)
       call recorder%begin(scene, t, y)
       self%t = t
       call self%integration%begin(scene, self%method, t, y, recorder%rows%end_time, case%integrator%max_steps)
@@ -159,6 +165,20 @@ contains
       self%input = [(input_value(scene, self%inputs(i), t, y), i=1, size(self%inputs))]
     end associate
   end subroutine begin
+
+  !> Prepare the records of the films with memory that a case asks for; none: not allocated.
+  subroutine prepare_histories(case, histories)
+    type(case_t), intent(in) :: case
+    type(history_record_t), allocatable, intent(out) :: histories(:)
+    integer, allocatable :: at(:)
+    integer :: i
+    at = pack(in_order, [(allocated(case%joints(in_order(i))%history%march), i=1, n_places)])
+    if (size(at) == 0) return
+    allocate (histories(size(at)))
+    do i = 1, size(at)
+      call histories(i)%prepare(case, at(i))
+    end do
+  end subroutine prepare_histories
 
   !> Go on to time t [s], or through `most_steps` more steps (0: no limit), or to the end of the run if that comes first. Results
   !> do not depend on where a run pauses. After the end of the motion, the exponent is measured, a revolution in each call that has
@@ -339,8 +359,10 @@ contains
     allocate (report%answers(0))
     if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, &
       self%recorder%periods, self%recorder%extremes)
+    if (allocated(self%scene%chain%train)) report%train = train_results(self)
     if (self%has_cycles) call move_alloc(self%recorder%cycles, cycles)
     if (allocated(self%recorder%films)) report%films = self%recorder%films%fields(self%scene)
+    if (allocated(self%recorder%histories)) report%histories = self%recorder%histories
     associate (case => self%case, scene => self%scene, t => self%integration%t, y => self%integration%y)
       report%status = 'done'
       if (self%status /= integration_done) then
@@ -389,4 +411,21 @@ contains
     real(dp), intent(in) :: crank_travel   !! [rad]
     energy_limit = min(0.05_dp, max(1e-10_dp, 1e3_dp*tolerance*max(1.0_dp, abs(crank_travel)/(100*two_pi))))
   end function energy_limit
+
+  !> Results of several cylinders on one crankshaft.
+  function train_results(run) result(list)
+    type(run_t), intent(in) :: run
+    type(train_result_t), allocatable :: list(:)
+    integer :: revolutions, ended, followed
+    revolutions = 1
+    if (allocated(run%scene%gas)) revolutions = run%scene%gas%revolutions
+    if (run%recorder%periods%period > 0) revolutions = run%recorder%periods%period
+    ended = 0
+    followed = 0
+    if (allocated(run%recorder%cycles)) then
+      ended = run%recorder%cycles%ended
+      followed = run%recorder%cycles%followed
+    end if
+    list = run%recorder%extremes%train%results(run%scene, ended, followed, revolutions)
+  end function train_results
 end module simulation

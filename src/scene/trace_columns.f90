@@ -9,6 +9,7 @@ module trace_columns
   use joint_columns, only: add_joint_columns
   use guide_columns, only: add_guide_columns
   use elastic_columns, only: add_elastic_columns
+  use train_columns, only: add_train_columns
   use case_definition, only: case_t
   use scene_problem, only: scene_t, evaluation_t
   use scene_builder, only: assemble_scene
@@ -119,23 +120,33 @@ contains
     real(dp), intent(in) :: t, work, initial_energy
     type(evaluation_t), intent(in) :: now
     type(trace_row_t), intent(inout) :: row
+    type(reactions_t) :: reaction
     real(dp) :: energy
     integer :: i
     call row%add('time[s]', t, 'time since the start of the run')
+    if (allocated(scene%given_load)) then
+      call add_crank_angle(now%motion, row)
+      do i = 1, size(scene%joints)
+        call add_joint_columns(scene%joints(i), now%joint(i), row)
+      end do
+      return
+    end if
     call add_motion(now%motion, now%accelerations, row)
     call row%add('crank_moment[N.m]', now%crank_moment, &
       'moment of the drive on the crank, positive in the sense of crank_angle; at constant speed the one that holds the speed')
-    call add_forces(scene, now, row)
+    call add_forces(scene, now, row, reaction)
     energy = 0
     if (row%wants(2)) energy = scene%chain%energy(now%motion)
     call row%add('energy[J]', energy, 'kinetic and potential energy of all bodies, with the energy stored in elastic members')
     call row%add('energy_residual[J]', energy - initial_energy - work, &
       'energy minus initial energy minus the work of all non-conservative forces and of the drive; 0 for an exact integration')
-    do i = 1, scene%n_joints
+    do i = 1, size(scene%joints)
       call add_joint_columns(scene%joints(i), now%joint(i), row)
     end do
     if (allocated(scene%guide)) call add_guide_columns(scene%guide, now%motion, now%accelerations, now%guide, row)
     if (allocated(scene%chain%elastic)) call add_elastic_columns(scene%chain%elastic, now%motion, now%accelerations, row)
+    if (allocated(scene%chain%train)) &
+      call add_train_columns(scene%chain%train, now%motion, now%accelerations, reaction, row)
     if (allocated(scene%gas)) call scene%gas%add_columns(now%motion%sin_crank, now%motion%cos_crank, now%cylinder_pressure, row)
   end subroutine add_columns
 
@@ -144,7 +155,7 @@ contains
     type(accelerations_t), intent(in) :: a
     type(trace_row_t), intent(inout) :: row
     real(dp) :: rod_angle
-    call row%add('crank_angle[rad]', m%crank_angle, 'angle of the crank from +x towards +y, counted on over whole revolutions')
+    call add_crank_angle(m, row)
     rod_angle = 0
     if (row%wants(1)) rod_angle = atan2(m%sin_rod, m%cos_rod)
     call row%add('rod_angle[rad]', rod_angle, 'angle of the connecting rod from the cylinder axis, positive from +x towards -y')
@@ -157,16 +168,22 @@ contains
     call row%add('piston_acceleration[m/s2]', a%piston, 'rate of piston_velocity')
   end subroutine add_motion
 
+  pure subroutine add_crank_angle(m, row)
+    type(motion_t), intent(in) :: m
+    type(trace_row_t), intent(inout) :: row
+    call row%add('crank_angle[rad]', m%crank_angle, 'angle of the crank from +x towards +y, counted on over whole revolutions')
+  end subroutine add_crank_angle
+
   !> Add the columns of the forces between the bodies.
-  pure subroutine add_forces(scene, now, row)
+  pure subroutine add_forces(scene, now, row, reaction)
     type(scene_t), intent(in) :: scene
     type(evaluation_t), intent(in) :: now
     type(trace_row_t), intent(inout) :: row
-    type(reactions_t) :: reaction
+    type(reactions_t), intent(out) :: reaction   !! those of the columns, if there are any
     call row%add('pin_force_x[N]', now%loads%force(1, piston_pin), &
       'force of the joint on the piston pin (on the rod), along x; the piston takes the opposite force')
     call row%add('pin_force_y[N]', now%loads%force(2, piston_pin), 'the same along y')
-    if (row%wants(7)) reaction = scene%chain%reactions(now%motion, now%accelerations, now%loads)
+    if (row%wants(7) .or. allocated(scene%chain%train)) reaction = scene%chain%reactions(now%motion, now%accelerations, now%loads)
     call row%add('crankpin_force_x[N]', reaction%crankpin(1), 'force of the crank on the rod at the crank pin, along x (F3)')
     call row%add('crankpin_force_y[N]', reaction%crankpin(2), 'the same along y (F4)')
     call row%add('crank_bearing_force_x[N]', reaction%crank_bearing(1), &
