@@ -32,7 +32,7 @@ import numpy as np
 import test_fmu
 import test_python
 from fmpy.validation import validate_fmu
-from test_python import case_of, same_bits
+from test_python import case_of
 
 CASES = sorted(str(path.relative_to(TOP / "cases").with_suffix("")) for path in (TOP / "cases").rglob("*.nml") if "studies" not in path.parts)
 SCENES = {   # of FMI: film, dry, half film, oscillating, gas, compressor, both joints, guide, elastic rod, wear
