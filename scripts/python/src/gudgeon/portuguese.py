@@ -20,6 +20,12 @@ TEXTS = {
     "revolutions of the crank": "revoluções da manivela",
     "time / time of a right-hand side": "tempo / tempo de uma avaliação",
     "dry contact": "contato seco",
+    # Campbell diagram
+    "{}: critical speeds": "{}: rotações críticas",
+    "speed [rpm]": "rotação [rpm]",
+    "frequency [Hz]": "frequência [Hz]",
+    "station": "estação",
+    "amplitude of the shape": "amplitude do modo",
     "ideal joint (sim. VI)": "junta ideal (sim. VI)",
     "simulation {}": "simulação {}",
     # templates
