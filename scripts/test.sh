@@ -92,6 +92,7 @@ states and runs that go on from them|tests/test_state_file.py
 layers, linters|tests/test_layers.py
 failures of the machine|tests/test_faults.py --kills 10
 heat and work of the gas|.venv/bin/python tests/test_gas.py
+several cylinders|.venv/bin/python tests/test_cylinders.py
 END
   $all && cat <<'END'
 independent judge of runs|tests/test_judge.py
