@@ -5,6 +5,7 @@ program gudgeon
   use case_file, only: template
   use case_templates, only: short_template
   use case_runner, only: run_cases
+  use plot_command, only: plot_is_wanted, become_plot
   use study_runner, only: run_study_file
   use study_definition, only: study_schema_of
   use case_schema, only: key_table_t, case_schema_of
@@ -25,8 +26,12 @@ program gudgeon
 
   status = status_ok
   call fill_standard_descriptors()
-  call ignore_write_signals()
-  call parse_command_line(program_arguments(), options, error)
+  if (plot_is_wanted()) then
+    call become_plot(error)
+  else
+    call ignore_write_signals()
+    call parse_command_line(program_arguments(), options, error)
+  end if
   if (allocated(error)) then
     call tell(error%message)
     status = error%status

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Bearing cases as a user runs them: the seven bearings of data/film/engine against the results of an independent program, each column
-within its tolerance in facts.csv, limits, and what is refused.
+"""Films with memory as a user runs them: the seven bearing cases of data/film/engine against the results of an independent program,
+each column within its tolerance in facts.csv, limits, and what is refused; after the run of a mechanism, the same film from a table
+that is made here from the columns of that run, tables of supply pressures and compliances, fields.
 
     tests/test_bearing_cases.py [--program PATH]
 
@@ -33,6 +34,15 @@ REFUSED = (
     (("film_history.table=absent.csv",), "absent.csv"), (("film_history.around=23",), "around"),
     (("lubrication.pressure_viscosity=1e-4",), "pressure_viscosity"), (("mechanism.gravity=3",), "mechanism"))
 
+#: The same for a case with a mechanism.
+AFTER_RUN_REFUSED = (
+    (("crank_pin.film_history=none",), "film_history"), (("crank_pin.film_history.cycle_deg=500",), "cycle_deg"),
+    (("crank_pin.film_history.table=duty.csv",), "table"), (("crank_pin.bore.compliance_table=absent.csv",), "outer_radius"),
+    (("crank_pin.bore.outer_radius=0.0202",), "outer_radius"), (("crank_pin.supply.pressure_table=absent.csv",), "absent.csv"),
+    (("crank_pin.supply.kind=holes",), "diameter"), (("crank_pin.supply.length=1",), "length"),
+    (("lubrication=none", "contact.law=hertz"), "lubrication"),
+    (("lubrication.law=finite_bearing",), "cavitation"), (("lubrication.law=finite_bearing", "lubrication.cavitation=none"), "cavitation"))
+
 
 def run(program: Path, case: Path, folder: Path, *settings: str) -> subprocess.CompletedProcess:
     """Run a case with settings; results are in the folder."""
@@ -44,7 +54,7 @@ def columns_of(path: Path) -> dict[str, list[float]]:
     """The columns of a table of numbers by their names."""
     with path.open(newline="") as file:
         rows = list(csv.DictReader(file))
-    return {name: [float(row[name]) for row in rows] for name in rows[0]}
+    return {name: [float(row[name]) for row in rows] for name in rows[0] if name != "joint"}
 
 
 def summary_of(path: Path) -> dict[str, str]:
@@ -117,6 +127,137 @@ def check_refused(program: Path, folder: Path) -> None:
     check(not (folder / "refused").exists(), "no result of a refused case")
 
 
+def write_table(path: Path, head: str, rows: list[tuple[float, ...]]) -> None:
+    path.write_text(head + "\n" + "".join(",".join(repr(value) for value in row) + "\n" for row in rows))
+
+
+def duty_of(trace: dict[str, list[float]], place: str, turn: list[float], speed: list[float]) -> list[tuple[float, ...]]:
+    """Rows of a bearing case from the last 720 degrees of a trace: time, speed of the pin in its bearing, eccentricity and load in
+    the frame of the bearing, which is turned by `turn`."""
+    angle = trace["crank_angle[rad]"]
+    first = max(i for i, a in enumerate(angle) if angle[-1] - a >= 4 * math.pi - 1e-6)
+    rows = []
+    for i in range(first, len(angle)):
+        c, s = math.cos(turn[i]), math.sin(turn[i])
+        x, y = trace[f"{place}eccentricity_x[m]"][i], trace[f"{place}eccentricity_y[m]"][i]
+        fx, fy = trace[f"{place}film_force_x[N]"][i], trace[f"{place}film_force_y[N]"][i]
+        rows.append((trace["time[s]"][i], speed[i], c * x + s * y, c * y - s * x, -(c * fx + s * fy), -(c * fy - s * fx)))
+    return rows
+
+
+def equal_within(found: dict[str, list[float]], wanted: dict[str, list[float]], tolerance: float) -> str:
+    """The columns that both have and that differ by more than the tolerance, over their scale."""
+    wrong = []
+    for name in set(found) & set(wanted) - {"time[s]"}:
+        error = max((abs(a - b) for a, b in zip(found[name], wanted[name])), default=math.inf) / scale_of(wanted, name)
+        if error > tolerance or len(found[name]) != len(wanted[name]):
+            wrong.append(f"{name} {error:.2g}")
+    return ", ".join(wrong)
+
+
+def check_after_runs(program: Path, folder: Path) -> None:
+    """The film after a run is that of a bearing case whose table comes from the columns of the run, at both pins."""
+    quick = ("film_history.around=48", "film_history.along=4", "output.digits=17", "film_history.most_cycles=2")
+    case = TOP / "cases" / "film" / "sim_I_fed.nml"
+    done = run(program, case, folder, *quick)
+    check(done.returncode == 0 and "film with memory at the piston pin" in done.stdout, "the film of sim_I_fed is marched", done.stderr)
+    trace = columns_of(folder / "sim_I_fed.csv")
+    head = "time[s],pin_speed[rad/s],eccentricity_x[m],eccentricity_y[m],load_x[N],load_y[N]"
+    write_table(folder / "duty.csv", head, duty_of(trace, "", [0.0] * len(trace["time[s]"]), [-v for v in trace["rod_speed[rad/s]"]]))
+    bearing = """&joint clearance = 20.0e-6, bearing_radius = 0.010, bearing_length = 0.015 /
+&lubrication viscosity = 0.0117 /
+&supply position_deg = 90.0, 270.0, width_deg = 30.0, length = 0.009, pressure = 2.0e5 /
+&film_history table = 'duty.csv' /
+"""
+    (folder / "duty.nml").write_text(bearing)
+    done = run(program, folder / "duty.nml", folder, *quick)
+    check(done.returncode == 0, "the same film from a table", done.stderr)
+    after = columns_of(folder / "sim_I_fed.film_history.csv")
+    wrong = equal_within(after, columns_of(folder / "duty.film_history.csv"), 1e-6)
+    check(not wrong, "the film after a run is that of its table", wrong)
+    summary = summary_of(folder / "sim_I_fed.summary.csv")
+    check(abs(float(summary["film_history_min_film_thickness"]) - min(after["min_film_thickness[m]"])) < 1e-15, "thinnest film, summary")
+    check(float(summary["film_history_quick_min_film_thickness"]) == min(after["quick_film_thickness[m]"]), "film of the run, summary")
+    again = run(program, folder / "sim_I_fed.resolved.nml", folder / "again")
+    check(again.returncode == 0 and (folder / "again" / "sim_I_fed.resolved.film_history.csv").read_bytes() ==
+          (folder / "sim_I_fed.film_history.csv").read_bytes(), "the resolved case gives the same film", again.stderr)
+    # along the orbit of the run Reynolds' film without supply has the force of the run: frames, signs and speeds (grid: 1.5 %)
+    done = run(program, case, folder / "orbit", "lubrication.cavitation=reynolds", "supply=none", "film_history.drive=orbit")
+    rows, run_rows = columns_of(folder / "orbit" / "sim_I_fed.film_history.csv"), columns_of(folder / "orbit" / "sim_I_fed.csv")
+    n = len(rows["time[s]"])
+    error = max(math.hypot(a - c, b - d) for a, b, c, d in zip(
+        rows["film_force_x[N]"], rows["film_force_y[N]"], run_rows["film_force_x[N]"][-n:], run_rows["film_force_y[N]"][-n:]))
+    check(error < 0.05 * scale_of(run_rows, "film_force_x[N]"), "the film along an orbit has the force of the run", f"{error:.3g} N")
+    check_big_end(program, folder, quick, bearing)
+
+
+def check_big_end(program: Path, folder: Path, quick: tuple[str, ...], bearing: str) -> None:
+    """The bearing of the crank pin turns with the rod; an elastic bore by the table of its compliances; a supply over the crank
+    angle; fields."""
+    text = (TOP / "cases" / "joints" / "both_pins_lubricated.nml").read_text()
+    supply = bearing.splitlines()[2].replace("&supply ", "&supply place = 'crank_pin', ")
+    bore = "&bore place = 'crank_pin', outer_radius = 0.03, modes = 3 /"
+    (folder / "big_end.nml").write_text(f"{text}\n&film_history place = 'crank_pin' /\n{supply}\n{bore}\n")
+    run_settings = (*(word.replace("film_history", "crank_pin.film_history") for word in quick), "output.sampling=crank_angle", "output.samples_per_revolution=360", "contact=none", "friction=none")
+    done = run(program, folder / "big_end.nml", folder, *run_settings)
+    check(done.returncode == 0, "a film with memory at the crank pin", done.stderr)
+    trace = columns_of(folder / "big_end.csv")
+    speed = [q + a for q, a in zip(trace["crank_speed[rad/s]"], trace["rod_speed[rad/s]"])]
+    write_table(folder / "duty.csv", "time[s],pin_speed[rad/s],eccentricity_x[m],eccentricity_y[m],load_x[N],load_y[N]",
+                duty_of(trace, "crank_pin_", [-a for a in trace["rod_angle[rad]"]], speed))
+    (folder / "duty.nml").write_text(bearing.replace("0.010, bearing_length = 0.015", "0.020, bearing_length = 0.020") +
+                                     bore.replace("place = 'crank_pin', ", ""))
+    done = run(program, folder / "duty.nml", folder, *quick)
+    after = columns_of(folder / "big_end.film_history.csv")
+    wrong = equal_within(after, columns_of(folder / "duty.film_history.csv"), 1e-6)
+    check(done.returncode == 0 and not wrong, "the film at the crank pin is that of its table", wrong + done.stderr)
+    compliance = {n: value * 0.020 / 207.0e9 for n, value in ring_of(1.5, 0.3, 3).items()}
+    rows = "".join(f"{n}{w},{n}{w},{value!r}\n" for n, value in compliance.items() for w in ("c", "s") if n) + f"0,0,{compliance[0]!r}\n"
+    (folder / "bore.csv").write_text("load,shape,compliance[m/Pa]\n" + rows)
+    (folder / "feed.csv").write_text("crank_angle[deg],pressure[bar]\n0,2\n350,2\n700,2\n")
+    done = run(program, folder / "big_end.nml", folder / "table", *run_settings, "crank_pin.bore.outer_radius=0",
+               f"crank_pin.bore.compliance_table={folder / 'bore.csv'}", f"crank_pin.supply.pressure_table={folder / 'feed.csv'}",
+               f"output.film_times={trace['time[s]'][-100]!r}")
+    check(done.returncode == 0, "a bore by its compliances, a supply over the crank angle", done.stderr)
+    if done.returncode:
+        return
+    tabled = columns_of(folder / "table" / "big_end.film_history.csv")
+    wrong = equal_within(tabled, after, 1e-5)
+    check(not wrong, "compliances of a ring and a constant supply in tables give the same film", wrong)
+    field = columns_of(folder / "table" / "big_end.film.csv")
+    k = min(range(len(tabled["time[s]"])), key=lambda i: abs(tabled["time[s]"][i] - field["time[s]"][0]))
+    check(abs(max(field["pressure[Pa]"]) / tabled["max_film_pressure[Pa]"][k] - 1) < 1e-12 and
+          abs(min(field["film_thickness[m]"]) / tabled["min_film_thickness[m]"][k] - 1) < 1e-12, "field of pressure and gap")
+    check(all(p == 0 or f == 1 for p, f in zip(field["pressure[Pa]"], field["film_fraction[-]"])), "p (1 - f) = 0 in the field")
+    resolved = run(program, folder / "table" / "big_end.resolved.nml", folder / "again")
+    check(resolved.returncode == 0 and (folder / "again" / "big_end.resolved.film_history.csv").read_bytes() ==
+          (folder / "table" / "big_end.film_history.csv").read_bytes(), "the resolved case has its tables", resolved.stderr)
+    for settings, word in AFTER_RUN_REFUSED:
+        done = run(program, folder / "big_end.nml", folder / "refused", *settings)
+        check(done.returncode == 3 and word in done.stderr, f"refused after a run: {settings}", done.stderr)
+
+
+def ring_of(ratio: float, nu: float, modes: int) -> dict[int, float]:
+    """Displacements E u/(a p) of the bore of a ring for cos n theta, by Airy's function with four conditions solved by elimination."""
+    found = {0: (ratio**2 + 1) / (ratio**2 - 1) + nu}
+    kappa = (3 - nu) / (1 + nu)
+    for n in range(2, modes + 1):
+        rows = []
+        for r, load in ((1.0, -1.0), (ratio, 0.0)):
+            rows.append([n * (1 - n) * r**(n - 2), (2 + n - n * n) * r**n, -n * (1 + n) * r**(-n - 2), (2 - n - n * n) * r**-n, load])
+            rows.append([(n - 1) * r**(n - 2), (n + 1) * r**n, -(n + 1) * r**(-n - 2), -(n - 1) * r**-n, 0.0])
+        for i in range(4):
+            k = max(range(i, 4), key=lambda j: abs(rows[j][i]))
+            rows[i], rows[k] = rows[k], rows[i]
+            for j in range(4):
+                if j != i:
+                    factor = rows[j][i] / rows[i][i]
+                    rows[j] = [a - factor * b for a, b in zip(rows[j], rows[i])]
+        a, b, c, d = (rows[i][4] / rows[i][i] for i in range(4))
+        found[n] = (1 + nu) * (-n * a + (kappa - n - 1) * b + n * c + (kappa + n - 1) * d)
+    return found
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path, help="program to test instead of the fast build")
@@ -128,6 +269,7 @@ def main() -> int:
         check_references(program, Path(name))
         check_limits(program, Path(name))
         check_refused(program, Path(name))
+        check_after_runs(program, Path(name))
     return assertions.report()
 
 

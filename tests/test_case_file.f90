@@ -24,14 +24,14 @@ module test_case_file
   character(len=*), parameter :: contact = '&contact /'//n
   character(len=*), parameter :: run = '&integrator revolutions=2 /'//n
   character(len=*), parameter :: whole = bodies//joint//contact//run
-  character(len=*), parameter :: all_groups = ' (allowed: case, mechanism, drive, initial, joint, contact, friction, '// &
-    'lubrication, asperities, wear, guide, elastic_rod, crankshaft, combustion, cylinder_pressure, run, integrator, output)'
+  character(len=*), parameter :: all_groups = ' (allowed: case, mechanism, bearing_load, drive, initial, joint, '// &
+    'contact, friction, lubrication, asperities, wear, guide, elastic_rod, crankshaft, combustion, cylinder_pressure, run, integrator, output)'
   character(len=*), parameter :: laws = 'lankarani_nikravesh, hertz, hunt_crossley, exact, flores, gonthier, carvalho_martins, '// &
     'herbert_mcwhannell, zhiying_qishao, impact'
   character(len=*), parameter :: no_speeds = n//'x.nml: &friction v0: required with law = ''ambrosio'' (m/s)'//n// &
     'x.nml: &friction v1: required with law = ''ambrosio'' (m/s)'
   character(len=*), parameter :: at_rest = n//'x.nml: &output interval: required with crank_speed = 0 (s)'
-  character(len=*), parameter :: joint_keys = ' (allowed: kind, clearance, bearing_radius, bearing_length)'
+  character(len=*), parameter :: joint_keys = ' (allowed: kind, clearance, bearing_radius, bearing_length, load_share)'
 
 contains
 
@@ -223,7 +223,7 @@ contains
     call refused(check, '&contact density(1)=1 density=2*1 /', 'x.nml:1: &contact density: given twice')
     call refused_with(check, 'joint.clearnce=1', &
                       'x.nml: --set joint.clearnce=1: &joint clearnce: unknown key; did you mean clearance?'//joint_keys)
-    call refused(check, '&joint kind=''fixed'' /', 'x.nml:1: &joint kind = fixed: must be one of ideal, clearance')
+    call refused(check, '&joint kind=''fixed'' /', 'x.nml:1: &joint kind = fixed: must be one of ideal, clearance, quasi_static')
     call refused(check, '&integrator method=''euler'' /', 'x.nml:1: &integrator method = euler: must be one of auto, adams, radau')
     call refused(check, '&case /', 'x.nml: &mechanism: this group is required')
     call refused(check, '&mechanism /', 'x.nml: &mechanism crank_length: required (m)')

@@ -34,6 +34,12 @@ add "C program" build/test_c cases
 if [ "$1" = --all ] && command -v valgrind >/dev/null; then
   add "C program under valgrind" valgrind -q --error-exitcode=9 --leak-check=full build/test_c cases alone
 fi
+
+# the program of the page on C
+sed -n '/^    #include/,/^    }/s/^    //p' data/manual/c.md >build/turn.c
+if gcc -Wall -Wextra -Werror -Isrc/api build/turn.c "$library" -Wl,-rpath,"$(dirname "$library")" -o build/turn &&
+  build/turn | grep -q '^status,done,'; then passed=$((passed + 1)); else echo "FAILED: the page on C"; failed=$((failed + 1)); fi
+add "examples" .venv/bin/python tests/test_examples.py "$@"
 add "Python package" .venv/bin/python tests/test_python.py "$program" "$@"
 add "functional mock-up units" .venv/bin/python tests/test_fmu.py "$@"
 add "shell and editor" .venv/bin/python tests/test_shell_pages.py "$program"

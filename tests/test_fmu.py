@@ -43,15 +43,22 @@ def check(holds: bool, what: str) -> None:
 class Unit:
     """A unit in a master."""
 
-    def __init__(self, path: Path, fmi: int, folder: str, stop: float | None = None, sets=(), tolerance: float | None = None) -> None:
+    def __init__(self, path: Path, fmi: int, folder: str, stop: float | None = None, sets=(), tolerance: float | None = None,
+                 early: bool = False) -> None:  # fmt: skip
         self.description = fmpy.read_model_description(str(path))
         self.reference = {v.name: v.valueReference for v in self.description.modelVariables}
         self.outputs = [v.name for v in self.description.modelVariables if v.causality == "output"]
         self.messages: list[str] = []
-        place = fmpy.extract(str(path), tempfile.mkdtemp(dir=folder))  # a library that is loaded must not be replaced
-        self.unit = fmpy.instantiate_fmu(place, self.description, "CoSimulation", logger=self.log)
+        self.place = fmpy.extract(str(path), tempfile.mkdtemp(dir=folder))  # a library that is loaded must not be replaced
+        self.unit = fmpy.instantiate_fmu(self.place, self.description, "CoSimulation", logger=self.log, early_return_allowed=early)
         self.fmi = fmi
-        if fmi == 2:
+        if early:
+            self.unit.setBoolean([self.reference["return_at_contacts"]], [True])
+        self.begin(stop, sets, tolerance)
+
+    def begin(self, stop: float | None = None, sets=(), tolerance: float | None = None) -> None:
+        """The experiment, and the initialisation with these parameters."""
+        if self.fmi == 2:
             self.unit.setupExperiment(startTime=0, stopTime=stop, tolerance=tolerance)
             self.unit.enterInitializationMode()
         else:
@@ -153,7 +160,7 @@ def parameters(fmi: int, folder: str) -> None:
     except FMICallException:
         check(fmi == 3 or any("must be > 0" in text for text in made.messages), f"the master is told what is wrong: {made.messages}")
     with zipfile.ZipFile(path) as file:
-        check("documentation/index.html" in file.namelist() and len([n for n in file.namelist() if n.endswith(".so")]) == 1, "files")
+        check("documentation/index.html" in file.namelist() and "binaries" in " ".join(file.namelist()), "files")
 
 
 def states(fmi: int, folder: str) -> None:
@@ -193,6 +200,51 @@ def states(fmi: int, folder: str) -> None:
             one.fmi2FreeInstance(one.component) if fmi == 2 else one.fmi3FreeInstance(one.component)
         sizes.append(resident())
     check(sizes[2] - sizes[1] < 1e6, f"FMI {fmi}: memory grows: {sizes}")
+
+
+def early_returns(folder: str) -> None:
+    """With return_at_contacts a step of FMI 3.0 ends where a contact begins or ends; the motion does not depend on that."""
+    case = gudgeon.read(TOP / "cases" / "flores/friction_100.nml")
+    path = gudgeon.fmu(case, Path(folder) / "early.fmu", 3)
+    unit = Unit(path, 3, folder, 0.01, early=True)
+    times, t, returned = [], 0.0, True
+    while t < 0.01 * (1 - 1e-9):
+        _, _, returned, last = unit.unit.doStep(t, 0.01 - t)
+        times += [last] if returned else []
+        t = last
+    run = case.run(end=0.01)
+    check(len(times) > 10 and times == list(run.events["time"]), f"{len(times)} early returns, {len(run.events)} events")
+    want = case.begin(end=0.01)
+    want.advance(1)
+    check(same(unit.get(), np.array([want.values[name] for name in unit.outputs])), "early returns change nothing")
+    unit.free()
+
+
+def resets(fmi: int, folder: str) -> None:
+    """A unit begins anew, or says why it cannot."""
+    path = gudgeon.fmu(gudgeon.read(TOP / "cases" / "sim_I.nml"), Path(folder) / "reset.fmu", fmi)
+    unit = Unit(path, fmi, folder, 0.02)
+    unit.unit.doStep(0, 0.01)
+    first = unit.get()
+    unit.unit.reset()
+    unit.begin(0.02)
+    unit.unit.doStep(0, 0.01)
+    check(same(first, unit.get()), f"FMI {fmi}: a unit that is reset goes the same way")
+    Path(unit.place, "resources", "case.nml").write_text("&nothing /")
+    try:
+        unit.unit.reset()
+        check(False, "a unit whose case has changed is not reset")
+    except FMICallException:
+        check(any("nothing" in text for text in unit.messages), f"FMI {fmi}: the master is told why: {unit.messages}")
+    unit.free()
+
+
+def libraries(folder: str) -> None:
+    """A unit has its own copies of what it needs, under names of its own, and looks for them beside itself."""
+    path = gudgeon.fmu(gudgeon.template("film"), Path(folder) / "film.fmu")
+    place = Path(fmpy.extract(str(path), tempfile.mkdtemp(dir=folder))) / "binaries/linux64"
+    said = subprocess.run(["ldd", place / "gudgeon.so"], capture_output=True, text=True).stdout
+    check(said.count(f"=> {place}/gudgeon-lib") == 2 and "not found" not in said, f"libraries of a unit: {said}")
 
 
 def motor(folder: str) -> None:
@@ -242,13 +294,13 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         for fmi in (2, 3):
             parts = [lambda name=name: bits(name, fmi, folder) for name in names]
-            parts += [lambda: parameters(fmi, folder), lambda: states(fmi, folder)]
+            parts += [lambda: parameters(fmi, folder), lambda: states(fmi, folder), lambda: resets(fmi, folder)]
             for part in parts:
                 try:
                     part()
                 except Exception:
                     check(False, traceback.format_exc())
-        for part in (motor, command):
+        for part in (early_returns, libraries, motor, command):
             try:
                 part(folder)
             except Exception:

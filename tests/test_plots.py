@@ -352,6 +352,18 @@ class FilmPressure(unittest.TestCase):
         wanted = np.outer([0, 10, 20, 30, 0], np.maximum(np.cos(self.ANGLES - 0.3), 0))
         self.assertLess(np.abs(found - wanted).max(), 0.5)
 
+    def test_film_with_memory(self) -> None:
+        """The rows of NAME.film_history.csv are drawn over the crank angle in its order, in both languages."""
+        names = ("crank_angle", "min_film_thickness", "quick_film_thickness", "max_film_pressure", "quick_film_pressure", "film_fill",
+                 "supply_flow", "side_flow")
+        table = pd.DataFrame({name: np.linspace(1.0, 2.0, 5) for name in names} | {"crank_angle": 4 * np.pi + np.radians([600, 719, 1, 90, 180])})
+        made = Run("made", pd.DataFrame(), {}, pd.DataFrame(), {}, {"supply": {"kind": "grooves"}})
+        drawing = film_pictures.with_memory(made, table, "made")
+        lines = drawing.axes[0].get_lines()
+        np.testing.assert_allclose(lines[0].get_xdata(), [1, 90, 180, 600, 719], atol=1e-9)
+        np.testing.assert_allclose(lines[0].get_ydata(), [1.5e6, 1.75e6, 2e6, 1e6, 1.25e6])
+        self.assertEqual([len(axis.get_lines()) for axis in drawing.axes], [2, 2, 1, 2])
+
     def test_oscillating_film(self) -> None:
         speed, rod, crank = 300.0, 0.2, 0.05
         radius = self.BEARING - self.CLEARANCE
@@ -1190,24 +1202,15 @@ class Page(unittest.TestCase):
         orbit = drawn["Pin orbit over the clearance"]
         self.assertEqual((orbit["phase"], orbit["x"]), ("phase", "<i>e<sub>y</sub></i> / <i>c</i>"))
 
-    def test_warnings_on_films(self) -> None:
-        """A film as thin as the roughness is warned of at both pins, but not where the case has asperities; so is a film that has
-        not settled. A group without place is for both pins."""
-        columns = {"time": np.linspace(0, 1, 11), "film_thickness": np.ones(11), "crank_pin_film_thickness": np.ones(11)}
-        joint, thin = {"clearance": 2e-5}, {"min_film_thickness": ("4e-7", "m"), "crank_pin_min_film_thickness": ("5e-7", "m")}
-        case = {"joint": joint, "crank_pin.joint": joint, "lubrication": {"law": "pinkus_sternlicht"}}
-        made = run(columns, case)
-        made.summary.update(thin | {"status": ("done", ""), "crank_pin_film_thickness_change": ("-0.12", "1")})
-        found = report_page.warnings(made)
-        self.assertEqual(len(found), 3, found)
-        self.assertTrue(found[0].startswith("The film gets as thin as 0.4 µm, the order of surface roughness"), found[0])
-        self.assertTrue(found[1].startswith("The film at the crank pin gets as thin as 0.5 µm"), found[1])
-        self.assertIn("at the crank pin has not settled: its smallest thickness changed by 12 %", found[2])
-        portuguese = language.Language("pt")
-        for text in found:
-            self.assertNotEqual(portuguese.say(text), text)
-        made.case["crank_pin.asperities"] = {"roughness": 4e-7}
-        self.assertEqual(report_page.warnings(made), [found[0], found[2]])
+    def test_the_page_has_the_notes_of_the_summary(self) -> None:
+        """The words of the program stand on the page as they are, escaped, and not in the table of the summary again."""
+        made = self.made()
+        made.summary.update({"status": ("interrupted at 0.1 s", ""), "note_1": ("&joint clearance = 2 mm: usually 1 to 500 um", ""),
+                             "note_2": ("a force < 1e9 N", "")})
+        text = report_page.page(made)
+        for said in ("&amp;joint clearance = 2 mm: usually 1 to 500 um", "a force &lt; 1e9 N", "The run did not end as requested: interrupted at"):
+            self.assertEqual(text.count(f'<p class="warning">{said}'), 1, said)
+        self.assertNotIn("note_1", text)
 
     def test_the_page_opens_where_the_force_is_largest(self) -> None:
         columns = {"time": np.linspace(0, 1, 11), "pin_force": np.array([9.0, 0, 1, 2, 7, 3, 2, 1, 1, 1, 1])}

@@ -52,6 +52,16 @@ check "a torque without effect is reported" [ "$status" = 0 -a "$(grep -c 'wiebe
 run -q --check -s drive.torque=1 cases/wiebe/wiebe_320.nml
 check "a torque without effect is not reported with --quiet" [ "$status" = 0 -a ! -s "$work/err" ]
 
+# gudgeon plot: gudgeon-plot on the PATH, with its arguments as they are and its exit status
+mkdir "$work/bin"
+printf '#!/bin/sh\nprintf "<%%s>" "$0" "$@"\nexit 7\n' >"$work/bin/gudgeon-plot" && chmod +x "$work/bin/gudgeon-plot"
+said=$(PATH="$work/bin:$PATH" "$gudgeon" plot columns 'a  b ' '' -o x)
+check "gudgeon plot has the exit status of gudgeon-plot" [ $? = 7 ]
+check "gudgeon plot passes its arguments: $said" [ "$said" = "<$work/bin/gudgeon-plot><columns><a  b ><><-o><x>" ]
+PATH="$work/refused" "$gudgeon" plot columns 2>"$work/err"
+check "gudgeon plot without gudgeon-plot" [ $? = 2 ]
+check "gudgeon plot says how to install it: $(cat "$work/err")" grep -q "^gudgeon: plot: .*pip install 'gudgeon\[plots\]'" "$work/err"
+
 # help, version, template
 run --help
 check "help" [ "$status" = 0 -a "$(grep -c -- --template "$work/out")" = 2 ]

@@ -7,6 +7,7 @@ Needs f90nml and jsonschema. Ends with `N passed, N failed`; the exit status is 
 """
 
 import json
+import os
 import re
 import shlex
 import shutil
@@ -75,7 +76,7 @@ def completion(program: str) -> None:
     for line, wanted in (
         ("gudgeon --se", "--set"), ("gudgeon -s joint.ki", "joint.kind=clearance"), ("gudgeon -s drive.torque", "drive.torque="),
         ("gudgeon --accuracy d", "draft"), ("gudgeon --template=f", "film"), ("gudgeon --reference sch", "schema"),
-        ("gudgeon cases/sim_VI", "cases/sim_VI.nml"), ("gudgeon sw", "sweep"),
+        ("gudgeon cases/sim_VI", "cases/sim_VI.nml"), ("gudgeon sw", "sweep"), ("gudgeon pl", "plot"),
     ):  # fmt: skip
         words = shlex.split(line.replace("=", " = "))
         setup = f"COMP_LINE={shlex.quote(line)}; COMP_POINT={len(line)}; COMP_WORDS=({' '.join(map(shlex.quote, words))}); COMP_CWORD={len(words) - 1}"
@@ -103,11 +104,34 @@ def manual_page(program: str) -> None:
         check(word in page, f"the manual page has {word}")
 
 
+def installed(program: str) -> None:
+    """scripts/install.sh puts the manual page and the completions where man and the shells look."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([TOP / "scripts/install.sh", f"{folder}/bin"], capture_output=True, text=True)
+        check(done.returncode == 0 and len(done.stdout.splitlines()) == 5, f"install.sh: {done.stdout}{done.stderr}")
+        environment = {**os.environ, "PATH": f"{folder}/bin:{os.environ['PATH']}", "XDG_DATA_HOME": f"{folder}/share"}
+        page = Path(folder, "share/man/man1/gudgeon.1")
+        check(page.read_text() == output(program, "--man"), "the manual page")
+        if shutil.which("man"):
+            environment.pop("MANPATH", None)
+            said = subprocess.run(["man", "-w", "gudgeon"], capture_output=True, text=True, env=environment).stdout
+            check(said.strip() == str(page), f"man finds it: {said}")
+        for path, shell in (("bash-completion/completions/gudgeon", "bash"), ("zsh/site-functions/_gudgeon", "zsh"),
+                            ("fish/vendor_completions.d/gudgeon.fish", "fish")):  # fmt: skip
+            check(Path(folder, "share", path).read_text() == output(program, "--completion", shell), path)
+        loader = Path("/usr/share/bash-completion/bash_completion")
+        if loader.is_file():
+            script = f". {loader}; _completion_loader gudgeon; complete -p gudgeon"
+            said = subprocess.run(["bash", "-c", script], capture_output=True, text=True, env=environment).stdout
+            check("_gudgeon" in said, f"bash-completion loads it: {said}")
+
+
 def main() -> int:
     program = sys.argv[1]
     schema(program)
     completion(program)
     manual_page(program)
+    installed(program)
     print(f"{passed} passed, {failed} failed")
     return failed > 0
 

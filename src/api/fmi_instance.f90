@@ -1,6 +1,6 @@
 !> An instance of a functional mock-up unit, as FMI 2.0 and 3.0 see it. Its case is in the folder of its resources. Value
 !> references: outputs have the indices of the columns from 0 on (0 is the time), inputs 1000 and their index in `inputs` from 0 on,
-!> parameters 10000 + 2 k + e for element e = 0, 1 of key k, from 0 on. The run is built when the first output is asked for, or at
+!> 5000 whether a step ends at a contact, parameters 10000 + 2 k + e for element e = 0, 1 of key k, from 0 on. The run is built when the first output is asked for, or at
 !> the end of the initialisation, and again if a parameter changes before that.
 module fmi_instance
   use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_loc, c_f_pointer, c_associated
@@ -17,7 +17,7 @@ module fmi_instance
   public :: fmi_instance_t, fmi_ok, fmi_discard, fmi_error, save_state, restore_state, free_saved_state, decoded
 
   integer, parameter :: fmi_ok = 0, fmi_discard = 2, fmi_error = 3   !! statuses of FMI
-  integer, parameter :: of_inputs = 1000, of_parameters = 10000     !! first value references
+  integer, parameter :: of_inputs = 1000, at_contacts = 5000, of_parameters = 10000     !! first value references
 
   type :: fmi_instance_t
     character(len=:), allocatable :: message       !! of the last error
@@ -28,6 +28,9 @@ module fmi_instance
     real(dp) :: start = 0, stop = 0                !! times of the master [s]; stop 0: the case's end
     real(dp) :: last = 0                           !! last time that was reached [s]
     logical :: is_running = .false.                !! initialisation is over
+    logical :: may_return_early = .false.          !! the master allows a step to end early
+    logical :: has_returned_early = .false.        !! the last step
+    logical, private :: returns_at_contacts = .false.   !! it is wanted where a contact begins or ends
     real(dp), private :: held(size(inputs)) = 0    !! values of inputs set before there was a run
     logical, private :: is_held(size(inputs)) = .false.
   contains
@@ -73,7 +76,7 @@ contains
     if (.not. is_right) self%message = self%case%message
   end subroutine read
 
-  !> Become an instance that has just been read. Error: see `read`.
+  !> Become an instance that has just been read. Error: see `read`; the instance is then unchanged.
   subroutine reset(self, status)
     class(fmi_instance_t), intent(inout) :: self
     integer, intent(out) :: status
@@ -82,8 +85,13 @@ contains
     call lock_texts()
     call new%read(self%folder, self%identity, is_right)
     call unlock_texts()
+    if (.not. is_right) then
+      call move_alloc(new%message, self%message)
+      status = fmi_error
+      return
+    end if
     call self%assign(new)
-    status = merge(fmi_ok, fmi_error, is_right)
+    status = fmi_ok
   end subroutine reset
 
   !> Times of the experiment, and the tolerance where the master gives one (0: it does not).
@@ -148,6 +156,9 @@ contains
       key = (reference - of_parameters)/2 + 1
       call self%case%number(key, mod(reference, 2) + 1, value, status)
       if (status /= 0) call refuse(self, reference, status)
+      return
+    else if (reference == at_contacts) then
+      value = merge(1.0_dp, 0.0_dp, self%returns_at_contacts)
       return
     end if
     call self%build(status)
@@ -218,6 +229,8 @@ contains
       if (status /= 0) self%message = self%case%message
       if (status /= 0) status = fmi_error
       call self%forget()
+    else if (reference == at_contacts .and. .not. self%is_running) then
+      self%returns_at_contacts = abs(value) > 0
     else if (reference >= of_inputs .and. reference < of_inputs + size(inputs) .and. abs(value) <= huge(value)) then
       place = reference - of_inputs + 1
       self%held(place) = value
@@ -252,7 +265,8 @@ contains
     call self%set_reals(references, real(values, dp), status)
   end subroutine set_integers
 
-  !> Go on from a time by a step. `status` is fmi_discard if the run ends before, or cannot go on; `last` is the time reached.
+  !> Go on from a time by a step, or until a contact begins or ends, where that is wanted and allowed. `status` is fmi_discard if the
+  !> run ends before, or cannot go on; `last` is the time reached.
   subroutine step(self, from, by, status)
     class(fmi_instance_t), intent(inout) :: self
     real(dp), intent(in) :: from, by   !! [s]
@@ -263,7 +277,12 @@ contains
       status = fmi_error
       return
     end if
-    call self%run%advance(from + by - self%start, 0, status)
+    if (self%may_return_early .and. self%returns_at_contacts) then
+      call self%run%advance_to_event(from + by - self%start, status)
+    else
+      call self%run%advance(from + by - self%start, 0, status)
+    end if
+    self%has_returned_early = status == -1 .and. self%run%run%t + self%start < from + by - rounding*by
     self%last = from + by
     if (status == status_integration) then
       call lock_texts()
@@ -271,13 +290,15 @@ contains
       call unlock_texts()
       self%message = self%run%message
       status = fmi_discard
+    else if (self%has_returned_early) then
+      status = fmi_ok
     else if (self%run%run%t + self%start < from + by - rounding*by) then
       self%message = 'the run has reached its end'
       status = fmi_discard
     else
       status = fmi_ok
     end if
-    if (status == fmi_discard) self%last = self%run%run%t + self%start
+    if (status == fmi_discard .or. self%has_returned_early) self%last = self%run%run%t + self%start
   end subroutine step
 
   !> Become a copy of another instance.
@@ -290,6 +311,7 @@ contains
     self%last = from%last
     self%held = from%held
     self%is_held = from%is_held
+    self%returns_at_contacts = from%returns_at_contacts
     if (.not. associated(from%run)) then
       call self%forget()
     else

@@ -80,8 +80,9 @@ int gudgeon_values(gudgeon_run *, double *now);
  * largest penetration and largest normal force. */
 int64_t gudgeon_events(const gudgeon_run *);
 int gudgeon_event(const gudgeon_run *, int64_t i, double values[6], int *ends, char *place, size_t place_size);
-/* The summary of a finished run. value: not a number where the quantity is a word. */
-int gudgeon_quantities(const gudgeon_run *);
+/* The summary of a finished run as the text of NAME.summary.csv, and quantity by quantity (count them first). value: not a number where the quantity is a word. */
+size_t gudgeon_summary(const gudgeon_run *, char *text, size_t size);
+int gudgeon_quantities(gudgeon_run *);
 int gudgeon_quantity(const gudgeon_run *, int i, double *value, char *name, size_t name_size, char *unit, size_t unit_size,
                      char *text, size_t text_size);
 

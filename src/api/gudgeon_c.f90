@@ -421,6 +421,9 @@ contains
     type(run_handle_t), pointer :: it
     call c_f_pointer(handle, it)
     n = 0
+    call lock_texts()
+    call it%read_summary()
+    call unlock_texts()
     if (allocated(it%summary)) n = size(it%summary)
   end function run_quantities
 
@@ -444,6 +447,17 @@ contains
       call put_text(row%text, text, text_size)
     end associate
   end function run_quantity
+
+  integer(c_size_t) function run_summary_text(handle, text, size) bind(c, name='gudgeon_summary') result(length)
+    type(c_ptr), value :: handle, text
+    integer(c_size_t), value :: size
+    type(run_handle_t), pointer :: it
+    call c_f_pointer(handle, it)
+    length = 0
+    if (.not. allocated(it%table)) return
+    call put_text(it%table, text, size)
+    length = len(it%table)
+  end function run_summary_text
 
   integer(c_int) function all_keys() bind(c, name='gudgeon_keys') result(n)
     type(key_table_t) :: table

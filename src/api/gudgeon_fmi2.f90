@@ -47,14 +47,15 @@ contains
     type(unit_t), intent(in) :: unit
     integer, intent(in) :: status
     procedure(logger), pointer :: log
+    character(len=:), allocatable :: message
     if (status == fmi_ok .or. .not. c_associated(unit%callbacks%logger)) return
     if (.not. allocated(unit%instance%message)) return
     call c_f_procpointer(unit%callbacks%logger, log)
     call lock_texts()
-    call log(unit%callbacks%environment, unit%name//c_null_char, int(status, c_int), &
-      trim(merge('logStatusDiscard', 'logStatusError  ', status == fmi_discard))//c_null_char, &
-      replaced(unit%instance%message, '%', '%%')//c_null_char)
+    message = replaced(unit%instance%message, '%', '%%')//c_null_char   ! a format of printf
     call unlock_texts()
+    call log(unit%callbacks%environment, unit%name//c_null_char, int(status, c_int), &
+      trim(merge('logStatusDiscard', 'logStatusError  ', status == fmi_discard))//c_null_char, message)
   end subroutine tell
 
   type(c_ptr) function get_platform() bind(c, name='fmi2GetTypesPlatform') result(text)
@@ -145,6 +146,7 @@ contains
     type(unit_t), pointer :: unit
     call c_f_pointer(handle, unit)
     call unit%instance%reset(status)
+    call tell(unit, status)
   end function reset
 
   integer(c_int) function get_real(handle, references, n, values) bind(c, name='fmi2GetReal') result(status)

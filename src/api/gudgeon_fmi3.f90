@@ -65,6 +65,7 @@ contains
     logical :: is_right
     allocate (unit)
     unit%environment = environment
+    unit%instance%may_return_early = early_return
     unit%logger = log
     call lock_texts()
     call get_text(path, text)
@@ -118,6 +119,7 @@ contains
     type(unit_t), pointer :: unit
     call c_f_pointer(handle, unit)
     call unit%instance%reset(status)
+    call tell(unit, status)
   end function reset
 
   integer(c_int) function get_reals(handle, references, n, values, n_values) bind(c, name='fmi3GetFloat64') result(status)
@@ -163,6 +165,31 @@ contains
     call tell(unit, status)
   end function set_integers
 
+  integer(c_int) function get_booleans(handle, references, n, values, n_values) bind(c, name='fmi3GetBoolean') result(status)
+    type(c_ptr), value :: handle
+    integer(c_size_t), value :: n, n_values
+    integer(c_int32_t), intent(in) :: references(n)
+    logical(c_bool), intent(inout) :: values(n)
+    type(unit_t), pointer :: unit
+    real(dp) :: reals(n)
+    call c_f_pointer(handle, unit)
+    reals = 0
+    call unit%instance%get_reals(references, reals, status)
+    values = abs(reals) > 0
+    call tell(unit, status)
+  end function get_booleans
+
+  integer(c_int) function set_booleans(handle, references, n, values, n_values) bind(c, name='fmi3SetBoolean') result(status)
+    type(c_ptr), value :: handle
+    integer(c_size_t), value :: n, n_values
+    integer(c_int32_t), intent(in) :: references(n)
+    logical(c_bool), intent(in) :: values(n)
+    type(unit_t), pointer :: unit
+    call c_f_pointer(handle, unit)
+    call unit%instance%set_reals(references, merge(1.0_dp, 0.0_dp, logical(values)), status)
+    call tell(unit, status)
+  end function set_booleans
+
   integer(c_int) function do_step(handle, from, by, no_return, needs_event, terminates, returned_early, last) &
     bind(c, name='fmi3DoStep') result(status)
     type(c_ptr), value :: handle
@@ -175,7 +202,7 @@ contains
     call unit%instance%step(from, by, status)
     needs_event = .false.
     terminates = status == fmi_discard
-    returned_early = .false.
+    returned_early = unit%instance%has_returned_early
     last = unit%instance%last
     call tell(unit, status)
   end function do_step

@@ -43,10 +43,6 @@ contains
     no = fmi_error
   end function getuint64
 
-  integer(c_int) function get_boolean() bind(c, name='fmi3GetBoolean') result(no)
-    no = fmi_error
-  end function get_boolean
-
   integer(c_int) function get_string() bind(c, name='fmi3GetString') result(no)
     no = fmi_error
   end function get_string
@@ -90,10 +86,6 @@ contains
   integer(c_int) function setuint64() bind(c, name='fmi3SetUInt64') result(no)
     no = fmi_error
   end function setuint64
-
-  integer(c_int) function set_boolean() bind(c, name='fmi3SetBoolean') result(no)
-    no = fmi_error
-  end function set_boolean
 
   integer(c_int) function set_string() bind(c, name='fmi3SetString') result(no)
     no = fmi_error

@@ -5,8 +5,9 @@ module run_handle
   use case_definition, only: case_t
   use joint_places, only: n_places
   use trace_columns, only: column_list_t, choose_columns
-  use film_files, only: provide_tables, write_film_file
-  use wear_file, only: write_wear_file
+  use film_files, only: provide_tables
+  use history_files, only: march_histories
+  use report_files, only: write_report_files
   use result_file, only: write_text
   use trace_files, only: trace_files_t
   use simulation, only: run_t, run_report_t
@@ -26,7 +27,8 @@ module run_handle
     type(run_t) :: run
     type(row_store_t) :: rows
     type(column_list_t) :: list
-    type(summary_row_t), allocatable :: summary(:)   !! allocated when the run is finished
+    character(len=:), allocatable :: table           !! NAME.summary.csv; allocated when the run is finished
+    type(summary_row_t), allocatable :: summary(:)   !! its rows, once `read_summary` has read them
     integer :: status = 0                            !! of the finished run
     real(dp), allocatable :: now(:)                  !! all columns at the time `seen`
     real(dp) :: seen = -huge(1.0_dp)                 !! [s]
@@ -34,12 +36,14 @@ module run_handle
     logical, private :: is_twin = .false.
     real(dp), private :: began = 0                   !! time of `clock` [s]
     type(run_report_t), private :: report
-    character(len=:), allocatable, private :: table, certificate_table   !! NAME.summary.csv, NAME.certificate.csv
+    character(len=:), allocatable, private :: certificate_table   !! NAME.certificate.csv
   contains
     procedure :: advance
+    procedure :: advance_to_event
     procedure :: look
     procedure :: set_input
     procedure :: finish
+    procedure :: read_summary
     procedure :: certify
     procedure :: save
     procedure :: has_events
@@ -97,11 +101,24 @@ contains
     real(dp), intent(in) :: to
     integer, intent(in) :: most_steps
     integer, intent(out) :: status
-    if (.not. (self%run%is_over .or. allocated(self%summary))) call self%run%advance(max(to, self%run%t), most_steps)
+    if (.not. (self%run%is_over .or. allocated(self%table))) call self%run%advance(max(to, self%run%t), most_steps)
     self%seen = -huge(1.0_dp)
     status = -1
     if (self%run%is_over) status = merge(0, status_integration, self%run%is_complete())
   end subroutine advance
+
+  !> Go on to a time [s], or until a contact begins or ends, if that comes first.
+  subroutine advance_to_event(self, to, status)
+    class(run_handle_t), intent(inout) :: self
+    real(dp), intent(in) :: to
+    integer, intent(out) :: status   !! see `advance`
+    integer :: events
+    events = self%rows%events
+    do
+      call self%advance(to, 1, status)
+      if (status /= -1 .or. self%rows%events > events .or. .not. self%run%t < to) exit
+    end do
+  end subroutine advance_to_event
 
   !> Evaluate all columns at the present time, once for each time. Error: the state is outside the model.
   subroutine look(self, status)
@@ -130,19 +147,25 @@ contains
     type(error_t), allocatable :: error
     type(case_t) :: case
     integer :: i
-    if (.not. allocated(self%summary)) then
+    if (.not. allocated(self%table)) then
       call self%run%finish(self%report, error)
+      if (.not. allocated(error)) call march_histories(self%case, .false., self%report, error)
       case = self%case
       do i = 1, merge(n_places, 0, self%is_twin)
         case%joints(i)%kind = 'ideal'
       end do
       if (self%is_twin .and. allocated(case%notes)) deallocate (case%notes)
       self%table = summary_table(case, self%report, clock() - self%began, self%is_twin)
-      call read_rows(self%table, self%summary)
       call self%keep(error, self%status)
     end if
     status = self%status
   end subroutine finish
+
+  !> Read the rows of the summary of a finished run, unless that has been done.
+  subroutine read_summary(self)
+    class(run_handle_t), intent(inout) :: self
+    if (allocated(self%table) .and. .not. allocated(self%summary)) call read_rows(self%table, self%summary)
+  end subroutine read_summary
 
   !> Estimate the accuracy of a finished run, as --certify does; the summary has its rows afterwards. Error: the run is not done.
   subroutine certify(self, status)
@@ -150,7 +173,7 @@ contains
     integer, intent(out) :: status
     type(error_t), allocatable :: error
     type(certificate_t) :: certificate
-    if (.not. allocated(self%summary) .or. self%is_twin .or. allocated(self%certificate_table)) then
+    if (.not. allocated(self%table) .or. self%is_twin .or. allocated(self%certificate_table)) then
       status = 2
       self%message = 'only a finished run can be certified, once'
       return
@@ -162,7 +185,7 @@ contains
     self%certificate_table = ''
     if (.not. allocated(certificate%reason)) self%certificate_table = certificate_table(certificate)
     self%table = self%table//certificate_summary(certificate)
-    call read_rows(self%table, self%summary)
+    if (allocated(self%summary)) deallocate (self%summary)
     call self%keep(error, status)
   end subroutine certify
 
@@ -181,7 +204,7 @@ contains
     type(trace_files_t) :: files
     type(error_t), allocatable :: error
     integer :: i
-    if (.not. allocated(self%summary)) then
+    if (.not. allocated(self%table)) then
       status = 2
       self%message = 'only a finished run can be saved'
       return
@@ -197,11 +220,7 @@ contains
       call files%file%conclude()
       call files%close(error)
     end if
-    if (.not. allocated(error) .and. allocated(self%report%films)) &
-      call write_film_file(path//'.film.csv', self%report%films, error)
-    if (.not. allocated(error) .and. allocated(self%report%wear)) then
-      if (size(self%report%wear) > 0) call write_wear_file(path//'.wear.csv', self%report%wear, self%case%output%digits, error)
-    end if
+    if (.not. allocated(error)) call write_report_files(path, self%case, self%report, error)
     if (.not. allocated(error) .and. allocated(self%certificate_table)) then
       if (self%certificate_table /= '') call write_text(path//'.certificate.csv', self%certificate_table, error)
     end if

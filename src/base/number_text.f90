@@ -196,17 +196,23 @@ contains
     integer, intent(inout) :: used
     real(dp), intent(in) :: value
     integer, intent(in) :: digits
-    character(len=12) :: form
+    character(len=11) :: form
     character(len=longest_number) :: text
     integer, parameter :: hundreds = longest_number - 2   !! position of the three digits of the exponent
     integer :: first
-    write (form, '(a,i0,a,i0,a)') '(es', longest_number, '.', digits - 1, 'e3)'
+    form = '(es'//two_digits(longest_number)//'.'//two_digits(digits - 1)//'e3)'
     write (text, form) value
     if (text(hundreds:hundreds) == '0') text = ' '//text(:hundreds - 1)//text(hundreds + 1:)
     first = verify(text, ' ')
     line(used + 1:used + 1 + longest_number - first) = text(first:)
     used = used + 1 + longest_number - first
   end subroutine append_formatted
+
+  !> A number from 0 to 99 with two digits.
+  pure character(len=2) function two_digits(number)
+    integer, intent(in) :: number
+    two_digits = achar(48 + number/10)//achar(48 + mod(number, 10))
+  end function two_digits
 
   !> A real with `digits` significant digits (default 10, as in a summary), as 1.234567890E-05; with 17 it reads back as the same
   !> bits.

@@ -19,7 +19,7 @@ module chain_motion
   implicit none
   private
   public :: motion_t, tilting_t, accelerations_t, crank_pin, piston_pin, n_pins, most_shapes
-  public :: body_crank, body_big_end, body_small_end, body_piston, n_bodies, angular_acceleration
+  public :: body_crank, body_big_end, body_small_end, body_piston, body_frame, n_bodies, angular_acceleration
   public :: turn_crank, follow_rod, follow_piston
 
   !> The pins of the chain.
@@ -30,6 +30,7 @@ module chain_motion
   !> The bodies as they turn at the pins; an elastic rod turns differently at its two ends.
   integer, parameter :: body_crank = 1, body_big_end = 2, body_small_end = 3, body_piston = 4
   integer, parameter :: n_bodies = 4
+  integer, parameter :: body_frame = 0   !! it does not turn
 
   integer, parameter :: most_shapes = 16   !! largest number of bending and axial shapes of an elastic rod
 

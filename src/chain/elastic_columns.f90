@@ -21,17 +21,17 @@ contains
     if (allocated(elastic%rod)) then
       associate (rod => elastic%rod)
         do i = 1, rod%n_bending + rod%n_axial
-          call row%add(shape_name(rod, i)//'[m]', motion%shape(i), shape_meaning(rod, i))
+          call row%add(trim(shape_name(rod, i))//'[m]', motion%shape(i), trim(shape_meaning(rod, i)))
         end do
         call row%add('rod_mid_deflection[m]', rod%mid_deflection(motion%shape), &
           'bending deflection of the rod midway between its pins')
         call row%add('rod_strain_energy[J]', rod%strain_energy(motion), 'elastic energy stored in the rod')
         if (row%is_naming .or. row%wants(2*(rod%n_bending + rod%n_axial))) then
           do i = 1, rod%n_bending + rod%n_axial
-            call row%add_on_request(shape_name(rod, i)//'_rate[m/s]', motion%shape_rate(i), &
-              'time derivative of '//shape_name(rod, i))
-            call row%add_on_request(shape_name(rod, i)//'_acceleration[m/s2]', accelerations%shape(i), &
-              'second time derivative of '//shape_name(rod, i))
+            call row%add_on_request(trim(shape_name(rod, i))//'_rate[m/s]', motion%shape_rate(i), &
+              'time derivative of '//trim(shape_name(rod, i)))
+            call row%add_on_request(trim(shape_name(rod, i))//'_acceleration[m/s2]', accelerations%shape(i), &
+              'second time derivative of '//trim(shape_name(rod, i)))
           end do
         else
           call row%skip(2*(rod%n_bending + rod%n_axial))
@@ -49,7 +49,7 @@ contains
   pure function shape_name(rod, i) result(name)
     type(elastic_rod_t), intent(in) :: rod
     integer, intent(in) :: i   !! index of the shape; bending shapes come first
-    character(len=:), allocatable :: name
+    character(len=11) :: name
     if (i <= rod%n_bending) then
       name = 'rod_mode_'//achar(iachar('0') + i)
     else if (i == rod%n_bending + 1) then
@@ -62,7 +62,7 @@ contains
   pure function shape_meaning(rod, i) result(text)
     type(elastic_rod_t), intent(in) :: rod
     integer, intent(in) :: i
-    character(len=:), allocatable :: text
+    character(len=44) :: text
     text = 'amplitude of this axial shape of the rod'
     if (i <= rod%n_bending) text = 'amplitude of this transverse mode of the rod'
     if (i == rod%n_bending + 1) text = 'elongation of the rod between its pins'

@@ -11,6 +11,7 @@ module film_history
   use film_cells, only: film_cells_t, supply_t, new_film_cells, supply_none, filled, supplied
   use film_balance, only: film_conditions_t, film_state_t, new_state, find_gap
   use film_step, only: step_solver_t, new_step_solver, step_solved, step_closed, step_unbounded
+  use film_law, only: table_watch_t
   use film_results, only: film_row_t, film_field_t, film_summary_t, find_row, find_field
   use ring_compliance, only: elastic_bore_t
   implicit none
@@ -74,12 +75,13 @@ module film_history
 
 contains
 
-  !> March the film through the duty. `rows` has the last cycle, or after an error (a wrong supply, no convergence, no steady state)
-  !> the rows of the present cycle until then.
-  pure subroutine march(self, duty, error)
+  !> March the film through the duty. `rows` has the last cycle, or after an error (a wrong supply, no convergence, no steady state,
+  !> stopped by `watch`, to which each row is told) the rows of the present cycle until then.
+  subroutine march(self, duty, error, watch)
     class(film_history_t), intent(inout) :: self
     type(film_duty_t), intent(in) :: duty
     type(error_t), allocatable, intent(out) :: error
+    class(table_watch_t), intent(inout), optional :: watch
     real(dp) :: volume, before
     integer :: cycle_number
 
@@ -89,7 +91,7 @@ contains
     do cycle_number = 1, merge(1, self%most_cycles, self%is_steady)
       before = volume
       call self%begin_cycle(duty, is_first=cycle_number == 1)
-      call self%march_cycle(duty, error)
+      call self%march_cycle(duty, error, watch)
       volume = self%oil_volume()
       self%summary%cycles = cycle_number
       self%summary%content_change = abs(volume - before)/max(volume, tiny(volume))
@@ -148,10 +150,11 @@ contains
   end subroutine begin_cycle
 
   !> March from the first row to the last one.
-  pure subroutine march_cycle(self, duty, error)
+  subroutine march_cycle(self, duty, error, watch)
     class(film_history_t), intent(inout) :: self
     type(film_duty_t), intent(in) :: duty
     type(error_t), allocatable, intent(out) :: error
+    class(table_watch_t), intent(inout), optional :: watch
     type(film_row_t) :: rows(size(duty%time))
     integer, allocatable :: field_rows(:)
     real(dp) :: before
@@ -170,6 +173,10 @@ contains
         call self%find_steady(duty, rows(i), error)
       else
         call self%march_to(duty, i, rows(i), error)
+      end if
+      if (present(watch)) then
+        call watch%row_done(i, size(duty%time))
+        if (watch%wants_to_stop) call fail(error, 'interrupted', status_integration)
       end if
       if (allocated(error)) exit
       do k = 1, size(field_rows)

@@ -57,6 +57,7 @@ module film_law
     procedure, non_overridable :: shear_moment_slopes
     procedure :: is_quasi_static
     procedure, nopass :: gives_pressure => no
+    procedure :: is_without_memory
     procedure, nopass :: gives_side_flow => no
     procedure, non_overridable :: drag_moment
     procedure, non_overridable :: neglects_shear
@@ -151,6 +152,12 @@ contains
     class(film_law_t), intent(in) :: self
     is_quasi_static = self%gives_pressure()
   end function is_quasi_static
+
+  !> Whether the film that is marched after a run is to have no memory: Reynolds' condition, for comparison.
+  pure logical function is_without_memory(self)
+    class(film_law_t), intent(in) :: self
+    is_without_memory = .false.
+  end function is_without_memory
 
   !> Properties of a law: whether it gives a pressure relative to that at the ends of the film, and a side flow. The default is
   !> `no`.

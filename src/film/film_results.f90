@@ -32,8 +32,9 @@ module film_results
     real(dp) :: time = 0                  !! [s]
     real(dp), allocatable :: angle(:)     !! from x towards y (around) [rad]
     real(dp), allocatable :: axial(:)     !! distance from the middle of the bearing (along) [m]
-    real(dp), allocatable :: pressure(:, :)    !! above the cavitation pressure [Pa]
-    real(dp), allocatable :: fraction(:, :)    !! film fraction [-]
+    real(dp), allocatable :: thickness(:)      !! (around) [m]
+    real(dp), allocatable :: pressure(:, :)    !! (along, around), above the cavitation pressure [Pa]
+    real(dp), allocatable :: fraction(:, :)    !! film fraction (along, around) [-]
     logical, allocatable :: is_supplied(:, :)  !! cells in a groove or hole
   end type film_field_t
 
@@ -134,6 +135,7 @@ contains
       if (cells%is_land) field%axial = field%axial + 0.5_dp*cells%supply%groove_width
     end associate
     field%pressure = solver%oil%pressure(state%pressure)*solver%pressure_unit
+    field%thickness = solver%gap%at_cells*solver%cells%clearance
     field%fraction = state%fraction
     field%is_supplied = state%kind == supplied
   end subroutine find_field

@@ -38,6 +38,7 @@ module finite_bearing
     procedure :: peak_and_flow
     procedure :: reduced_peak_and_flow
     procedure :: pressure_field
+    procedure :: is_without_memory
     procedure :: table_key
     procedure :: make_table
     procedure :: table_numbers
@@ -51,8 +52,9 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%word('variant', self%variant, 'table, direct, short', 'table', &
       'form of the film force; finite_bearing: table (computed once), direct (solved each time), short (Ocvirk)', example='table')
-    call list%word('cavitation', self%cavitation, 'reynolds, gumbel, none', 'reynolds', &
-      'negative pressures; reynolds: film ruptures with zero pressure and slope; gumbel: they are set to 0')
+    call list%word('cavitation', self%cavitation, 'reynolds, gumbel, none, mass_conserving', 'reynolds', &
+      'negative pressures; reynolds: film ruptures with zero pressure and slope; gumbel: they are set to 0; mass_conserving: '// &
+      'the film of film_history balances its oil, that of the run is as with reynolds')
     call self%add_viscosity(list)
     call list%add('film_moment', self%film_moment, &
       'the oil shear acts on the pin with a moment; default .true. for finite_bearing, else .false.', &
@@ -110,7 +112,7 @@ contains
     class(finite_bearing_t), intent(in) :: self
     real(dp), intent(in) :: tolerance
     integer, intent(out) :: table_points, film_points
-    table_points = merge(65, 97, self%cavitation == 'reynolds')
+    table_points = merge(65, 97, self%cavitation == 'reynolds' .or. self%cavitation == 'mass_conserving')
     if (tolerance > 3e-5_dp) table_points = 33
     if (self%table_points > 0) table_points = self%table_points
     film_points = 128
@@ -119,6 +121,11 @@ contains
     if (self%film_points > 0) film_points = self%film_points
   end subroutine choose_points
 
+  pure logical function is_without_memory(self)
+    class(finite_bearing_t), intent(in) :: self
+    is_without_memory = self%cavitation /= 'mass_conserving'
+  end function is_without_memory
+
   !> Identifies the contents of a table: laws with the same key have the same table. Empty if the variant needs none.
   function table_key(self, bearing, tolerance) result(key)
     class(finite_bearing_t), intent(in) :: self
@@ -126,11 +133,14 @@ contains
     real(dp), intent(in) :: tolerance
     character(len=:), allocatable :: key
     character(len=len(self%table_of)) :: text
+    character(len=:), allocatable :: condition
     integer :: table_points, film_points
     key = ''
     if (self%variant /= 'table') return
     call choose_points(self, tolerance, table_points, film_points)
-    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 6 '//self%cavitation//' ', 0.5_dp*bearing%length/bearing%pin_radius(), &
+    condition = self%cavitation
+    if (condition == 'mass_conserving') condition = 'reynolds'   ! the film of the run
+    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 6 '//condition//' ', 0.5_dp*bearing%length/bearing%pin_radius(), &
       ' ', table_points, ' ', film_points
     key = trim(text)
   end function table_key

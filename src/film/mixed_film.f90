@@ -3,9 +3,11 @@ module mixed_film
   use kinds, only: dp
   use film_law, only: film_law_t, film_motion_t, difference_steps, moved
   use asperities, only: asperities_t
+  use film_mobility, only: driven_velocity
+  use root_search, only: bracket_t, next_abscissa, narrow
   implicit none
   private
-  public :: mixed_forces, mixed_derivatives, motion_in_gap
+  public :: mixed_forces, mixed_derivatives, motion_in_gap, mixed_velocity
 
 contains
 
@@ -27,6 +29,73 @@ contains
     friction = rough%friction_force(tangential + pin_angular_speed*pin_radius - bearing_speed*(distance + pin_radius), pressing)
     call film%film_force(seen, film_force, film_moment)
   end subroutine mixed_forces
+
+  !> The inverse of `mixed_forces`: the velocity e' with which film and asperities carry a load, at the eccentricity and with the
+  !> angular speeds of `motion`, and the forces of the asperities.
+  !>
+  !> The film carries W - N n + f t. N depends on |e| alone; f depends on the tangential velocity u, which grows with f. So u -
+  !> u(f(u)) increases strictly and has one root, between the velocities for f = -mu N and f = mu N. Mostly the surfaces slide so
+  !> fast that one of these is the root.
+  pure subroutine mixed_velocity(film, rough, pin_radius, motion, load, velocity, pressing, friction)
+    class(film_law_t), intent(in) :: film
+    type(asperities_t), intent(in) :: rough
+    real(dp), intent(in) :: pin_radius            !! [m]
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: load(2)               !! of the pin on its bearing [N]
+    real(dp), intent(out) :: velocity(2)          !! [m/s]
+    real(dp), intent(out) :: pressing, friction   !! as in `mixed_forces` [N]
+    real(dp), parameter :: centred = 1e-3_dp      !! over the clearance; nearer to the centre no roughness is felt
+    real(dp), parameter :: close_enough = 1e-13_dp
+    type(bracket_t) :: bracket
+    real(dp) :: distance, n(2), t(2), gap, slope, ratio, sliding, limit, u, next
+    distance = norm2(motion%eccentricity)
+    n = [1.0_dp, 0.0_dp]
+    if (distance > 0) n = motion%eccentricity/distance
+    t = [-n(2), n(1)]
+    call rough%mean_gap(film%clearance - distance, gap, slope)
+    ratio = slope
+    if (distance > centred*film%clearance) ratio = max(film%clearance - gap, 0.0_dp)/distance
+    pressing = rough%force(distance)
+    sliding = 0.5_dp*(motion%pin_speed + motion%turning_speed)*pin_radius &
+      - 0.5_dp*(motion%pin_speed - motion%turning_speed)*(distance + pin_radius)   ! without the velocity of the centre
+    limit = rough%coefficient*pressing
+    friction = -sign(limit, sliding)
+    call carry(friction, velocity)
+    u = dot_product(t, velocity)
+    if (abs(rough%friction_force(u + sliding, pressing) - friction) <= close_enough*limit) return
+    call carry(-friction, velocity)   ! the velocities for both limits enclose the root
+    bracket%a = min(u, dot_product(t, velocity))
+    bracket%b = max(u, dot_product(t, velocity))
+    bracket%width = bracket%b - bracket%a
+    bracket%fa = residual(bracket%a)
+    bracket%fb = residual(bracket%b)
+    do while (bracket%fb > 0 .and. bracket%b - bracket%a > close_enough*abs(u + sliding))
+      next = next_abscissa(bracket)
+      if (.not. (next > bracket%a .and. next < bracket%b)) exit
+      call narrow(bracket, next, residual(next))
+    end do
+    friction = rough%friction_force(bracket%b + sliding, pressing)
+    call carry(friction, velocity)
+
+  contains
+
+    !> u less the tangential velocity with the friction at u [m/s].
+    pure real(dp) function residual(u)
+      real(dp), intent(in) :: u
+      real(dp) :: v(2)
+      call carry(rough%friction_force(u + sliding, pressing), v)
+      residual = u - dot_product(t, v)
+    end function residual
+
+    !> The velocity with a given friction.
+    pure subroutine carry(force, v)
+      real(dp), intent(in) :: force
+      real(dp), intent(out) :: v(2)
+      real(dp) :: driven(2)
+      call driven_velocity(film, ratio*motion%eccentricity, load - pressing*n + force*t, driven)
+      v = dot_product(n, driven)/slope*n + (dot_product(t, driven)/ratio + 0.5_dp*motion%pin_speed*distance)*t
+    end subroutine carry
+  end subroutine mixed_velocity
 
   !> The motion on which the film between rough surfaces depends.
   pure type(film_motion_t) function motion_in_gap(film, rough, motion) result(seen)

@@ -1,7 +1,7 @@
 !> Reads and checks the files of measured curves that a case names, and puts the curves into the case.
 module case_curves
   use kinds, only: dp
-  use error_handling, only: error_t
+  use error_handling, only: error_t, fail, status_case_file
   use checksums, only: checksum_t
   use posix_files, only: absolute_path
   use measured_curve, only: measured_curve_t
@@ -10,12 +10,15 @@ module case_curves
   use text_tools, only: printable, integer_text, path_beside
   use text_file, only: read_text_file
   use case_definition, only: case_t
+  use compliance_file, only: parse_compliances
+  use history_case, only: history_case_t, bore_case_t
+  use joint_places, only: places, n_places
   use case_schema, only: shown_group
   use case_values, only: case_values_t
-  use curve_file, only: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque
+  use curve_file, only: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque, load
   implicit none
   private
-  public :: provide_curves, period_fault
+  public :: provide_curves, provide_history, period_fault
 
   integer, parameter :: largest_file = 100   !! MB
   real(dp), parameter :: widest_gap = 30     !! largest interval between two points of a pressure curve [degrees]
@@ -31,8 +34,17 @@ contains
   subroutine provide_curves(values, into)
     type(case_values_t), intent(inout) :: values
     type(case_t), intent(inout) :: into
+    integer :: i
     if (into%drive%table%is_wanted()) call provide(values, into%file, 'drive', 'torque_table', turning_speed, torque, &
       into%drive%table)
+    do i = 1, n_places
+      call provide_history(values, into%file, into%joints(i)%history, values%law_group('supply', trim(places(i)%name)), &
+        values%law_group('bore', trim(places(i)%name)))
+    end do
+    if (allocated(into%load)) then
+      if (mod(into%load%period_deg, 360) == 0) call provide(values, into%file, 'bearing_load', 'table', crank_angle, load, &
+        into%load%curve, into%load%period_deg)   ! else refused by the rules
+    end if
     if (.not. allocated(into%measured)) return
     associate (gas => into%measured)
       if (gas%is_external() .or. all(gas%period_deg /= measured_pressure_periods)) return   ! without table, or refused by the rules
@@ -40,57 +52,125 @@ contains
     end associate
   end subroutine provide_curves
 
-  !> Read one curve. A curve with a period is a pressure.
+  !> Read the tables of a film with memory: the pressure of its supply over the crank angle, the compliances of its bore.
+  subroutine provide_history(values, case_file, history, supply_group, bore_group)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: case_file
+    type(history_case_t), intent(inout) :: history
+    character(len=*), intent(in) :: supply_group, bore_group
+    if (allocated(history%supply)) then
+      if (history%supply%feed%is_wanted()) call provide(values, case_file, supply_group, 'pressure_table', crank_angle, pressure, &
+        history%supply%feed)
+    end if
+    if (.not. allocated(history%bore)) return
+    if (history%bore%table%is_wanted()) call provide_compliances(values, case_file, bore_group, history%bore)
+  end subroutine provide_history
+
+  subroutine provide_compliances(values, case_file, group, bore)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: case_file, group
+    type(bore_case_t), intent(inout) :: bore
+    character(len=*), parameter :: key = 'compliance_table'
+    type(error_t), allocatable :: error
+    character(len=:), allocatable :: text, message
+    integer :: line
+    call read_new(values, case_file, group, key, bore%table, text)
+    if (allocated(text)) then
+      call parse_compliances(text, bore%compliances, message, line)
+      if (message /= '') then
+        call fail(error, printable(bore%table%path, 200)//':'//integer_text(line)//': '//message, status_case_file)
+        call note_error(values, group, key, error)
+        return
+      end if
+    end if
+    call finish_table(values, group, key, bore%table)
+  end subroutine provide_compliances
+
+  !> Read one curve. A curve with a period is a pressure or a load; a load may have two components.
   subroutine provide(values, case_file, group, key, x_is, y_is, curve, period)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: case_file, group, key
     type(quantity_t), intent(in) :: x_is, y_is
     type(measured_curve_t), intent(inout) :: curve
     integer, intent(in), optional :: period   !! [degrees]
-    character(len=:), allocatable :: path, text, message, head
+    character(len=:), allocatable :: text, message
+    type(error_t), allocatable :: error
+    integer, allocatable :: lines(:)
+    integer :: line
+    call read_new(values, case_file, group, key, curve, text)
+    if (allocated(text)) then
+      if (y_is%name == load%name) then
+        call parse_curve(text, x_is, y_is, curve%x, curve%y, lines, message, line, curve%z)
+        if (message == '') call close_load(curve, period, lines, message, line)
+      else
+        call parse_curve(text, x_is, y_is, curve%x, curve%y, lines, message, line)
+        if (message == '' .and. present(period)) call close_period(curve, period, lines, message, line)
+      end if
+      if (message /= '') then
+        call fail(error, printable(curve%path, 200)//':'//integer_text(line)//': '//message, status_case_file)
+        deallocate (curve%path)
+        call note_error(values, group, key, error)
+        return
+      end if
+    end if
+    call finish_table(values, group, key, curve)
+  end subroutine provide
+
+  !> Read the text of a table, unless it has been read before or cannot be read, which is noted.
+  subroutine read_new(values, case_file, group, key, table, text)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: case_file, group, key
+    type(measured_curve_t), intent(inout) :: table
+    character(len=:), allocatable, intent(out) :: text
+    character(len=:), allocatable :: path
     type(error_t), allocatable :: error
     type(checksum_t) :: sum
-    integer, allocatable :: lines(:)
-    integer :: line, place
-    logical :: is_read
-
-    if (curve%file == '') then
+    if (table%file == '') then
       call values%refuse(group, key, trim(merge('must be the name of a file', 'required                  ', &
         values%is_given(group, key))))
       return
     end if
-    path = path_beside(case_file, curve%file)
-    is_read = .false.
-    if (allocated(curve%path)) is_read = curve%path == path
-    head = values%file//': '//shown_group(group)//' '//key//': '
-    if (.not. is_read) then
-      if (allocated(curve%path)) deallocate (curve%path)
-      call read_text_file(path, largest_file, 'table', text, error)
-      if (allocated(error)) then
-        error%message = head//error%message
-        call values%problems%add_error(error, group, values%place_in_file(values%place_of(group, key)))
-        return
-      end if
-      call parse_curve(text, x_is, y_is, curve%x, curve%y, lines, message, line)
-      if (message == '' .and. present(period)) call close_period(curve, period, lines, message, line)
-      if (message /= '') then
-        call values%problems%add(head//printable(path, 200)//':'//integer_text(line)//': '//message, group, &
-          values%place_in_file(values%place_of(group, key)))
-        return
-      end if
-      call sum%add(text)
-      curve%found = sum%hexadecimal()
-      curve%path = absolute_path(path)
+    path = path_beside(case_file, table%file)
+    if (allocated(table%path)) then
+      if (table%path == path) return
+      deallocate (table%path)
     end if
-    if (curve%digest /= '' .and. curve%digest /= curve%found) then
-      call values%refuse(group, key//'_digest', printable(path, 200)//' has other content: its digest is '//curve%found)
+    call read_text_file(path, largest_file, 'table', text, error)
+    if (allocated(error)) then
+      deallocate (text)
+      call note_error(values, group, key, error)
+      return
+    end if
+    call sum%add(text)
+    table%found = sum%hexadecimal()
+    table%path = absolute_path(path)
+  end subroutine read_new
+
+  !> Note an error of a table.
+  subroutine note_error(values, group, key, error)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: group, key
+    type(error_t), allocatable, intent(inout) :: error
+    error%message = values%file//': '//shown_group(group)//' '//key//': '//error%message
+    call values%problems%add_error(error, group, values%place_in_file(values%place_of(group, key)))
+  end subroutine note_error
+
+  !> Check the digest of a table that has been read, and put its absolute path and digest into the values.
+  subroutine finish_table(values, group, key, table)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: group, key
+    type(measured_curve_t), intent(in) :: table
+    integer :: place
+    if (.not. allocated(table%path)) return
+    if (table%digest /= '' .and. table%digest /= table%found) then
+      call values%refuse(group, key//'_digest', printable(table%path, 200)//' has other content: its digest is '//table%found)
       return
     end if
     place = values%place_of(group, key)
-    values%values(place)%text = curve%path
+    values%values(place)%text = table%path
     place = values%place_of(group, key//'_digest')
-    values%values(place)%text = curve%found
-  end subroutine provide
+    values%values(place)%text = table%found
+  end subroutine finish_table
 
   !> Check a measured pressure over one period and remove a last point that repeats the first one. If it is wrong, `message` says
   !> what is wrong and `line` where.
@@ -110,6 +190,45 @@ contains
     curve%x = curve%x(:n - 1)
     curve%y = curve%y(:n - 1)
   end subroutine close_period
+
+  !> Check the load of a bearing over one period and remove a last row that repeats the first one. If it is wrong, `message` says
+  !> what is wrong and `line` where.
+  subroutine close_load(curve, period, lines, message, line)
+    type(measured_curve_t), intent(inout) :: curve
+    integer, intent(in) :: period   !! [degrees]
+    integer, intent(in) :: lines(:)
+    character(len=:), allocatable, intent(out) :: message
+    integer, intent(out) :: line
+    real(dp), parameter :: largest = 1e12_dp, closest = 1e-6_dp, rounding = 1e-9_dp   ! [N], [degrees], relative
+    real(dp) :: sizes(size(curve%x)), span
+    integer :: i, n
+    n = size(curve%x)
+    sizes = hypot(curve%y, curve%z)
+    span = curve%x(n) - curve%x(1)
+    message = ''
+    line = lines(n)
+    do i = 1, n
+      if (sizes(i) > largest) message = 'load = '//short_text(sizes(i))//' N: must be at most 1e12 N'
+      if (i > 1) then
+        if (curve%x(i) - curve%x(i - 1) < closest) message = 'crank angle: must be at least 1e-6 degrees after that of the row '// &
+          'before'
+      end if
+      if (message /= '') line = lines(i)
+      if (message /= '') return
+    end do
+    if (span > period + same_angle(period)) then
+      message = 'the table spans '//short_text(span)//' degrees, more than its period of '//integer_text(period)
+    else if (span > period - same_angle(period)) then
+      if (abs(curve%y(n) - curve%y(1)) > rounding*maxval(sizes) .or. abs(curve%z(n) - curve%z(1)) > rounding*maxval(sizes)) then
+        message = 'the load must be that of the first row, a period before'
+      else if (n == 2) then
+        message = 'needs a second row within the period'
+      end if
+      curve%x = curve%x(:n - 1)
+      curve%y = curve%y(:n - 1)
+      curve%z = curve%z(:n - 1)
+    end if
+  end subroutine close_load
 
   !> Find a fault in a pressure curve over one period, and the point at which it occurs. The message is empty if there is none.
   pure subroutine period_fault(angle, pressure, period, message, at)

@@ -28,13 +28,21 @@ contains
     character(len=:), allocatable :: text
     integer :: i
     text = printable(case%file, 200)//': correct'
-    call add('machine', machine_text(case))
+    if (allocated(case%load)) then
+      call add('load', load_text(case))
+    else
+      call add('machine', machine_text(case))
+    end if
     call add('speed', speed_text(case))
     if (allocated(case%combustion)) call add('gas', case%combustion%description())
     if (allocated(case%measured)) call add('gas', case%measured%description())
     do i = 1, n_places
       associate (place => in_order(i))
-        if (i == 1 .or. case%joints(place)%has_clearance()) call add(trim(places(place)%title), joint_text(case%joints(place)))
+        if (allocated(case%load)) then
+          if (i == 1) call add('bearing', joint_text(case%joints(place)))
+        else if (i == 1 .or. case%joints(place)%has_bearing()) then
+          call add(trim(places(place)%title), joint_text(case%joints(place)))
+        end if
       end associate
     end do
     if (allocated(case%guide)) call add('guide', guide_text(case))
@@ -68,6 +76,18 @@ contains
     if (allocated(case%crankshaft)) text = text//', elastic crankshaft'
   end function machine_text
 
+  !> The table of a bearing by itself, and what turns.
+  function load_text(case) result(text)
+    type(case_t), intent(in) :: case
+    character(len=:), allocatable :: text
+    associate (load => case%load)
+      text = integer_text(size(load%curve%x))//' rows of up to '// &
+        quantity_text(load%factor*maxval(hypot(load%curve%y, load%curve%z)), 'N', digits)//', '//load%interpolation// &
+        ', repeated every '//integer_text(load%period_deg)//' degrees; frame '//load%frame//', journal '//load%journal// &
+        ', bearing '//load%bearing
+    end associate
+  end function load_text
+
   function speed_text(case) result(text)
     type(case_t), intent(in) :: case
     character(len=:), allocatable :: text
@@ -80,7 +100,8 @@ contains
       else
         text = text//' at first, free crank'
       end if
-      text = text//'; mean piston speed '//short_text(abs(speed)*2*case%mechanism%crank_length/pi, 3)//' m/s'
+      if (.not. allocated(case%load)) text = text//'; mean piston speed '// &
+        short_text(abs(speed)*2*case%mechanism%crank_length/pi, 3)//' m/s'
     end associate
   end function speed_text
 
@@ -95,8 +116,11 @@ contains
     type(joint_case_t), intent(in) :: joint
     character(len=:), allocatable :: text
     text = 'ideal'
-    if (.not. joint%has_clearance()) return
-    text = 'clearance '//quantity_text(joint%clearance, 'm', digits)//', '// &
+    if (.not. joint%has_bearing()) return
+    text = ''
+    if (joint%is_carried()) text = 'quasi-static, '
+    if (joint%load_share < 1) text = text//short_text(joint%load_share)//' of the load, '
+    text = text//'clearance '//quantity_text(joint%clearance, 'm', digits)//', '// &
       short_text(joint%clearance/joint%bearing_radius, 2)//' of the radius of '//quantity_text(joint%bearing_radius, 'm', digits)
     if (joint%bearing_length > 0) text = text//', length/diameter '//short_text(0.5_dp*joint%bearing_length/joint%bearing_radius, 3)
     if (allocated(joint%film)) then

@@ -7,6 +7,8 @@ module case_loader
   use case_schema, only: find_group, find_key, is_listed
   use value_reader, only: set_to_default, read_times
   use case_values, only: case_values_t
+  use history_rules, only: read_positions
+  use joint_places, only: n_places
   use train_case, only: number_throws, most_cylinders
   use case_curves, only: provide_curves
   use state_file, only: provide_state
@@ -36,6 +38,7 @@ contains
     logical, intent(in), optional :: only(:)  !! groups to be set. A group of a joint may change the laws of the other joint; if one
                                               !! such group changes, set all groups of joints.
     type(loader_t) :: loader
+    integer :: i
     loader%values => values
     allocate (loader%only(size(values%groups)), source=.true.)
     if (present(only)) then
@@ -47,7 +50,11 @@ contains
     end if
     call visit_case(into, loader)
     call provide_bodies(values, into)
+    if (allocated(into%load)) call hold_speed(values, into)
     call read_times(into%output%film_times, into%output%snapshot_times)
+    do i = 1, n_places
+      call read_positions(into%joints(i)%history)
+    end do
     call provide_curves(values, into)
     call provide_state(values, into)
   end subroutine load_case
@@ -82,6 +89,17 @@ contains
       call load_model(values, group, into%cylinders(i))
     end do
   end subroutine provide_bodies
+
+  !> The crank of a bearing by itself has a prescribed speed, which the case need not say.
+  subroutine hold_speed(values, into)
+    type(case_values_t), intent(inout) :: values
+    type(case_t), intent(inout) :: into
+    integer :: place
+    place = values%place_of('drive', 'kind')
+    if (values%values(place)%given(1)) return
+    into%drive%kind = 'constant_speed'
+    values%values(place)%text = into%drive%kind
+  end subroutine hold_speed
 
   !> Set the parameters of one model, which are the keys of one group.
   subroutine load_model(values, group, model)

@@ -251,7 +251,7 @@ contains
       integer, intent(in) :: place   !! index in `places`
       logical :: at_piston
       real(dp) :: room   !! [m]
-      if (.not. joint%has_clearance()) return
+      if (.not. joint%has_bearing()) return
       at_piston = places(place)%bearing == body_piston
       associate (r => joint%bearing_radius, length => c%mechanism%crank_length)
         call expect(group, 'clearance', joint%clearance, r, 1e-4_dp, 0.1_dp, 'is # of bearing_radius = @ m', &

@@ -3,18 +3,20 @@ module case_rules
   use kinds, only: dp
   use constants, only: two_pi
   use number_text, only: short_text
+  use text_tools, only: integer_text
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
-  use case_schema, only: find_group
   use measured_pressure, only: measured_pressure_periods
+  use case_schema, only: find_group
   use case_values, only: case_values_t
   use archard_wear, only: of_bore
   use friction_law, only: friction_law_t
+  use history_rules, only: check_history
   use train_rules, only: check_train
   use train_builder, only: inertia_beside
   use body_rules, only: check_guide, check_elastic, bore_reach
   use chain_motion, only: crank_pin, piston_pin, n_pins, n_bodies, body_crank, body_big_end, body_small_end, body_piston
-  use joint_places, only: places, n_places, in_order, name_prefix, joint_group
+  use joint_places, only: places, n_places, in_order, name_prefix, joint_group, main_bearing
   implicit none
   private
   public :: check_rules
@@ -31,20 +33,26 @@ contains
     logical :: turns   ! the crank turns at the start
     integer :: i
     turns = abs(c%initial%crank_speed) > 0
-    call check_train(c, values)
-    if (has_train_problem()) return
-    call check_bodies()
+    if (allocated(c%load)) then
+      call check_load()
+    else
+      call check_train(c, values)
+      if (has_train_problem()) return
+      call check_bodies()
+    end if
     do i = 1, n_places
       call check_joint(c%joints(in_order(i)), in_order(i))
     end do
     do i = 1, n_places
       call check_friction(c%joints(in_order(i)), in_order(i))
     end do
-    call check_guide(c, values)
     call check_start()
-    call check_elastic(c, values)
-    call check_gas()
-    call check_drive()
+    if (.not. allocated(c%load)) then
+      call check_guide(c, values)
+      call check_elastic(c, values)
+      call check_gas()
+      call check_drive()
+    end if
     call check_periods()
     call check_run()
     call check_output()
@@ -103,6 +111,35 @@ contains
       end associate
     end subroutine check_bodies
 
+    !> Check a bearing by itself: that there is no part of a mechanism, that its joint is carried, and that its bodies are known.
+    subroutine check_load()
+      character(len=*), parameter :: only = 'is for a mechanism; this case has &bearing_load', &
+        groups(6) = [character(len=17) :: 'mechanism', 'guide', 'elastic_rod', 'crankshaft', 'combustion', 'cylinder_pressure'], &
+        of_drive(4) = [character(len=16) :: 'torque', 'damping', 'flywheel_inertia', 'torque_table'], &
+        of_initial(4) = [character(len=18) :: 'piston_offset', 'piston_offset_rate', 'piston_tilt', 'piston_tilt_rate']
+      character(len=:), allocatable :: group
+      integer :: k
+      do k = 1, size(groups)
+        if (values%is_present(find_group(values%groups, trim(groups(k))))) call values%refuse_group(trim(groups(k)), only)
+      end do
+      do k = 2, n_places
+        group = joint_group(in_order(k))
+        if (values%is_present(find_group(values%groups, group))) call values%refuse_group(group, only)
+      end do
+      do k = 1, size(of_drive)
+        call forbid(values%is_said(values%place_of('drive', trim(of_drive(k)))), 'drive', trim(of_drive(k)), only)
+      end do
+      call forbid(c%drive%kind == 'free' .and. values%is_given('drive', 'kind'), 'drive', 'kind', &
+        'must be constant_speed with &bearing_load')
+      do k = 1, size(of_initial)
+        call forbid(values%is_said(values%place_of('initial', trim(of_initial(k)))), 'initial', trim(of_initial(k)), only)
+      end do
+      call forbid(.not. c%joints(in_order(1))%is_carried(), 'joint', 'kind', 'must be quasi_static with &bearing_load')
+      call forbid(mod(c%load%period_deg, 360) /= 0, 'bearing_load', 'period_deg', 'must be a multiple of 360')
+      call values%demand(c%load%crank_to_rod > 0 .or. .not. c%load%needs_rod(), 'bearing_load', 'crank_to_rod', &
+        'where frame, journal or bearing is rod')
+    end subroutine check_load
+
     !> The clearance of a joint, unless it is wrong by itself [m].
     elemental real(dp) function play_of(joint)
       type(joint_case_t), intent(in) :: joint
@@ -117,26 +154,34 @@ contains
       character(len=:), allocatable :: group      !! of the joint
       logical :: bearing_turns
       group = joint_group(place)
-      if (.not. joint%has_clearance()) then
+      if (allocated(c%load) .and. .not. joint%is_carried()) return   ! refused already
+      call forbid(place == main_bearing .and. joint%has_clearance(), group, 'kind', &
+        'must be ideal or quasi_static: the crank turns about a fixed axis')
+      call forbid(place /= main_bearing .and. abs(joint%load_share - 1) > 0, group, 'load_share', &
+        'is for place = ''main_bearing'' alone')
+      if (.not. joint%has_bearing()) then
         call forbid(has_own_law(place) .or. place == in_order(1) .and. (allocated(joint%contact) .or. &
           allocated(joint%friction) .or. allocated(joint%film) .or. allocated(joint%asperities) .or. allocated(joint%wear)), &
           group, 'kind', &
-          'must be clearance with contact, friction or lubrication: an ideal joint has no '// &
+          'must be clearance (or quasi_static) with contact, friction or lubrication: an ideal joint has no '// &
           'clearance; remove these groups, for example with --set contact=none')
         call forbid(joint%clearance > 0 .and. .not. values%is_given(group, 'kind'), group, 'clearance', &
           'needs kind = ''clearance''; the default is ideal')
         return
       end if
       if (allocated(joint%film)) call check_oil(joint, law_group('lubrication', place))
-      call values%demand(joint%clearance > 0, group, 'clearance', 'with kind = ''clearance''')
-      call values%demand(joint%bearing_radius > 0, group, 'bearing_radius', 'with kind = ''clearance''')
+      call values%demand(joint%clearance > 0, group, 'clearance', 'with kind = '''//joint%kind//'''')
+      call values%demand(joint%bearing_radius > 0, group, 'bearing_radius', 'with kind = '''//joint%kind//'''')
       if (joint%bearing_radius > 0) call forbid(joint%bearing_radius <= joint%clearance, group, 'clearance', &
         'must be < bearing_radius = '//short_text(joint%bearing_radius)//': the pin''s radius is the difference')
       call values%demand(joint%bearing_length > 0 .or. .not. allocated(joint%film), group, 'bearing_length', 'with lubrication')
-      call forbid(.not. (allocated(joint%contact) .or. allocated(joint%film)), group, 'kind', &
+      if (joint%is_carried()) call check_carried(joint, place)
+      call forbid(joint%has_clearance() .and. .not. (allocated(joint%contact) .or. allocated(joint%film)), group, 'kind', &
         'needs contact or lubrication: without them no force would act on the pin')
-      call forbid(allocated(joint%friction) .and. .not. allocated(joint%contact), law_group('friction', place), 'law', &
+      call forbid(allocated(joint%friction) .and. .not. (allocated(joint%contact) .or. joint%is_carried()), &
+        law_group('friction', place), 'law', &
         'needs the group contact: dry friction follows the normal force')
+      call check_film_history(joint, group, place)
       if (values%problems%concerns(group)) return
       if (allocated(joint%asperities)) then
         call check_asperities(joint, law_group('asperities', place))
@@ -149,6 +194,67 @@ contains
       call check_transition(joint, law_group('lubrication', place))
       call check_elastic_film(joint, law_group('lubrication', place), law_group('contact', place))
     end subroutine check_joint
+
+    !> Check the groups of a film with memory.
+    subroutine check_film_history(joint, group, place)
+      type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: group   !! of the joint
+      integer, intent(in) :: place            !! index in `places`
+      character(len=:), allocatable :: own, oil, supply, bore, cavitation
+      integer :: key
+      own = law_group('film_history', place)
+      oil = law_group('lubrication', place)
+      supply = law_group('supply', place)
+      bore = law_group('bore', place)
+      cavitation = ''
+      key = values%place_of(oil, 'cavitation')
+      if (allocated(joint%film)) then
+        if (values%is_used(key)) cavitation = values%values(key)%text
+      end if
+      associate (history => joint%history)
+        if (.not. allocated(history%march)) then
+          call forbid(allocated(history%supply), supply, 'kind', 'needs the group film_history, whose film it feeds')
+          call forbid(allocated(history%bore), bore, 'outer_radius', 'needs the group film_history, whose film deforms it')
+          call forbid(joint%ambient_over_cavitation > 0, oil, 'ambient_over_cavitation', 'needs the group film_history')
+          call forbid(cavitation == 'mass_conserving', oil, 'cavitation', &
+            'needs the group film_history, whose film conserves its oil')
+          return
+        end if
+        call forbid(.not. allocated(joint%film), own, 'drive', 'needs the group lubrication: the film of that joint')
+        call forbid(history%march%table /= '', own, 'table', 'must not be given with &mechanism: the run gives the load')
+        call forbid(mod(history%march%cycle_deg, 360) /= 0, own, 'cycle_deg', 'must be a multiple of 360')
+        call forbid(cavitation == 'gumbel' .or. cavitation == 'none', oil, 'cavitation', &
+          'must be mass_conserving with film_history, or reynolds for a film without memory, for comparison')
+        call forbid(cavitation == 'reynolds' .and. .not. values%is_given(oil, 'cavitation'), oil, 'cavitation', &
+          'must be given with film_history: mass_conserving, or reynolds for a film without memory')
+        if (values%problems%concerns(group)) return
+        call check_history(values, history, joint%bearing_radius, joint%bearing_length, joint%elastic%pressure_viscosity, &
+          joint%ambient_over_cavitation, supply, bore)
+        if (.not. allocated(history%supply)) return
+        associate (feed => history%supply%feed)
+          if (.not. (feed%is_wanted() .and. allocated(feed%x))) return
+          call forbid(any(feed%y < 0), supply, 'pressure_table', 'must have pressures >= 0, above ambient')
+          call forbid(feed%x(size(feed%x)) - feed%x(1) > history%march%cycle_deg*(1 + rounding), supply, 'pressure_table', &
+            'must not span more than cycle_deg')
+        end associate
+      end associate
+    end subroutine check_film_history
+
+    !> Check that a film alone carries the load of a pin that is ideal in the mechanism.
+    subroutine check_carried(joint, place)
+      type(joint_case_t), intent(in) :: joint
+      integer, intent(in) :: place   !! index in `places`
+      call forbid(.not. allocated(joint%film), joint_group(place), 'kind', &
+        'quasi_static needs the group lubrication: a film carries the load')
+      call forbid(allocated(joint%friction), law_group('friction', place), 'law', &
+        'is not for kind = ''quasi_static'': no contact law acts there; give the group the place of another joint')
+      if (.not. allocated(joint%film)) return
+      call forbid(allocated(joint%contact) .and. .not. joint%elastic%is_wanted, law_group('contact', place), 'law', &
+        'is not for kind = ''quasi_static'' unless elastic_film = .true.: the film carries all of the load')
+      call forbid(.not. joint%film%is_quasi_static(), law_group('lubrication', place), 'law', &
+        'must give a force that depends on the velocity of the pin alone, with kind = ''quasi_static'': finite_bearing, or '// &
+        'closed_form and half_film of pinkus_sternlicht')
+    end subroutine check_carried
 
     !> Check that the viscosity of the film is given by one source.
     subroutine check_oil(joint, group)
@@ -187,6 +293,9 @@ contains
             'needs transition = ''weighted''; the default is switch')
           return
         end if
+        call forbid(joint%is_carried(), own, 'transition', 'must be switch with kind = ''quasi_static'': the film carries all '// &
+          'of the load')
+        if (joint%is_carried()) return
         call forbid(allocated(joint%asperities), own, 'transition', &
           'must be switch with asperities: they carry with the film at every depth')
         call forbid(.not. allocated(joint%contact), own, 'transition', 'needs the group contact: film and contact share the load')
@@ -201,7 +310,7 @@ contains
       type(joint_case_t), intent(in) :: joint
       character(len=*), intent(in) :: own, contact   !! groups of the film and of the contact
       if (.not. joint%elastic%is_wanted) then
-        call forbid(joint%elastic%pressure_viscosity > 0, own, 'pressure_viscosity', &
+        call forbid(joint%elastic%pressure_viscosity > 0 .and. .not. allocated(joint%history%march), own, 'pressure_viscosity', &
           'needs elastic_film = .true.: the pressures between rigid walls are not realistic')
         return
       end if
@@ -318,8 +427,7 @@ contains
       character(len=*), intent(in) :: name
       integer, intent(in) :: place   !! index in `places`
       character(len=:), allocatable :: group
-      group = trim(places(place)%name)//'.'//name
-      if (.not. values%is_present(find_group(values%groups, group))) group = name
+      group = values%law_group(name, trim(places(place)%name))
     end function law_group
 
     !> Check that the initial positions of the pins are admissible.
@@ -332,9 +440,10 @@ contains
           call check_pin(c%joints(in_order(place)), joint_group(in_order(place)), name_prefix(in_order(place)), &
             distance(in_order(place)), start%eccentricity_rate(:, in_order(place)))
         end do
-        if (values%problems%concerns('mechanism') .or. values%problems%concerns('initial')) return
+        if (values%problems%concerns('mechanism') .or. values%problems%concerns('initial') .or. allocated(c%load)) return
         place = in_order(max(1, findloc(distance(in_order) > 0, .true., 1)))
-        call forbid(sum(distance) >= m%rod_length - m%crank_length, 'initial', name_prefix(place)//'eccentricity', &
+        call forbid(sum(distance, c%joints%has_clearance()) >= m%rod_length - m%crank_length, 'initial', &
+          name_prefix(place)//'eccentricity', &
           'must be shorter than rod_length - crank_length = '//short_text(m%rod_length - m%crank_length))
       end associate
     end subroutine check_start
@@ -346,7 +455,7 @@ contains
       character(len=*), intent(in) :: prefix   !! prefix of the keys
       real(dp), intent(in) :: distance, rate(2)
       associate (key => prefix//'eccentricity')
-        if (joint%has_clearance()) then
+        if (joint%has_bearing()) then
           if (values%problems%concerns(group)) return
           if (distance >= joint%bearing_radius) then
             call values%refuse('initial', key, 'must be shorter than bearing_radius = '//short_text(joint%bearing_radius)// &
@@ -355,6 +464,8 @@ contains
             call values%refuse('initial', key, 'must be shorter than the clearance, '//short_text(joint%clearance)// &
               ', where there is no contact')
           end if
+          call forbid(joint%is_carried() .and. norm2(rate) > 0, 'initial', key//'_rate', &
+            'must be 0 with kind = ''quasi_static'': it follows from the load')
         else
           call forbid(distance > 0, 'initial', key, 'must be 0 in an ideal joint')
           call forbid(norm2(rate) > 0, 'initial', key//'_rate', 'must be 0 in an ideal joint')
@@ -369,7 +480,8 @@ contains
       if (c%output%film_times == '') return
       has_film = .false.
       do place = 1, n_places
-        if (allocated(c%joints(place)%film)) has_film = has_film .or. c%joints(place)%film%gives_pressure()
+        if (allocated(c%joints(place)%film)) has_film = has_film .or. c%joints(place)%film%gives_pressure() .or. &
+          allocated(c%joints(place)%history%march)
       end do
       call forbid(.not. allocated(c%output%snapshot_times), 'output', 'film_times', &
         'must be times >= 0 in rising order with commas, or from:to:count')
@@ -438,8 +550,8 @@ contains
           return
         end if
         call forbid(.not. turns, 'run', 'until', 'needs crank_speed other than 0')
-        call forbid(run%period_revolutions < c%gas_revolutions(), 'run', 'period_revolutions', &
-          'must be >= 2, what the gas takes to repeat')
+        call forbid(run%period_revolutions < c%forced_revolutions(), 'run', 'period_revolutions', &
+          'must be >= '//integer_text(c%forced_revolutions())//', what the gas or the load takes to repeat')
         call forbid(is_cut .and. c%output%start_time > 0, 'output', 'start_time', 'must be 0 with window = ''last_period''')
         call forbid(is_cut .and. run%most_revolutions <= run%period_revolutions, 'run', 'most_revolutions', &
           'must be > period_revolutions with window = ''last_period''')

@@ -5,8 +5,8 @@ module case_run
   use case_definition, only: case_t
   use command_line, only: command_line_t
   use trace_columns, only: column_list_t
-  use film_files, only: write_film_file
-  use wear_file, only: write_wear_file
+  use history_files, only: march_histories
+  use report_files, only: result_suffixes, write_report_files
   use simulation, only: run_t, run_report_t
   use run_state, only: run_state_t
   use state_file, only: state_text, state_suffix, reached
@@ -103,8 +103,6 @@ contains
   !> a twin's results that have a resolved case of their own do not belong to a twin and are kept.
   subroutine remove_earlier(self)
     class(case_run_t), intent(inout) :: self
-    character(len=*), parameter :: suffixes(*) = [character(len=18) :: '.summary.csv', '.ideal.summary.csv', '.csv', &
-      '.events.csv', '.film.csv', '.wear.csv', '.certificate.csv', '.ideal.csv']
     logical :: was_there, keeps_twin
     integer :: i, status, ignored
     if (.not. self%is_twin) call remove_state(self)
@@ -112,9 +110,9 @@ contains
     status = 0
     keeps_twin = file_length(self%base//'.ideal.resolved.nml') >= 0
     if (self%is_twin) keeps_twin = .true.
-    do i = 1, size(suffixes)
-      if (status /= 0 .or. keeps_twin .and. index(suffixes(i), '.ideal') == 1) cycle
-      call remove_result(self%base//trim(suffixes(i)), was_there, status, keeps_part=i == 1)
+    do i = 1, size(result_suffixes)
+      if (status /= 0 .or. keeps_twin .and. index(result_suffixes(i), '.ideal') == 1) cycle
+      call remove_result(self%base//trim(result_suffixes(i)), was_there, status, keeps_part=i == 1)
       if (i == 2 .and. was_there) call synchronise_folder(self%base, ignored)
     end do
     if (status /= 0) call fail(self%error, printable(self%base, 200)//': earlier results cannot be removed: '// &
@@ -166,6 +164,7 @@ contains
       end do
       call write_state(self, run, state_error)
       call run%finish(self%report, self%error)
+      if (.not. allocated(self%error)) call march_histories(self%case, self%shows_progress, self%report, self%error)
       if (allocated(state_error)) call move_alloc(state_error, self%error)
     end if
     call self%progress%finish()
@@ -196,15 +195,8 @@ contains
     is_whole = self%report%status == 'done'
     if (any(files%file%has_failed())) is_whole = .false.
     if (is_whole) call files%file%conclude()
-    if (allocated(self%report%films)) then
-      call write_film_file(self%base//'.film.csv', self%report%films, file_error)
-      call keep_first(file_error, self%error)
-    end if
-    if (allocated(self%report%wear)) then
-      if (size(self%report%wear) > 0) call write_wear_file(self%base//'.wear.csv', self%report%wear, &
-        self%case%output%digits, file_error)
-      call keep_first(file_error, self%error)
-    end if
+    call write_report_files(self%base, self%case, self%report, file_error)
+    call keep_first(file_error, self%error)
     call write_summary(self, files)
     call self%summary%synchronise()
     call self%summary%conclude()

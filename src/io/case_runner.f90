@@ -13,6 +13,7 @@ module case_runner
   use film_files, only: provide_tables, tell_tables
   use trace_columns, only: column_list_t, choose_columns
   use run_summary, only: build_advice
+  use report_files, only: result_suffixes
   use run_start, only: try_start
   use case_run, only: case_run_t, name_file
   use bearing_run, only: bearing_run_t
@@ -160,14 +161,13 @@ contains
     type(case_t), intent(in) :: case
     character(len=*), intent(in) :: base
     type(error_t), allocatable, intent(out) :: error
-    character(len=*), parameter :: suffixes(*) = [character(len=18) :: '.csv', '.events.csv', '.film.csv', '.wear.csv', &
-      '.summary.csv', '.certificate.csv', '.ideal.csv', '.ideal.summary.csv', '.ideal.events.csv']
     character(len=:), allocatable :: written
     integer :: i
-    do i = 1, size(suffixes)
-      written = absolute_path(base//trim(suffixes(i)))
+    do i = 1, size(result_suffixes)
+      written = absolute_path(base//trim(result_suffixes(i)))
       call refuse_table('&drive torque_table', case%drive%table)
       if (.not. allocated(error) .and. allocated(case%measured)) call refuse_table('&cylinder_pressure table', case%measured%curve)
+      if (.not. allocated(error) .and. allocated(case%load)) call refuse_table('&bearing_load table', case%load%curve)
       if (allocated(error)) return
     end do
 
@@ -178,7 +178,7 @@ contains
       type(measured_curve_t), intent(in) :: table
       if (.not. allocated(table%path)) return
       if (table%path == written) call fail(error, printable(case%file, 200)//': '//key//': '//printable(base, 200)// &
-        trim(suffixes(i))//' would be replaced by the results: give another folder with --out, or the table another name', &
+        trim(result_suffixes(i))//' would be replaced by the results: give another folder with --out, or the table another name', &
         status_command_line)
     end subroutine refuse_table
   end subroutine keep_tables

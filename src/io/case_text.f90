@@ -102,7 +102,7 @@ contains
     integer :: group, i, dot
     text = ''
     do group = 1, size(values%groups)
-      if (values%groups(group)%is_model .and. .not. values%is_present(group)) cycle
+      if (values%groups(group)%is_model .and. .not. values%is_present(group) .or. values%is_replaced(group)) cycle
       dot = index(values%groups(group)%name, '.')
       text = text//'&'//name_in_file(values%groups(group))//newline
       if (dot > 0) text = text//'  place = '''//values%groups(group)%name(:dot - 1)//''''//newline

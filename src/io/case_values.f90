@@ -41,13 +41,16 @@ module case_values
     procedure :: check        !! required keys and ranges
     procedure :: check_required
     procedure :: by_law       !! text that names the laws that have a key
+    procedure :: is_replaced  !! whether another group stands in the place of a group
     procedure :: is_used      !! whether the selected law has this key
     procedure :: check_range  !! range of one key
     procedure :: refuse       !! note an error of a value
+    procedure :: refuse_group !! note that a group must not be given
     procedure :: forbid       !! the same if a condition holds
     procedure :: demand       !! the same for a value that is missing or 0
     procedure :: place_in_file   !! line of a value
     procedure :: is_given
+    procedure :: law_group    !! group in which a law of a joint is given
   end type case_values_t
 
 contains
@@ -370,6 +373,7 @@ contains
     associate (key => self%keys(place))
       if (.not. key%required .or. self%values(place)%given(1)) return
       group = find_group(self%groups, trim(key%group))
+      if (self%is_replaced(group)) return
       if (self%is_present(group)) then
         call self%refuse(trim(key%group), trim(key%name), 'required'//self%by_law(key))
       else if (.not. (self%groups(group)%is_model .or. self%problems%concerns(''))) then
@@ -378,6 +382,14 @@ contains
       end if
     end associate
   end subroutine check_required
+
+  !> Whether the case has another group instead of this required one.
+  pure logical function is_replaced(self, group)
+    class(case_values_t), intent(in) :: self
+    integer, intent(in) :: group   !! index in the table
+    is_replaced = .not. self%groups(group)%is_model .and. &
+      any(self%is_present .and. self%groups%instead_of == self%groups(group)%name)
+  end function is_replaced
 
   !> Whether the selected model has the key at `place`; a group may also contain keys of other laws.
   pure logical function is_used(self, place)
@@ -454,6 +466,13 @@ contains
     call self%problems%add(text, group, self%place_in_file(place))
   end subroutine refuse
 
+  !> Note that a group must not be given.
+  subroutine refuse_group(self, name, why)
+    class(case_values_t), intent(inout) :: self
+    character(len=*), intent(in) :: name, why
+    call self%problems%add(self%file//': '//shown_group(name)//': '//why, name, self%line(find_group(self%groups, name)))
+  end subroutine refuse_group
+
   !> Line of the file on which the key at `place` is given, or else on which its group begins.
   pure integer function place_in_file(self, place)
     class(case_values_t), intent(in) :: self
@@ -489,4 +508,13 @@ contains
     character(len=*), intent(in) :: group, name
     given = self%values(self%place_of(group, name))%given(1)
   end function is_given
+
+  !> Name of the group in which a law of the joint at a place is given.
+  function law_group(self, name, place) result(group)
+    class(case_values_t), intent(in) :: self
+    character(len=*), intent(in) :: name, place   !! of the law's group and of the place
+    character(len=:), allocatable :: group
+    group = place//'.'//name
+    if (.not. self%is_present(find_group(self%groups, group))) group = name
+  end function law_group
 end module case_values

@@ -134,7 +134,7 @@ contains
     keys = ''
     do i = 1, n_places
       associate (joint => case%joints(i))
-        if (allocated(joint%film) .and. joint%has_clearance()) keys = keys// &
+        if (allocated(joint%film) .and. joint%has_bearing()) keys = keys// &
           joint%film%table_key(joint%bearing(case%mechanism%rod_length), case%integrator%relative_tolerance)
       end associate
     end do

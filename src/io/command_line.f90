@@ -313,7 +313,9 @@ contains
     character(len=*), parameter :: n = achar(10)
     text = 'gudgeon [options] CASE.nml [CASE.nml ...]'//n// &
       'gudgeon sweep [options] STUDY.nml [STUDY.nml ...]'//n// &
-      'Simulates the slider-crank mechanism with clearance in its joints. sweep runs parameter studies.'//n// &
+      'gudgeon plot WHAT [RUN ...]'//n// &
+      'Simulates the slider-crank mechanism with clearance in its joints. sweep runs parameter studies; plot is'//n// &
+      'gudgeon-plot, which draws results.'//n// &
       'CASE.nml is a case file, or - for standard input.'//n//n// &
       '  -o, --out DIR             folder for the results (default: results)'//n// &
       '  -s, --set GROUP.KEY=VALUE change a value of the case; repeatable, the last one counts. A new end of the run'//n// &

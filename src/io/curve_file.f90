@@ -1,5 +1,5 @@
 !> Reads measured curves from CSV files: a header that names two columns with their units, such as crank_angle[deg],pressure[bar],
-!> and a row of two numbers for each point. Empty lines and lines that begin with # are ignored.
+!> and a row of two numbers for each point; curves of vectors have three. Empty lines and lines that begin with # are ignored.
 module curve_file
   use kinds, only: dp
   use text_tools, only: printable, integer_text, replaced, next_row
@@ -7,7 +7,7 @@ module curve_file
   use value_reader, only: read_real
   implicit none
   private
-  public :: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque
+  public :: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque, load
 
   integer, parameter :: most_rows = 1000000
 
@@ -20,46 +20,56 @@ module curve_file
 
   type(quantity_t), parameter :: crank_angle = quantity_t('crank angle', 'degrees', 'deg'), &
     pressure = quantity_t('pressure', 'Pa', 'Pa'), turning_speed = quantity_t('speed', 'rad/s', 'rad/s'), &
-    torque = quantity_t('torque', 'N m', 'N.m')
+    torque = quantity_t('torque', 'N m', 'N.m'), load = quantity_t('load', 'N', 'N')
 
 contains
 
   !> Read the two columns of a text, converted to the units of their quantities; x increases, and there are at least two rows.
   !> If the text is not such a table, `message` says what is required and `line` where; otherwise the message is empty. `lines` are
-  !> the line numbers of the rows.
-  subroutine parse_curve(text, x_is, y_is, x, y, lines, message, line)
+  !> the line numbers of the rows. With `z` the text may have three columns, the last two of which are the components of a vector,
+  !> NAME_x and NAME_y; of a text with two columns z is 0.
+  subroutine parse_curve(text, x_is, y_is, x, y, lines, message, line, z)
     character(len=*), intent(in) :: text
     type(quantity_t), intent(in) :: x_is, y_is
     real(dp), allocatable, intent(out) :: x(:), y(:)
     integer, allocatable, intent(out) :: lines(:)
     character(len=:), allocatable, intent(out) :: message
     integer, intent(out) :: line
-    real(dp) :: factors(2), values(2)
+    real(dp), allocatable, intent(out), optional :: z(:)
+    real(dp) :: factors(3), values(3)
+    real(dp), allocatable :: second(:)
     character(len=:), allocatable :: row
-    integer :: at, n
+    type(quantity_t) :: is(3)
+    integer :: at, n, columns
     logical :: has_header
 
     message = ''
     line = 0
     at = 1
     n = min(most_rows, 1 + count([(text(n:n) == achar(10), n=1, len(text))]))
-    allocate (x(n), y(n), lines(n))
+    allocate (x(n), y(n), second(n), lines(n))
+    is = [x_is, y_is, y_is]
+    columns = 2
     n = 0
     has_header = .false.
     do while (message == '')
       call next_row(text, at, line, row)
       if (row == '') exit
       if (.not. has_header) then
-        call read_pair(row, [x_is, y_is], read_unit, factors, message)
+        if (present(z) .and. count([(row(n:n) == ',', n=1, len(row))]) == 2) columns = 3
+        if (columns == 3) is(2:)%name = trim(y_is%name)//['_x', '_y']
+        call read_fields(row, is(:columns), read_unit, factors, message)
+        if (columns == 3 .and. message == '') call compare_heads(row, is, message)
         has_header = .true.
       else if (n == size(x)) then
         message = 'the table has more than '//integer_text(most_rows)//' rows'
       else
         n = n + 1
         lines(n) = line
-        call read_pair(row, [x_is, y_is], read_number, values, message)
+        call read_fields(row, is(:columns), read_number, values, message)
         x(n) = values(1)*factors(1)
         y(n) = values(2)*factors(2)
+        second(n) = values(3)*factors(3)
         if (message == '' .and. n > 1) call compare_rows(x_is, row, x(n - 1), lines(n - 1), x(n), message)
       end if
     end do
@@ -68,26 +78,44 @@ contains
     x = x(:n)
     y = y(:n)
     lines = lines(:n)
+    if (present(z)) z = second(:n)
   end subroutine parse_curve
 
-  !> Read the two fields of a row, which a comma separates: `read_field` is `read_unit` for the header, and `read_number` for the
-  !> other rows.
-  subroutine read_pair(row, is, read_field, values, message)
+  !> Read the fields of a row, which commas separate: `read_field` is `read_unit` for the header, and `read_number` for the other
+  !> rows. Values of further columns are 0.
+  subroutine read_fields(row, is, read_field, values, message)
     character(len=*), intent(in) :: row
-    type(quantity_t), intent(in) :: is(2)
+    type(quantity_t), intent(in) :: is(:)
     procedure(read_number) :: read_field
-    real(dp), intent(out) :: values(2)
+    real(dp), intent(out) :: values(:)
     character(len=:), allocatable, intent(inout) :: message
-    integer :: comma
+    integer :: i, first, length
     values = 0
-    comma = index(row, ',')
-    if (comma == 0 .or. index(row(comma + 1:), ',') > 0) then
+    if (count([(row(i:i) == ',', i=1, len(row))]) /= size(is) - 1) then
       message = printable(row, 60)//': needs two columns separated by a comma'
+      if (size(is) == 3) message = printable(row, 60)//': needs three columns separated by commas'
       return
     end if
-    call read_field(bare(row(:comma - 1)), is(1), values(1), message)
-    if (message == '') call read_field(bare(row(comma + 1:)), is(2), values(2), message)
-  end subroutine read_pair
+    first = 1
+    do i = 1, size(is)
+      length = index(row(first:)//',', ',') - 1
+      if (message == '') call read_field(bare(row(first:first + length - 1)), is(i), values(i), message)
+      first = first + length + 1
+    end do
+  end subroutine read_fields
+
+  !> Check that the heads of the components of a vector say which is which.
+  subroutine compare_heads(row, is, message)
+    character(len=*), intent(in) :: row
+    type(quantity_t), intent(in) :: is(3)
+    character(len=:), allocatable, intent(inout) :: message
+    integer :: first, second
+    first = index(row, trim(is(2)%name))
+    second = index(row, trim(is(3)%name))
+    if (first > index(row, ',') .and. second > index(row, ',', back=.true.)) return
+    message = printable(row, 60)//': the second and third column must be '//trim(is(2)%name)//' and '//trim(is(3)%name)// &
+      ', each with its unit'
+  end subroutine compare_heads
 
   !> A field without surrounding blanks and quotes.
   pure function bare(field) result(text)

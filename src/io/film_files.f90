@@ -25,7 +25,7 @@ module film_files
   use text_file, only: read_whole
   implicit none
   private
-  public :: provide_tables, tell_tables, write_film_file
+  public :: provide_tables, tell_tables, write_film_file, progress_watch_t
 
   character(len=*), parameter :: newline = achar(10), title = 'gudgeon film table'//newline
 
@@ -71,7 +71,7 @@ contains
     character(len=:), allocatable :: key, path
     logical :: is_restored, is_named
     real(dp) :: began   ! [s]
-    if (.not. (allocated(joint%film) .and. joint%has_clearance())) return
+    if (.not. (allocated(joint%film) .and. joint%has_bearing())) return
     bearing = joint%bearing(case%mechanism%rod_length)
     associate (tolerance => case%integrator%relative_tolerance)
       key = joint%film%table_key(bearing, tolerance)
@@ -126,7 +126,7 @@ contains
     character(len=:), allocatable :: key, path
     logical :: is_restored, is_named
     text = ''
-    if (.not. (allocated(joint%film) .and. joint%has_clearance())) return
+    if (.not. (allocated(joint%film) .and. joint%has_bearing())) return
     allocate (film, source=joint%film)
     bearing = joint%bearing(case%mechanism%rod_length)
     key = film%table_key(bearing, case%integrator%relative_tolerance)

@@ -1,6 +1,7 @@
 !> Notes on the results of a run: what no machine can do, and what the models do not describe.
 module result_notes
   use kinds, only: dp
+  use film_history, only: film_history_t
   use simulation, only: run_report_t
   use run_figures, only: pin_figures_t
   use joint_places, only: places, n_places, in_order
@@ -9,10 +10,11 @@ module result_notes
   use number_text, only: short_text, quantity_text
   implicit none
   private
-  public :: notes_on_results, relative_residual, energy_warning, no_exponent
+  public :: notes_on_results, history_remarks, relative_residual, energy_warning, no_exponent
 
   real(dp), parameter :: thinnest_film = 10e-9_dp      !! below this oil is no continuous fluid, and no surface is smooth [m]
   character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: '
+  real(dp), parameter :: least_cells_per_gap = 4       !! with fewer cells the thinnest part of a film is not resolved
   real(dp), parameter :: largest_pressure = 5e9_dp     !! beyond the strength of every bearing [Pa]
 
 contains
@@ -29,6 +31,12 @@ contains
         call note_joint(case%joints(place), report%figures%pin(place), trim(places(place)%title)//': ')
       end associate
     end do
+    if (allocated(report%histories)) then
+      do i = 1, size(report%histories)
+        if (history_remarks(report%histories(i)%history, .true.) == '') cycle
+        call add_line(history_remarks(report%histories(i)%history, .true.))
+      end do
+    end if
     if (report%energy_is_poor) call add_line(energy_warning(case, report))
     if (.not. report%exponent%is_known .and. allocated(report%exponent%reason)) &
       call add_line(no_exponent//report%exponent%reason)
@@ -47,7 +55,7 @@ contains
       character(len=*), intent(in) :: name
       character(len=*), parameter :: too_much = ': no bearing carries it'
       real(dp) :: length, area, limit
-      if (.not. joint%has_clearance()) return
+      if (.not. joint%has_bearing()) return
       if (allocated(joint%film) .and. pin%min_film_thickness > 0 .and. pin%min_film_thickness < thinnest_film) &
         call add_line(name//'a film of '//quantity_text(pin%min_film_thickness, 'm')//' is thinner than 10 nm, where oil is '// &
         'not a continuous fluid')
@@ -83,4 +91,21 @@ contains
       short_text(relative_residual(report)/case%integrator%relative_tolerance)// &
       ' relative tolerances: compare with a run with a tenth of &integrator relative_tolerance'
   end function energy_warning
+  !> What a user should know of a march: its film is not settled, or its grid is too coarse; one line each, else empty.
+  pure function history_remarks(history, is_cycle) result(text)
+    type(film_history_t), intent(in) :: history
+    logical, intent(in) :: is_cycle   !! the duty is a cycle, not a steady state
+    character(len=:), allocatable :: text
+    text = ''
+    associate (found => history%summary)
+      if (found%cycles == history%most_cycles .and. is_cycle .and. found%content_change >= history%cycle_tolerance) &
+        text = 'film_history: the oil still changes by '//short_text(found%content_change)// &
+        ' from cycle to cycle: raise &film_history most_cycles'
+      if (found%cycles > 0 .and. found%cells_per_gap < least_cells_per_gap) then
+        if (text /= '') text = text//achar(10)
+        text = text//'film_history: the thinnest part of the film has '//short_text(found%cells_per_gap)// &
+          ' cells, fewer than 4: raise &film_history around'
+      end if
+    end associate
+  end function history_remarks
 end module result_notes

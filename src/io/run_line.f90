@@ -2,6 +2,7 @@
 module run_line
   use kinds, only: dp
   use constants, only: two_pi
+  use history_record, only: history_record_t
   use simulation, only: run_report_t
   use run_figures, only: pin_figures_t
   use period_watch, only: period_watch_t
@@ -38,7 +39,7 @@ contains
       if (report%periods%is_on .and. report%status == 'done') text = text//', '//period_text(report%periods)
       do i = 1, n_places
         associate (place => in_order(i))
-          if (i > 1 .and. .not. case%joints(place)%has_clearance()) cycle
+          if (i > 1 .and. .not. case%joints(place)%has_bearing()) cycle
           text = text//'; '
           if (i > 1) text = text//trim(places(place)%title)//': '
           text = text//pin_text(case%joints(place), f%pin(place), case%integrator%relative_tolerance, report, place)
@@ -47,6 +48,7 @@ contains
       end do
       if (case%has_loose_guide()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
         ' contacts, force up to '//quantity_text(maxval(f%corner%max_force), 'N')
+      if (allocated(report%histories)) text = text//histories_text(report%histories)
       if (report%exponent%is_known) text = text//'; Lyapunov exponent '//short_text(report%exponent%mean, digits)//' per revolution'
       if (remark /= '') text = text//'; '//remark
       text = text//newline//'  '//path//'.csv; '//integer_text(s%accepted)//' steps, '//integer_text(s%evaluations)// &
@@ -55,6 +57,23 @@ contains
     notes = notes_on_results(case, report)
     if (notes /= '') text = text//newline//'  note: '//replaced(notes, newline, newline//'  note: ')
   end function lines_for_user
+
+  !> Text about the films with memory, each beside the film of the run.
+  function histories_text(histories) result(text)
+    type(history_record_t), intent(in) :: histories(:)
+    character(len=:), allocatable :: text
+    integer :: i
+    text = ''
+    do i = 1, size(histories)
+      associate (found => histories(i)%history)
+        if (.not. allocated(found%rows)) cycle
+        if (size(found%rows) == 0) cycle
+        text = text//'; film with memory at the '//trim(places(histories(i)%place)%title)//': thinnest '// &
+          quantity_text(found%summary%min_thickness, 'm')//' ('//quantity_text(minval(histories(i)%quick_thickness), 'm')// &
+          ' in the run), pressure up to '//quantity_text(found%summary%max_pressure, 'Pa')
+      end associate
+    end do
+  end function histories_text
 
   !> Text about the period of the motion.
   function period_text(periods) result(text)
@@ -126,7 +145,7 @@ contains
     integer, intent(in) :: place   !! of the pin
     character(len=:), allocatable :: text
     text = ''
-    if (joint%has_clearance()) then
+    if (joint%has_bearing()) then
       if (joint%can_touch()) text = integer_text(pin%contacts)//' contacts'//beyond_text(pin)//', '
       if (joint%can_touch() .and. pin%contacts == 0) text = 'no contact, '
       if (pin%min_film_thickness < 0) then

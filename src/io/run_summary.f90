@@ -7,6 +7,7 @@ module run_summary
   use simulation, only: run_report_t
   use train_record, only: train_result_t
   use cycle_answers, only: answer_t, cycle_quantities
+  use history_files, only: add_histories
   use result_table, only: result_table_t
   use run_figures, only: pin_figures_t, elastic_figures_t
   use piston_guide, only: n_corners, corner_names
@@ -97,7 +98,7 @@ contains
       if (report%energy_is_poor) call table%add('energy_warning', energy_warning(case, report))
       call add_notes()
       do i = 1, n_places
-        if (.not. case%joints(in_order(i))%has_clearance()) cycle
+        if (.not. case%joints(in_order(i))%has_bearing()) cycle
         if (i > 1) call table%add('max_pin_force', f%pin(in_order(i))%max_force, name_prefix(in_order(i)))
         call add_joint(name_prefix(in_order(i)), case%joints(in_order(i)), f%pin(in_order(i)))
       end do
@@ -113,6 +114,7 @@ contains
       if (allocated(report%train)) call add_train(report%train)
     end associate
     if (allocated(report%answers)) call add_answers(report%answers)
+    if (allocated(report%histories)) call add_histories(table, report%histories)
     call table%add('version', program_version)
     call table%add('compiler', compiler_version())
     call table%add('compiler_options', compiler_options())

@@ -47,7 +47,7 @@ contains
       '    *) case "$now" in'//n// &
       '      --template=*) words="'//'--template='//replaced(template_kinds, ', ', ' --template=')//'" ;;'//n// &
       '      -*) words="'//all_options()//'" ;;'//n// &
-      '      *) COMPREPLY=($(compgen -W sweep -- "$now") $(compgen -d -- "$now") $(compgen -f -X "!*.nml" -- "$now"))'//n// &
+      '      *) COMPREPLY=($(compgen -W "sweep plot" -- "$now") $(compgen -d -- "$now") $(compgen -f -X "!*.nml" -- "$now"))'//n// &
       '         compopt -o filenames; return ;;'//n// &
       '    esac ;;'//n// &
       '  esac'//n// &
@@ -59,7 +59,7 @@ contains
   function fish_text() result(text)
     character(len=:), allocatable :: text, line
     integer :: i
-    text = 'complete -c gudgeon -f -a sweep -n __fish_is_first_token'//n// &
+    text = 'complete -c gudgeon -f -a "sweep plot" -n __fish_is_first_token'//n// &
       'complete -c gudgeon -k -a "(__fish_complete_suffix .nml)"'//n
     do i = 1, size(options)
       line = 'complete -c gudgeon -l '//trim(options(i)%long)
@@ -144,7 +144,7 @@ contains
     do while (at <= len(help))
       call next_line(help, at, line)
       number = number + 1
-      if (number == 3) text = text//'.SH DESCRIPTION'//n
+      if (number == 4) text = text//'.SH DESCRIPTION'//n
       if (line == '') cycle
       if (index(line, '  ') == 1 .and. verify(line, ' ') < 10) then
         if (.not. in_options) text = text//'.SH OPTIONS'//n
@@ -156,7 +156,7 @@ contains
         if (index(line, 'Results of CASE') == 1) text = text//'.SH FILES'//n
         if (index(line, 'Exit status') == 1) text = text//'.SH EXIT STATUS'//n
         text = text//roff(line)//n
-        if (number < 2) text = text//'.br'//n
+        if (number < 3) text = text//'.br'//n
       end if
     end do
     text = text//'.SH ENVIRONMENT'//n//'.B XDG_CACHE_HOME'//n//'is the folder that keeps tables of films; ~/.cache without it.'//n

@@ -102,6 +102,23 @@ module summary_quantities
     quantity_t('max_rod_strain_energy', 'J', 'largest elastic energy in the rod'), &
     quantity_t('crankshaft_frequency', 'Hz', 'natural frequency of the crank and the flywheel on the elastic shaft'), &
     quantity_t('max_crankshaft_twist', 'rad', 'largest twist'), &
+    quantity_t('film_history_cycles', '1', 'cycles that the film with memory was marched (film_history)'), &
+    quantity_t('film_history_cycle_change', '1', 'change of its oil from the end of a cycle to that of the next, over the oil'), &
+    quantity_t('film_history_min_film_thickness', 'm', 'thinnest film of the last cycle'), &
+    quantity_t('film_history_max_film_pressure', 'Pa', 'its largest pressure, above that of cavitation'), &
+    quantity_t('film_history_mean_supply_flow', 'm3/s', 'its mean flow from the supply'), &
+    quantity_t('film_history_mean_side_flow', 'm3/s', 'its mean flow out of both ends of the bearing'), &
+    quantity_t('film_history_least_fill', '1', 'smallest part of the gap that oil fills'), &
+    quantity_t('film_history_mean_power_loss', 'W', 'mean power that the shear of the film takes from the pin'), &
+    quantity_t('film_history_mass_residual', '1', 'largest error of the balance of its oil, over the largest flow'), &
+    quantity_t('film_history_cells_per_gap', '1', &
+      'cells over the length in which the thinnest gap doubles; fewer than 4: too coarse'), &
+    quantity_t('film_history_min_film_thickness_angle', 'deg', 'crank angle of the thinnest film'), &
+    quantity_t('film_history_quick_min_film_thickness', 'm', 'thinnest film of the run in the rows of that cycle'), &
+    quantity_t('film_history_quick_max_film_pressure', 'Pa', 'largest pressure of the film of the run in these rows'), &
+    quantity_t('film_history_thickness_ratio', '1', &
+      'thickness of the film with memory over that of the film of the run, where they differ most'), &
+    quantity_t('film_history_thickness_ratio_time', 's', 'time of that row'), &
     quantity_t('firing_order', '', 'cylinders in the order in which the shaft brings them to one point of the cycle, from 1 on'), &
     quantity_t('natural_frequency_N', 'Hz', 'natural frequencies of the crankshaft with mean inertias, undamped, above 0; with '// &
       'its driven station held if the speed is prescribed'), &
@@ -199,7 +216,9 @@ contains
     integer :: i
     unit = '?'
     do i = 1, size(table)
-      if (table(i)%name == name) unit = trim(table(i)%unit)
+      if (table(i)%name /= name) cycle
+      unit = trim(table(i)%unit)
+      return
     end do
   end function unit_of
 end module summary_quantities

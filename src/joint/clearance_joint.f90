@@ -8,7 +8,7 @@ module clearance_joint
   use state_layout, only: layout_t, coordinates_t, slice_t
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, angular_acceleration, body_crank, body_big_end, body_small_end, body_piston, &
-    n_bodies
+    body_frame, n_bodies
   use joint_places, only: place_t, places, piston_pin, name_prefix
   use chain_bodies, only: bodies_t
   use ideal_chain, only: ideal_rod
@@ -20,10 +20,11 @@ module clearance_joint
   use film_figures, only: film_figures_t, film_figures_of
   implicit none
   private
-  public :: clearance_joint_t, most_joints, most_joint_states, n_joint_slopes
+  public :: clearance_joint_t, most_joints, most_bearings, most_joint_states, n_joint_slopes
   public :: phase_free, phase_film, phase_contact, n_phases, contact_changes
 
-  integer, parameter :: most_joints = 2
+  integer, parameter :: most_joints = 2     !! with clearance
+  integer, parameter :: most_bearings = 3   !! with those whose pins are ideal in the mechanism
   integer, parameter :: most_elements = 2                                       !! of a joint
   integer, parameter :: most_joint_states = most_elements*most_element_states   !! of all its elements
   integer, parameter :: n_joint_slopes = n_motions + most_joint_states          !! columns of its slopes
@@ -61,7 +62,8 @@ module clearance_joint
     logical :: has_slopes = .true.          !! the slopes of all elements are in closed form
     logical :: reports_film = .false.       !! report the results of the film in the summary
     ! state
-    type(coordinates_t) :: at               !! indices of the eccentricity in the state
+    type(coordinates_t) :: at               !! indices of the eccentricity in the state; that of its rate is 0 if a film carries the
+                                            !! pin (`carried_bearing`)
     integer :: phase = phase_free
     real(dp) :: impact_speed = 0            !! penetration rate at the beginning of the present contact [m/s]
     real(dp) :: reach(0:n_phases - 1) = 0   !! largest admissible eccentricity in each phase: see `find_reach` [m]
@@ -113,7 +115,7 @@ contains
     integer, intent(in) :: place   !! index in `places`
     self%place = place
     self%site = places(place)
-    self%bearing_turns = self%site%bearing /= body_piston
+    self%bearing_turns = all(self%site%bearing /= [body_piston, body_frame])
   end subroutine set_place
 
   !> Add an element, which has been prepared and acts in the given phases.
@@ -430,9 +432,15 @@ contains
     real(dp), intent(in) :: y(*)
     type(joint_evaluation_t), intent(inout) :: joint
     real(dp), intent(out) :: normal_force
+    normal_force = 0
+    if (self%at%rate == 0) then
+      joint%eccentricity = y(self%at%position:self%at%position + 1)
+      joint%eccentricity_rate = 0
+      call find_polar(self%bearing%clearance, joint)   ! the state is the position in the film also between elastic walls
+      return
+    end if
     call self%read_state(y, joint)
     call self%find_gap(y, joint)
-    normal_force = 0
     if (self%phase == phase_contact) normal_force = self%slots(self%acting(phase_contact))%element%normal_force(joint)
   end subroutine find_contact_state
 

@@ -34,6 +34,7 @@ module elastic_film
     procedure :: find_gap
     procedure :: add_columns
     procedure :: see_film
+    procedure :: carry
     procedure :: velocity
   end type elastic_film_t
 
@@ -71,6 +72,22 @@ contains
     end associate
     joint%force = joint%film
   end subroutine find_loads
+
+  !> The load is that of the walls, whose deflection follows from it; the film moves as between rigid walls. The rate of the
+  !> deflection is left out of the rate of the eccentricity.
+  pure subroutine carry(self, place, load, joint)
+    class(elastic_film_t), intent(in) :: self
+    real(dp), intent(in) :: place(2), load(2)
+    type(joint_evaluation_t), intent(inout) :: joint
+    joint%states = place
+    joint%rates = self%velocity(place, load) + 0.5_dp*(joint%pin_angular_speed + joint%bearing_speed)*[-place(2), place(1)]
+    joint%eccentricity = place + wall_deflection(self%walls, load)
+    joint%eccentricity_rate = joint%rates
+    joint%film = -load
+    joint%force = -load
+    joint%moment = 0
+    if (self%film%film_moment) joint%moment = moment(self, motion_of_film(self, joint, place), load)
+  end subroutine carry
 
   !> The motion on which the force of the film depends: that of the place where the film is.
   pure type(film_motion_t) function motion_of_film(self, joint, e) result(seen)

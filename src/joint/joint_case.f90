@@ -13,6 +13,8 @@ module joint_case
   use oil_viscosity, only: oil_t
   use asperities, only: asperities_t
   use archard_wear, only: wear_law_t
+  use history_case, only: history_case_t
+  use film_history, only: film_history_t
   implicit none
   private
   public :: joint_case_t, visit_joint, drop_laws, select_contact, select_friction
@@ -28,6 +30,7 @@ module joint_case
   type, extends(has_parameters_t) :: joint_case_t
     character(len=:), allocatable :: kind
     real(dp) :: clearance = 0, bearing_radius = 0, bearing_length = 0
+    real(dp) :: load_share = 1             !! of the load of the place, carried by a bearing of kind quasi_static
     class(contact_law_t), allocatable :: contact
     class(friction_law_t), allocatable :: friction
     logical :: reports_friction_work = .false.
@@ -38,24 +41,29 @@ module joint_case
     type(elastic_walls_t) :: elastic
     type(asperities_t), allocatable :: asperities
     type(wear_law_t), allocatable :: wear
+    real(dp) :: ambient_over_cavitation = 0   !! [Pa]
+    type(history_case_t) :: history           !! the film with memory that is marched after the run
   contains
     procedure :: parameters => joint_parameters
     procedure :: has_clearance
+    procedure :: is_carried
+    procedure :: has_bearing
     procedure :: can_touch
     procedure :: has_elastic_film
     procedure :: has_weighted_film
     procedure :: has_worn_bore
     procedure :: make_film
+    procedure :: make_history
     procedure :: bearing => bearing_of
   end type joint_case_t
 
   interface
-    !> Declare the groups of a joint and of its laws to a visitor. If another joint has clearance, the laws of an ideal joint are
+    !> Declare the groups of a joint and of its laws to a visitor. If another joint has a bearing, the laws of an ideal joint are
     !> not set.
-    module subroutine visit_joint(joint, place, another_has_clearance, list)
+    module subroutine visit_joint(joint, place, another_has_bearing, list)
       type(joint_case_t), intent(inout) :: joint
       character(len=*), intent(in) :: place
-      logical, intent(in) :: another_has_clearance
+      logical, intent(in) :: another_has_bearing
       class(parameter_list_t), intent(inout) :: list
     end subroutine visit_joint
   end interface
@@ -97,12 +105,35 @@ contains
     film%kinematic_viscosity = self%oil%kinematic_viscosity()
   end subroutine make_film
 
-  !> Whether the joint has clearance.
+  !> The film with memory of the joint, which is marched after the run.
+  subroutine make_history(self, history)
+    class(joint_case_t), intent(in) :: self
+    type(film_history_t), intent(out) :: history
+    class(film_law_t), allocatable :: film
+    call self%make_film(film)
+    call self%history%make(self%bearing(rod_length=0.0_dp), film%viscosity, self%elastic%pressure_viscosity, &
+      self%ambient_over_cavitation, .not. film%is_without_memory(), history)
+  end subroutine make_history
+
+  !> Whether the pin has clearance in its bearing and its position is one of the mechanism's.
   elemental logical function has_clearance(self)
     class(joint_case_t), intent(in) :: self
     has_clearance = .false.
     if (allocated(self%kind)) has_clearance = self%kind == 'clearance'
   end function has_clearance
+
+  !> Whether a film carries the load of the pin at every instant, while the pin stays ideal in the mechanism.
+  elemental logical function is_carried(self)
+    class(joint_case_t), intent(in) :: self
+    is_carried = .false.
+    if (allocated(self%kind)) is_carried = self%kind == 'quasi_static'
+  end function is_carried
+
+  !> Whether the joint has a bearing, with clearance: it is not ideal.
+  elemental logical function has_bearing(self)
+    class(joint_case_t), intent(in) :: self
+    has_bearing = self%has_clearance() .or. self%is_carried()
+  end function has_bearing
 
   !> The bearing of the joint; `rod_length` [m] is the length of the rod that carries its pin.
   pure type(bearing_t) function bearing_of(self, rod_length)
@@ -114,7 +145,8 @@ contains
   subroutine joint_parameters(self, list)
     class(joint_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%word('kind', self%kind, 'ideal, clearance', 'ideal', 'ideal: no clearance', example='clearance')
+    call list%word('kind', self%kind, 'ideal, clearance, quasi_static', 'ideal', 'ideal: no clearance; quasi_static: an '// &
+      'ideal pin in the mechanism, whose load the film of its bearing carries at every instant', example='clearance')
     call list%add('clearance', self%clearance, 'radial clearance: bearing radius minus pin radius', 'm', '> 0', default='0.0', &
       example='2.0e-5', usual='1e-6 to 1e-3')
     call list%add('bearing_radius', self%bearing_radius, 'radius of the bearing', 'm', '> 0', default='0.0', example='0.010', &
@@ -122,6 +154,9 @@ contains
     call list%add('bearing_length', self%bearing_length, &
       'width of the bearing; needed with a film and with contact geometries other than hertz_sphere', &
       'm', '> 0', default='0.0', example='0.015', usual='5e-4 to 1')
+    call list%add('load_share', self%load_share, &
+      'part of the load that this bearing carries, of main_bearing alone: 0.5 for two equal main bearings', &
+      range='> 0 and <= 1', default='1.0')
   end subroutine joint_parameters
 
   subroutine wall_parameters(self, list)
@@ -130,19 +165,20 @@ contains
     call list%add('elastic_film', self%is_wanted, &
       'elastic walls in series with the film; &contact with law = ''hertz'' gives their stiffness', '.false.')
     call list%add('pressure_viscosity', self%pressure_viscosity, &
-      'elastic_film: exponential growth of the viscosity with the mean pressure (Barus)', &
+      'exponential growth of the viscosity with the pressure (Barus), in an elastic_film and in &film_history', &
       '1/Pa', '>= 0 and <= 1e-6', default='0.0', usual='1e-9 to 1e-7')
   end subroutine wall_parameters
 
   !> Remove laws that were given for all joints from an ideal joint.
   subroutine drop_laws(joint)
     type(joint_case_t), intent(inout) :: joint
-    if (joint%has_clearance()) return
+    if (joint%has_bearing()) return
     if (allocated(joint%contact)) deallocate (joint%contact)
     if (allocated(joint%friction)) deallocate (joint%friction)
     if (allocated(joint%film)) deallocate (joint%film)
     if (allocated(joint%asperities)) deallocate (joint%asperities)
     if (allocated(joint%wear)) deallocate (joint%wear)
+    joint%history = history_case_t()
   end subroutine drop_laws
 
   !> Select the contact law that a case names, if it names one.

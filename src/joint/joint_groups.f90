@@ -4,6 +4,7 @@ submodule (joint_case) joint_groups
   use contact_laws, only: offer_contact_laws, offer_contact_geometries
   use friction_laws, only: offer_friction_laws
   use films, only: offer_film_laws
+  use history_case, only: history_case_t, march_case_t, supply_case_t, bore_case_t
   implicit none
 
 contains
@@ -13,10 +14,10 @@ contains
     type(wear_law_t) :: wear
     call list%group('joint', 'Joint of rod and piston (piston pin)', .false., place)
     call joint%parameters(list)
-    if (list%sets .and. another_has_clearance .and. .not. joint%has_clearance()) return
+    if (list%sets .and. another_has_bearing .and. .not. joint%has_bearing()) return
     call visit_contact(joint%contact, place, list)
     call visit_friction(joint%friction, joint%reports_friction_work, place, list)
-    call visit_film(joint%film, joint%transition, joint%oil, joint%elastic, joint%reports_film, place, list)
+    call visit_film(joint, place, list)
     call list%group('asperities', 'Contact of rough surfaces through the film. Without this group surfaces are smooth', .true., &
       place, instead_of='contact')
     call asperities%parameters(list)
@@ -27,6 +28,7 @@ contains
     call wear%parameters(list)
     if (list%sets) joint%wear = wear
     if (list%is_absent()) deallocate (joint%wear)
+    call visit_history(joint%history, place, list)
   end procedure visit_joint
 
   subroutine visit_contact(law, place, list)
@@ -60,25 +62,47 @@ contains
     if (list%sets) call select_friction(list%chosen, law)
   end subroutine visit_friction
 
-  subroutine visit_film(law, transition, oil, elastic, reports, place, list)
-    class(film_law_t), allocatable, intent(inout) :: law
-    type(film_transition_t), intent(inout) :: transition
-    type(oil_t), intent(inout) :: oil
-    type(elastic_walls_t), intent(inout) :: elastic
-    logical, intent(inout) :: reports
+  subroutine visit_film(joint, place, list)
+    type(joint_case_t), intent(inout) :: joint
     character(len=*), intent(in) :: place
     class(parameter_list_t), intent(inout) :: list
     call list%group('lubrication', 'Oil film in the clearance. Without this group the joint is dry', .true., place)
     call list%choice('law', 'pinkus_sternlicht', 'film theory: long journal bearing, oscillating film, or bearing of finite length')
-    call oil%parameters(list)
-    if (list%sets) call oil%read_name()
-    call transition%parameters(list)
-    call elastic%parameters(list)
-    call list%add('report', reports, &
+    call joint%oil%parameters(list)
+    if (list%sets) call joint%oil%read_name()
+    call joint%transition%parameters(list)
+    call joint%elastic%parameters(list)
+    call list%add('ambient_over_cavitation', joint%ambient_over_cavitation, &
+      'film_history: ambient pressure above that of cavitation; > 0: the ends of the bearing are under oil', 'Pa', &
+      '>= 0 and <= 1e7', default='0.0', usual='1e3 to 1e6')
+    call list%add('report', joint%reports_film, &
       'write energy loss, largest pressure and mean side flow of the film into the summary', '.false.')
     call offer_film_laws(list)
-    if (list%sets) call select_film(list%chosen, law)
+    if (list%sets) call select_film(list%chosen, joint%film)
   end subroutine visit_film
+
+  !> The groups of the film with memory that is marched after a run.
+  subroutine visit_history(history, place, list)
+    type(history_case_t), intent(inout) :: history
+    character(len=*), intent(in) :: place
+    class(parameter_list_t), intent(inout) :: list
+    type(march_case_t) :: march
+    type(supply_case_t) :: supply
+    type(bore_case_t) :: bore
+    call list%group('film_history', 'Film with memory under the load of the run, marched over its last cycle when it has ended', &
+      .true., place)
+    call march%parameters(list)
+    if (list%sets) history%march = march
+    if (list%is_absent()) deallocate (history%march)
+    call list%group('supply', 'Where oil is fed to the film of film_history. Without this group it is not fed', .true., place)
+    call supply%parameters(list)
+    if (list%sets) history%supply = supply
+    if (list%is_absent()) deallocate (history%supply)
+    call list%group('bore', 'Elastic bore of the film of film_history. Without this group the bore is rigid', .true., place)
+    call bore%parameters(list)
+    if (list%sets) history%bore = bore
+    if (list%is_absent()) deallocate (history%bore)
+  end subroutine visit_history
 
   !> Select the film law that a case names, if it names one.
   subroutine select_film(chosen, law)

@@ -76,6 +76,7 @@ module load_element
     procedure :: normal_force => no_force
     procedure :: find_share => no_loss
     procedure :: see_film => no_film
+    procedure :: carry => carry_nothing
     procedure :: spread => on_a_line
     procedure :: wear_bore => stays_round
     procedure, non_overridable :: film_moment
@@ -177,6 +178,17 @@ contains
     share = 0
     thickening = 1
   end subroutine no_film
+
+  !> The inverse of `find_loads`, for films that can carry a load without inertia: the motion of the pin in its bearing with which
+  !> the element carries a load (force of the pin on its bearing). Eccentricity, its rate, the loads and the rates of the states are
+  !> set; the position in the film, `place`, is a state, and the angular speeds are known.
+  pure subroutine carry_nothing(self, place, load, joint)
+    class(load_element_t), intent(in) :: self
+    real(dp), intent(in) :: place(2), load(2)   !! [m], |place| < c for a film without bound at the wall; [N]
+    type(joint_evaluation_t), intent(inout) :: joint
+    joint%eccentricity = place
+    joint%eccentricity_rate = 0
+  end subroutine carry_nothing
 
   !> How the contact spreads along an arc: as far as they are present, `ratio`, Int p R L dtheta over the normal force [-], and
   !> `arc`, in cells that are not much wider than `width` [rad]; it has none for contact along a line.

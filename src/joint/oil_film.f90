@@ -3,6 +3,7 @@ module oil_film
   use kinds, only: dp
   use trace_row, only: trace_row_t
   use film_law, only: film_law_t, film_motion_t
+  use film_mobility, only: driven_velocity
   use joint_case, only: joint_case_t
   use joint_evaluation, only: joint_evaluation_t, most_element_states
   use load_element, only: load_element_t, n_slopes, by_pin_speed, by_bearing_speed
@@ -18,6 +19,7 @@ module oil_film
     procedure :: find_slopes
     procedure :: add_columns
     procedure :: see_film
+    procedure :: carry
   end type oil_film_t
 
 contains
@@ -81,6 +83,22 @@ contains
     turning%turning_speed = 1
     unit_drag = film%drag_moment(turning, [0.0_dp, 0.0_dp])
   end function unit_drag
+
+  !> e' = v*(e, load) + (omega/2) z x e.
+  pure subroutine carry(self, place, load, joint)
+    class(oil_film_t), intent(in) :: self
+    real(dp), intent(in) :: place(2), load(2)
+    type(joint_evaluation_t), intent(inout) :: joint
+    real(dp) :: drawn, velocity(2)
+    drawn = 0.5_dp*(joint%pin_angular_speed + joint%bearing_speed)
+    call driven_velocity(self%film, place, load, velocity)
+    joint%eccentricity = place
+    joint%eccentricity_rate = velocity + drawn*[-place(2), place(1)]
+    joint%film = -load
+    joint%force = -load
+    joint%moment = 0
+    if (self%film%film_moment) joint%moment = self%film%drag_moment(film_motion_of(self%film, joint), joint%film)
+  end subroutine carry
 
   pure subroutine add_columns(self, joint, row)
     class(oil_film_t), intent(in) :: self

@@ -4,7 +4,7 @@ module rough_film
   use trace_row, only: trace_row_t
   use asperities, only: asperities_t
   use film_law, only: film_motion_t
-  use mixed_film, only: mixed_forces, mixed_derivatives, motion_in_gap
+  use mixed_film, only: mixed_forces, mixed_derivatives, mixed_velocity, motion_in_gap
   use contact_arc, only: contact_arc_t
   use joint_case, only: joint_case_t
   use joint_evaluation, only: joint_evaluation_t, most_element_states, find_polar
@@ -24,6 +24,7 @@ module rough_film
     procedure :: find_slopes
     procedure :: add_columns
     procedure :: see_film
+    procedure :: carry
     procedure :: spread
   end type rough_film_t
 
@@ -57,6 +58,27 @@ contains
     joint%moment = joint%moment + joint%friction_force*self%pin_radius
     joint%force = joint%film + joint%contact
   end subroutine find_loads
+
+  pure subroutine carry(self, place, load, joint)
+    class(rough_film_t), intent(in) :: self
+    real(dp), intent(in) :: place(2), load(2)
+    type(joint_evaluation_t), intent(inout) :: joint
+    type(film_motion_t) :: motion
+    joint%eccentricity = place
+    joint%eccentricity_rate = 0
+    call mixed_velocity(self%film, self%asperities, self%pin_radius, film_motion_of(self%film, joint), load, &
+      joint%eccentricity_rate, joint%normal_force, joint%friction_force)
+    call find_polar(self%bearing%clearance, joint)
+    associate (n => joint%normal)
+      joint%contact = -joint%normal_force*n + joint%friction_force*[-n(2), n(1)]
+    end associate
+    joint%film = -load - joint%contact
+    joint%force = -load
+    joint%moment = joint%friction_force*self%pin_radius
+    if (.not. self%film%film_moment) return
+    motion = motion_in_gap(self%film, self%asperities, film_motion_of(self%film, joint))
+    joint%moment = joint%moment + self%film%drag_moment(motion, joint%film)
+  end subroutine carry
 
   pure subroutine find_slopes(self, joint, of_loads, of_rates)
     class(rough_film_t), intent(in) :: self

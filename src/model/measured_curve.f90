@@ -13,6 +13,7 @@ module measured_curve
     character(len=:), allocatable :: path       !! absolute path of the file that was read; not allocated: none yet
     character(len=:), allocatable :: found      !! digest of that file
     real(dp), allocatable :: x(:), y(:)         !! the columns, x increasing
+    real(dp), allocatable :: z(:)               !! the third column, of a curve of vectors
   contains
     procedure :: parameters
     procedure :: is_wanted

@@ -23,7 +23,7 @@ module trace_row
   type :: trace_row_t
     integer :: n = 0                            !! number of columns so far
     logical :: is_naming = .false.              !! names are being collected
-    character(len=12) :: place = ''             !! prefix of the following names, separated by an underscore
+    character(len=13) :: place = ''             !! prefix of the following names, separated by an underscore
     logical :: wanted(most_columns)             !! columns whose values are in the trace
     real(dp) :: values(most_columns)            !! values of the columns so far (not initialised, to save time)
     character(len=name_length), allocatable :: names(:)   !! while names are collected

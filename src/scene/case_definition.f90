@@ -11,7 +11,7 @@ module case_definition
   use model_parameters, only: has_parameters_t, parameter_list_t
   use run_length, only: run_length_t
   use chain_motion, only: n_pins
-  use joint_places, only: places, n_places, in_order, name_prefix
+  use joint_places, only: places, n_places, in_order, name_prefix, main_bearing
   use joint_case, only: joint_case_t
   use guide_case, only: guide_case_t, guide_clearance
   use elastic_rod, only: elastic_rod_t
@@ -20,6 +20,7 @@ module case_definition
   use gas_law, only: gas_law_t
   use measured_curve, only: measured_curve_t
   use measured_pressure, only: measured_pressure_t
+  use bearing_load, only: bearing_load_t
   implicit none
   private
   public :: case_t, output_case_t, visit_case
@@ -88,6 +89,7 @@ module case_definition
     character(len=:), allocatable :: cache   !! folder that keeps film tables; empty: none; not allocated: that of the user
     character(len=:), allocatable :: notes   !! on values that are not of usual sizes, one line each; not allocated: none
     type(mechanism_case_t) :: mechanism
+    type(bearing_load_t), allocatable :: load   !! a bearing under this load instead of the mechanism
     type(drive_case_t) :: drive
     type(initial_case_t) :: initial
     type(joint_case_t) :: joints(n_places)   !! by place
@@ -104,7 +106,7 @@ module case_definition
     type(output_case_t) :: output
   contains
     procedure :: has_contact
-    procedure :: gas_revolutions
+    procedure :: forced_revolutions
     procedure :: has_play
     procedure :: loose_pins
     procedure :: has_wear
@@ -124,13 +126,14 @@ module case_definition
 
 contains
 
-  !> Number of revolutions after which the gas pressure repeats; 1 without gas.
-  pure integer function gas_revolutions(self)
+  !> Number of revolutions after which the gas pressure, or the given load of a bearing, repeats; else 1.
+  pure integer function forced_revolutions(self) result(revolutions)
     class(case_t), intent(in) :: self
-    gas_revolutions = 1
-    if (allocated(self%combustion)) gas_revolutions = self%combustion%revolutions()
-    if (allocated(self%measured)) gas_revolutions = self%measured%revolutions()
-  end function gas_revolutions
+    revolutions = 1
+    if (allocated(self%combustion)) revolutions = self%combustion%revolutions()
+    if (allocated(self%measured)) revolutions = self%measured%revolutions()
+    if (allocated(self%load)) revolutions = self%load%revolutions()
+  end function forced_revolutions
 
   !> Whether a joint has a contact law, or the piston has clearance in its bore.
   pure logical function has_contact(self)
@@ -155,11 +158,8 @@ contains
   pure function loose_pins(self) result(is_loose)
     class(case_t), intent(in) :: self
     logical :: is_loose(n_pins)
-    integer :: i
-    is_loose = .false.
-    do i = 1, n_places
-      is_loose(places(i)%pin) = is_loose(places(i)%pin) .or. self%joints(i)%has_clearance()
-    end do
+    integer :: pin
+    is_loose = [(any(places%pin == pin .and. self%joints%has_clearance()), pin=1, n_pins)]
   end function loose_pins
 
   !> Whether the piston has clearance in its bore.
@@ -250,6 +250,7 @@ contains
       name = name_prefix(in_order(i))//'eccentricity'
       call list%add(name, self%eccentricity(:, in_order(i)), 'centre of the '//trim(places(in_order(i))%title)// &
         ' from the centre of its bearing (x, y); in contact if longer than the clearance', 'm', default='0.0', usual='0 to 1e-2')
+      if (in_order(i) == main_bearing) cycle   ! its rate follows from the load
       call list%add(name//'_rate', self%eccentricity_rate(:, in_order(i)), 'rate of '//name, 'm/s', default='0.0', &
         usual='0 to 100')
     end do

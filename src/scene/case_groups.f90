@@ -15,12 +15,19 @@ contains
     type(elastic_crankshaft_t) :: crankshaft
     type(shaft_case_t) :: shaft
     type(measured_pressure_t) :: measured
+    type(bearing_load_t) :: load
     integer :: i
     call list%group('case', 'All values are in SI units; angles are in degrees only where the key ends in _deg', .false.)
     call list%text('title', case%title, 'title of the case, for pictures and pages', '')
     call list%group('mechanism', &
       'Crank, rod and piston. A centre of mass is given along and across its body, from the end nearer to the crank axis', .false.)
     call case%mechanism%parameters(list)
+    call list%group('bearing_load', 'A bearing by itself under a load over the crank angle, &joint kind = ''quasi_static''', &
+      .true., instead_of='mechanism')
+    if (list%sets .and. allocated(case%load)) load = case%load   ! its table has been read
+    call load%parameters(list)
+    if (list%sets) case%load = load
+    if (list%is_absent()) deallocate (case%load)
     call list%group('drive', 'Drive of the crank', .false.)
     call case%drive%parameters(list)
     call list%group('initial', &
@@ -28,9 +35,9 @@ contains
     call case%initial%parameters(list)
     do i = 1, n_places
       call visit_joint(case%joints(in_order(i)), trim(places(in_order(i))%name), &
-        any(case%joints(in_order(:i - 1))%has_clearance()), list)
+        any(case%joints(in_order(:i - 1))%has_bearing()), list)
     end do
-    do i = 1, merge(n_places, 0, list%sets .and. case%has_play())
+    do i = 1, merge(n_places, 0, list%sets .and. any(case%joints%has_bearing()))
       call drop_laws(case%joints(i))
     end do
     call visit_guide(case%guide, list)

@@ -76,6 +76,8 @@ module cycle_answers
     quantity_t('cycle_imep', 'Pa', 'work of the gas in a cycle of the gas over the displacement'), &
     quantity_t('cycle_bmep', 'Pa', 'the same of the work that leaves through the shaft'), &
     quantity_t('cycle_fmep', 'Pa', 'the same of the losses in joints, guide and elastic members'), &
+    quantity_t('cycle_one_way_fmep', 'Pa', &
+      'the same of the losses in bearings of kind quasi_static, which the mechanism does not feel'), &
     quantity_t('cycle_work_gas', 'J', 'work of the gas on the piston in the cycle'), &
     quantity_t('cycle_work_drive', 'J', 'work of the driving torque, or of the moment that holds the speed'), &
     quantity_t('cycle_work_damping', 'J', 'work of the damping of the drive'), &
@@ -100,30 +102,30 @@ contains
     type(cycle_t) :: cycle
     real(dp) :: displacement   !! swept in all cycles of the gas in this cycle [m^3]
     real(dp) :: loss, shaft
-    integer :: revolutions, i, gas_revolutions
+    integer :: revolutions, i, forced
     allocate (answers(0))
-    gas_revolutions = 1
-    if (allocated(scene%gas)) gas_revolutions = scene%gas%revolutions
-    revolutions = gas_revolutions
+    forced = scene%forced_revolutions()
+    revolutions = forced
     if (periods%period > 0) revolutions = periods%period
     if (cycles%followed < revolutions .or. revolutions > longest_period) return
     cycle = cycles%last_cycle(revolutions)
     displacement = 0
-    if (allocated(scene%gas)) displacement = scene%gas%cylinder%displacement*revolutions/gas_revolutions
+    if (allocated(scene%gas)) displacement = scene%gas%cylinder%displacement*revolutions/forced
 
     call add('cycle_start', cycle%start)
     call add('cycle_duration', cycle%duration)
     call add('cycle_revolutions', real(revolutions, dp))
     call add_change(periods%change(revolutions))
-    do i = 1, scene%n_joints
+    do i = 1, size(scene%joints)
       call add_joint(i)
     end do
     call add_machine()
-    do i = 1, size(scene%parts)
+    do i = 1, scene%n_works
       call add(trim(work_of_parts(findloc(parts, scene%parts(i)%what, 1))), cycle%work(i), scene%parts(i)%joint)
     end do
+    if (allocated(scene%given_load)) return
     call add('cycle_energy_change', cycle%energy_change)
-    call add('cycle_work_rest', cycle%energy_change - sum(cycle%work(:size(scene%parts))))
+    call add('cycle_work_rest', cycle%energy_change - sum(cycle%work(:scene%n_works)))
 
   contains
 
@@ -204,18 +206,21 @@ contains
       mean_speed = two_pi*revolutions/cycle%duration
       call add('cycle_mean_crank_speed', cycles%direction*mean_speed)
       call add('cycle_speed_fluctuation', (cycle%max_speed + cycle%max_negative_speed)/mean_speed)
+      if (allocated(scene%given_load)) return
       call add('cycle_mean_piston_speed', 4*scene%chain%bodies%crank%length*revolutions/cycle%duration)
       if (.not. allocated(scene%gas)) return
       call add('cycle_max_cylinder_pressure', cycle%max_pressure)
       call add('cycle_max_cylinder_pressure_angle', degrees(cycle%max_pressure_angle))
       shaft = -work_of(by_drive) - work_of(by_damping)
-      loss = work_of(by_gas) - shaft - sum(cycle%work(:size(scene%parts)))   ! by what is neither gas nor shaft
+      loss = work_of(by_gas) - shaft - sum(cycle%work(:scene%n_works))   ! by what is neither gas nor shaft
       call add('cycle_indicated_power', work_of(by_gas)/cycle%duration)
       call add('cycle_brake_power', shaft/cycle%duration)
       if (allocated(scene%chain%train)) displacement = displacement*(1 + size(scene%chain%train%cylinders))
       call add('cycle_imep', work_of(by_gas)/displacement)
       call add('cycle_bmep', shaft/displacement)
       call add('cycle_fmep', loss/displacement)
+      if (scene%n_works < size(scene%parts)) &
+        call add('cycle_one_way_fmep', -sum(cycle%work(scene%n_works + 1:size(scene%parts)))/displacement)
     end subroutine add_machine
 
     !> A crank angle [rad] in degrees, from 0 to the length of the cycle.

@@ -51,8 +51,10 @@ module cycle_watch
     procedure :: end_cycle
     procedure :: record_strobes
     procedure :: lower_to_peaks
+    procedure :: is_thinner
     procedure :: record_peaks
     procedure :: record_film
+    procedure :: film_pressure
     procedure :: record_turn
     procedure :: record_asperities
     procedure :: search_machine
@@ -156,6 +158,13 @@ contains
     end associate
   end subroutine record_film
 
+  !> Largest pressure in the film of a pin so far in the present revolution [Pa].
+  pure real(dp) function film_pressure(self, pin)
+    class(cycle_watch_t), intent(in) :: self
+    integer, intent(in) :: pin
+    film_pressure = self%present%pin(pin)%max_film_pressure
+  end function film_pressure
+
   !> Account for an angle [rad] that a pin has turned through in its bearing.
   pure subroutine record_turn(self, pin, angle)
     class(cycle_watch_t), intent(inout) :: self
@@ -217,6 +226,14 @@ contains
     end associate
   end function film_change
 
+  !> Whether the film at a pin is thinner by these values than so far in the present revolution.
+  pure logical function is_thinner(self, pin, values)
+    class(cycle_watch_t), intent(in) :: self
+    integer, intent(in) :: pin
+    real(dp), intent(in) :: values(n_peaks)
+    is_thinner = -values(of_penetration) < self%present%pin(pin)%min_film_thickness
+  end function is_thinner
+
   !> Account for values of the quantities with peaks, at a pin in the present revolution.
   pure subroutine record_peaks(self, pin, is_touching, values, thinnest_angle)
     class(cycle_watch_t), intent(inout) :: self
@@ -226,7 +243,7 @@ contains
     real(dp), intent(in) :: thinnest_angle   !! crank angle of the value of the penetration [rad]
     associate (c => self%present%pin(pin))
       c%max_force = max(c%max_force, values(of_pin_force))
-      if (-values(of_penetration) < c%min_film_thickness) c%thinnest_angle = thinnest_angle
+      if (self%is_thinner(pin, values)) c%thinnest_angle = thinnest_angle
       c%min_film_thickness = min(c%min_film_thickness, -values(of_penetration))
       if (is_touching) c%max_penetration = max(c%max_penetration, values(of_penetration))
     end associate

@@ -41,7 +41,7 @@ contains
     real(dp), intent(in) :: times(:)   !! requested times, increasing [s]
     type(scene_t), intent(in) :: scene
     self%times = times
-    allocate (self%kept(10, size(self%times)*scene%n_joints), source=0.0_dp)
+    allocate (self%kept(10, size(self%times)*size(scene%joints)), source=0.0_dp)
   end subroutine prepare
 
   !> Store the motions at the requested times in the last step of the method, up to t_to.
@@ -59,7 +59,7 @@ contains
     do while (self%next <= size(self%times))
       if (self%times(self%next) > t_to) exit
       call evaluate_inside(scene, method, self%times(self%next), y, now, in_domain, evaluations)
-      do i = 1, merge(scene%n_joints, 0, in_domain)
+      do i = 1, merge(size(scene%joints), 0, in_domain)
         if (scene%joints(i)%acting(phase_film) == 0) cycle
         associate (element => scene%joints(i)%slots(scene%joints(i)%acting(phase_film))%element)
           if (.not. element%film%gives_pressure()) cycle

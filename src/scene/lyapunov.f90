@@ -57,12 +57,13 @@ module lyapunov
     real(dp) :: t = 0                        !! [s]
     real(dp), allocatable :: y(:)
     real(dp) :: target = 0, direction = 1    !! crank angle to which it runs [rad], and the sense of rotation
-    logical :: has_arrived = .false.
-    character(len=:), allocatable :: reason  !! why it has not reached that angle
+    logical :: has_arrived = .false.         !! otherwise t and y are where it has stopped
+    integer :: status = 0                    !! of the integration
     type(scene_t), allocatable :: kept       !! the scene at that angle, before an event at the end of the last step
   contains
     procedure :: run_to
     procedure :: step_accepted
+    procedure :: why_stopped
   end type companion_t
 
   !> A measurement under way.
@@ -70,6 +71,7 @@ module lyapunov
     type(exponent_t) :: exponent
     logical :: is_over = .false.             !! measured, or a scene could not continue
     type(companion_t), private :: one, other(most_directions)
+    integer, private :: stopped = -1         !! the scene that could not go on: 0: `one`; else its place in `other`; -1: none
     type(differences_t), private :: differences
     integer, private :: i = 0                !! number of the present revolution; those that are not counted have numbers <= 0
     integer, private :: block = 1            !! number of revolutions of a period
@@ -78,6 +80,7 @@ module lyapunov
   contains
     procedure :: begin
     procedure :: advance
+    procedure :: explain
   end type measurement_t
 
 contains
@@ -111,8 +114,8 @@ contains
     associate (i => self%i, block => self%block, blocks => self%blocks, exponent => self%exponent)
       if (i == 1 - block) call self%differences%begin_period()
       do k = 1, per_revolution
-        call follow(self%one, self%other, self%differences, exponent%reason)
-        self%is_over = allocated(exponent%reason)
+        call follow(self%one, self%other, self%differences, self%stopped)
+        self%is_over = self%stopped >= 0
         if (self%is_over) return
         call self%differences%straighten(factors)
         self%growth = self%growth + log(max(factors(1, 1), smallest_growth))
@@ -134,11 +137,19 @@ contains
     end associate
   end subroutine advance
 
-  !> Let all scenes run for a quarter of a revolution and measure the differences at its end, or say why one has not reached it.
-  subroutine follow(one, other, differences, reason)
+  !> Say why the exponent is not known, if a scene could not go on.
+  subroutine explain(self)
+    class(measurement_t), intent(inout) :: self
+    if (self%stopped == 0) call self%one%why_stopped(self%exponent%reason)
+    if (self%stopped > 0) call self%other(self%stopped)%why_stopped(self%exponent%reason)
+  end subroutine explain
+
+  !> Let all scenes run for a quarter of a revolution and measure the differences at its end; `stopped` is that which has not
+  !> reached it, as in measurement_t.
+  subroutine follow(one, other, differences, stopped)
     type(companion_t), intent(inout) :: one, other(:)
     type(differences_t), intent(inout) :: differences
-    character(len=:), allocatable, intent(out) :: reason
+    integer, intent(out) :: stopped
     real(dp) :: angle
     integer :: d
     do d = 1, size(differences%state, 2)
@@ -146,11 +157,11 @@ contains
     end do
     angle = one%scene%crank_angle(one%t, one%y) + one%direction*two_pi/per_revolution
     call one%run_to(angle)
-    if (.not. one%has_arrived) reason = one%reason
+    stopped = merge(-1, 0, one%has_arrived)
     do d = 1, size(differences%state, 2)
-      if (allocated(reason)) exit
+      if (stopped >= 0) exit
       call other(d)%run_to(angle)
-      if (.not. other(d)%has_arrived) reason = other(d)%reason
+      if (.not. other(d)%has_arrived) stopped = d
       if (other(d)%has_arrived) call differences%measure(d, one%scene, one%y, other(d)%scene, other(d)%y)
     end do
   end subroutine follow
@@ -199,7 +210,6 @@ contains
     class(ode_method_t), allocatable :: method
     real(dp), allocatable :: y(:)
     real(dp) :: t
-    integer :: status
     self%target = angle
     self%has_arrived = .false.
     self%wants_to_stop = .false.
@@ -207,17 +217,27 @@ contains
     call move_alloc(self%method, method)
     t = self%t
     y = self%y
-    call integrate(scene, method, t, y, self%t + longest_revolution*two_pi/scene%speed_scale(), 0, self, status)
-    if (status /= integration_interrupted) self%has_arrived = .false.
-    if (.not. self%has_arrived) then
-      self%reason = 'the crank stops, turns back or takes too long for a quarter of a revolution'
-      if (all(status /= [integration_done, integration_stopped])) self%reason = reason(status, scene, method%settings, t, y)
-      self%reason = self%reason//' at '//place(scene, t, y)
-    end if
+    call integrate(scene, method, t, y, self%t + longest_revolution*two_pi/scene%speed_scale(), 0, self, self%status)
+    if (self%status /= integration_interrupted) self%has_arrived = .false.
     call move_alloc(scene, self%scene)
     call move_alloc(method, self%method)
-    if (allocated(self%kept)) call move_alloc(self%kept, self%scene)
+    if (.not. self%has_arrived) then
+      self%t = t
+      self%y = y
+    else if (allocated(self%kept)) then
+      call move_alloc(self%kept, self%scene)
+    end if
   end subroutine run_to
+
+  !> Why and where a scene has stopped before it was at the angle.
+  subroutine why_stopped(self, text)
+    class(companion_t), intent(in) :: self
+    character(len=:), allocatable, intent(out) :: text
+    text = 'the crank stops, turns back or takes too long for a quarter of a revolution'
+    if (all(self%status /= [integration_done, integration_stopped])) &
+      text = reason(self%status, self%scene, self%method%settings, self%t, self%y)
+    text = text//' at '//place(self%scene, self%t, self%y)
+  end subroutine why_stopped
 
   subroutine step_accepted(self, method, problem, t_to)
     class(companion_t), intent(inout) :: self

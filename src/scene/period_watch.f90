@@ -68,7 +68,7 @@ contains
     call scene%layout%natural_scales(scales, growing)
     self%smallest_range = least_range*scales(self%at)
     self%turning = merge(1.0_dp, 0.0_dp, growing(self%at))
-    if (allocated(scene%gas)) self%forcing = scene%gas%revolutions
+    self%forcing = scene%forced_revolutions()
     self%earlier = int(abs(scene%crank_angle(t, y) - scene%start_angle)/two_pi)
     allocate (self%states(size(self%at), 0:depth - 1), source=0.0_dp)
     allocate (self%low(size(self%at), 0:depth - 1), source=huge(1.0_dp))

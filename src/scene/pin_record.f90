@@ -4,7 +4,7 @@ module pin_record
   use ode_method, only: ode_method_t
   use run_state, only: run_state_t
   use joint_places, only: name_prefix
-  use scene_problem, only: scene_t, evaluation_t, phase_contact, event_contact_begins
+  use scene_problem, only: scene_t, evaluation_t, phase_film, phase_contact, event_contact_begins
   use joint_events, only: may_touch
   use inside_step, only: evaluate_inside
   use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks
@@ -13,6 +13,7 @@ module pin_record
   use wear_record, only: wear_record_t
   use trace_sink, only: trace_event_t
   use film_figures, only: film_figures_t
+  use film_peak, only: find_film_peak
   use run_figures, only: run_figures_t
   implicit none
   private
@@ -24,6 +25,7 @@ module pin_record
     type(trace_event_t), private :: contact    !! present or last contact
     logical, private :: reports_film = .false.
     real(dp), private :: film_time = 0         !! time up to which the results of its film have been integrated [s]
+    real(dp), private :: film_pressure = 0     !! largest pressure at that time [Pa]
     real(dp), private :: turn(3) = 0           !! time [s], angle [rad] and speed [rad/s] of the pin relative to its bearing there
     type(wear_record_t), allocatable :: wear   !! not allocated: wear is not counted
   contains
@@ -101,7 +103,7 @@ contains
     logical, intent(in) :: is_end   !! t is the end of the step, or of its final part; else that of a revolution inside it
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
-    real(dp) :: known(n_peaks), largest(n_peaks)
+    real(dp) :: known(n_peaks), largest(n_peaks), angle
     integer :: before
     logical :: touches
 
@@ -119,7 +121,13 @@ contains
     figures%evaluations = figures%evaluations + (self%evaluations - before)
     figures%peak_evaluations = figures%peak_evaluations + (self%evaluations - before)
     call add_values(self, touches, largest, figures)
-    if (present(cycles)) call cycles%record_peaks(self%pin, touches, largest, angle_at(self%thinnest_time))
+    if (present(cycles)) then
+      angle = now%motion%crank_angle
+      if (self%thinnest_time < t) then
+        if (cycles%is_thinner(self%pin, largest)) angle = angle_inside(method, scene, self%thinnest_time)
+      end if
+      call cycles%record_peaks(self%pin, touches, largest, angle)
+    end if
     if (present(cycles) .and. self%joint > 0) call follow_turn(self, scene, t, now, cycles)
     if (self%reports_film) call sum_film(self, method, scene, t, now, figures, cycles)
     if (.not. allocated(self%wear)) return
@@ -130,19 +138,17 @@ contains
       call self%wear%look_ahead(method, scene, t)
     end if
     figures%evaluations = figures%evaluations + (self%wear%evaluations - before)
-
-  contains
-
-    !> Crank angle at a time in the last step [rad].
-    real(dp) function angle_at(time)
-      real(dp), intent(in) :: time
-      real(dp) :: y(size(method%y))
-      angle_at = now%motion%crank_angle
-      if (.not. time < t) return
-      call method%interpolate(time, y)
-      angle_at = scene%crank_angle(time, y)
-    end function angle_at
   end subroutine search
+
+  !> Crank angle at a time inside the last step [rad].
+  real(dp) function angle_inside(method, scene, time) result(angle)
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: time
+    real(dp) :: y(size(method%y))
+    call method%interpolate(time, y)
+    angle = scene%crank_angle(time, y)
+  end function angle_inside
 
   !> Add the angle that the pin turns through in its bearing since the last call, in either sense, to the present revolution. Where
   !> it turns back, that angle is taken from the cubic through angles and speeds at both ends.
@@ -185,15 +191,19 @@ contains
     real(dp), parameter :: place(3) = 0.5_dp + sqrt(0.15_dp)*[-1, 0, 1], weight(3) = [5, 8, 5]/18.0_dp
     type(evaluation_t) :: halfway
     type(film_figures_t) :: film
-    real(dp) :: y(size(method%y)), span
+    real(dp) :: y(size(method%y)), span, times(0:4), pressures(0:4), known, peak, angle
     logical :: in_domain
     integer :: i
     span = t - self%film_time
+    times = self%film_time + span*[0.0_dp, place, 1.0_dp]
+    pressures = 0
+    pressures(0) = self%film_pressure
     associate (f => figures%pin(self%pin), joint => scene%joints(self%joint), k => self%joint)
       do i = 1, merge(3, 0, span > 0)
         call evaluate_inside(scene, method, self%film_time + place(i)*span, y, halfway, in_domain, figures%evaluations)
         if (.not. in_domain) cycle
         film = joint%film_figures(halfway%joint(k))
+        pressures(i) = film%max_pressure
         f%film_energy_lost = f%film_energy_lost + weight(i)*span*film%power
         f%neglected_shear_loss = f%neglected_shear_loss + weight(i)*span*film%neglected_power
         f%film_volume = f%film_volume + weight(i)*span*film%side_flow
@@ -206,8 +216,17 @@ contains
       film = joint%film_figures(now%joint(k))
       f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
       if (present(cycles)) call cycles%record_film(self%pin, film%max_pressure, now%motion%crank_angle, 0.0_dp)
+      pressures(4) = film%max_pressure
+      if (span > 0 .and. joint%slots(joint%acting(phase_film))%element%film%gives_pressure()) then
+        known = f%max_film_pressure
+        if (present(cycles)) known = min(known, cycles%film_pressure(self%pin))
+        call find_film_peak(method, scene, k, times, pressures, known, figures%evaluations, peak, angle)
+        f%max_film_pressure = max(f%max_film_pressure, peak)
+        if (present(cycles)) call cycles%record_film(self%pin, peak, angle, 0.0_dp)
+      end if
     end associate
     self%film_time = t
+    self%film_pressure = film%max_pressure
   end subroutine sum_film
 
   !> Account for the values of one evaluation, for the run, for the present contact and, if it is given, for the present revolution.

@@ -238,9 +238,8 @@ contains
     type(scene_t), intent(in) :: scene
     type(cycle_watch_t), intent(in) :: cycles
     integer :: i, revolutions
-    revolutions = 1
-    if (allocated(scene%gas)) revolutions = scene%gas%revolutions
-    do i = 1, scene%n_joints
+    revolutions = scene%forced_revolutions()
+    do i = 1, size(scene%joints)
       associate (place => scene%joints(i)%place)
         self%figures%pin(place)%film_change = cycles%film_change(place, revolutions)
       end associate

@@ -18,6 +18,7 @@ module run_recorder
   use run_limits, only: run_limits_t
   use trace_sink, only: trace_sink_t, trace_event_t
   use film_snapshots, only: film_snapshots_t
+  use history_record, only: history_record_t
   implicit none
   private
   public :: recorder_t
@@ -29,6 +30,7 @@ module run_recorder
     type(run_extremes_t) :: extremes
     type(run_limits_t) :: limits
     type(film_snapshots_t), allocatable :: films   !! pressure fields, if they are requested
+    type(history_record_t), allocatable :: histories(:)   !! of films with memory, if they are requested
     type(revolutions_t) :: crank      !! revolutions, if they are followed
     type(cycle_watch_t), allocatable :: cycles     !! results of each revolution, if they are requested
     type(period_watch_t) :: periods   !! search for a periodic motion that ends the run
@@ -138,7 +140,7 @@ contains
       t_end = t_to
       call self%limits%turn_limit%limit_end(t_end)
       if (follows_revolutions(self)) call follow_revolutions(self, method, problem, t_end)
-      if (size(self%values) > 0) call write_rows(self, method, problem, t_end)
+      if (has_rows(self)) call write_rows(self, method, problem, t_end)
       if (allocated(self%films)) call self%films%record(method, problem, t_end, self%extremes%figures%evaluations)
       if (t_end < method%t) then
         call method%interpolate(t_end, self%y)
@@ -185,6 +187,12 @@ contains
     call self%extremes%begin_wear(self%periods%window_start)
     if (allocated(self%cycles)) call self%cycles%count_from(self%periods%window_after)
   end subroutine follow_revolutions
+
+  !> Whether something is recorded at the times of the rows.
+  pure logical function has_rows(self)
+    class(recorder_t), intent(in) :: self
+    has_rows = size(self%values) > 0 .or. allocated(self%histories)
+  end function has_rows
 
   !> Write the rows that are due in the last step, up to t_to.
   subroutine write_rows(self, method, scene, t_to)
@@ -353,7 +361,7 @@ contains
       if (scene%wear_cycle%is_over(crank_angle)) call self%extremes%end_wear_cycle(scene)
     end if
     call self%rows%find_last(t, crank_angle, is_due)
-    if (.not. is_due .or. size(self%values) == 0) return
+    if (.not. (is_due .and. has_rows(self))) return
     self%y = y
     if (scene%crank_moves .and. self%rows%angles%per_revolution > 0) self%y(scene%crank%position) = crank_angle
     call evaluate_scene(self, scene, t, self%y, now, in_domain)
@@ -379,6 +387,12 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t), intent(in) :: now
+    integer :: i
+    if (allocated(self%histories)) then
+      do i = 1, size(self%histories)
+        call self%histories(i)%add(scene, t, now)
+      end do
+    end if
     if (size(self%values) == 0) return
     call self%row(scene, t, y, now, self%values)
     associate (f => self%extremes%figures)

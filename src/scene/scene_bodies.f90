@@ -10,6 +10,10 @@ contains
 
   module procedure find_general_accelerations
     logical :: solvable
+    if (allocated(self%given_load)) then
+      call move_without_mechanism(self, t, y, now, in_domain)
+      return
+    end if
     call move_bodies(self, joints, t, y, now, in_domain)
     if (.not. in_domain) return
     call self%find_loads(self%n_joints, joints, y, now)

@@ -5,8 +5,9 @@ module scene_builder
   use error_handling, only: error_t
   use case_definition, only: case_t
   use ode_method, only: ode_settings_t
-  use chain_motion, only: body_piston
-  use joint_places, only: n_places, in_order
+  use chain_motion, only: body_crank, body_big_end, body_piston
+  use bearing_load, only: bearing_load_t
+  use joint_places, only: in_order
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
   use joint_events, only: may_touch, may_pass_static
   use load_elements, only: add_elements
@@ -49,8 +50,6 @@ contains
     type(scene_t), allocatable, intent(out) :: scene
     type(error_t), allocatable, intent(out) :: error
     logical, intent(in), optional :: without_tables   !! the films compute no tables: the scene is not to be integrated
-    type(piston_t) :: piston
-    real(dp) :: gravity(2)   ! along the axis of the cylinder towards the crank, rotated towards -y [m/s^2]
     logical :: makes_tables
     integer :: i
 
@@ -59,15 +58,7 @@ contains
     call assemble_scene(case, ideal_joint, makes_tables, scene)
     if (allocated(scene%guide)) call scene%guide%prepare()
     call choose_entry(case, scene)
-    associate (m => case%mechanism)
-      piston = piston_t(m%piston_mass)
-      if (case%has_loose_guide() .and. .not. ideal_joint) &
-        piston = piston_t(m%piston_mass, .true., case%guide%piston_inertia, case%guide%piston_com)
-      gravity = axis_gravity(case)
-      scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, &
-        m%crank_inertia + case%drive%flywheel_inertia, m%crank_com), &
-        rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston, gravity)
-    end associate
+    if (.not. allocated(scene%given_load)) call build_bodies(case, ideal_joint, scene)
     if (scene%chain%has_elastic_rod()) call scene%chain%elastic%rod%prepare(scene%chain%bodies%rod)
     scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping, 0.0_dp, 0.0_dp)
     call vary_drive(case, scene)
@@ -92,35 +83,79 @@ contains
     call scene%prepare_start()
   end subroutine build_scene
 
+  !> Build crank, rod and piston.
+  subroutine build_bodies(case, ideal_joint, scene)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint
+    type(scene_t), intent(inout) :: scene
+    type(piston_t) :: piston
+    real(dp) :: gravity(2)   ! along the axis of the cylinder towards the crank, rotated towards -y [m/s^2]
+    associate (m => case%mechanism)
+      piston = piston_t(m%piston_mass)
+      if (case%has_loose_guide() .and. .not. ideal_joint) &
+        piston = piston_t(m%piston_mass, .true., case%guide%piston_inertia, case%guide%piston_com)
+      gravity = axis_gravity(case)
+      scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, &
+        m%crank_inertia + case%drive%flywheel_inertia, m%crank_com), &
+        rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston, gravity)
+    end associate
+  end subroutine build_bodies
+
+  !> Let the journal and the bearing of a bearing by itself turn with the bodies that its load names, and prepare the load.
+  subroutine give_load(load, scene)
+    type(bearing_load_t), intent(in) :: load
+    type(scene_t), intent(inout) :: scene
+    allocate (scene%given_load, source=load)
+    call scene%given_load%prepare()
+    associate (joint => scene%joints(1))
+      joint%site%pin_body = body_named(load%journal)
+      joint%site%bearing = body_named(load%bearing)
+      joint%bearing_turns = load%bearing /= 'fixed'
+    end associate
+
+  contains
+
+    !> A body that turns as one of this name; the piston does not turn.
+    pure integer function body_named(name) result(body)
+      character(len=*), intent(in) :: name
+      body = body_piston
+      if (name == 'crank') body = body_crank
+      if (name == 'rod') body = body_big_end
+    end function body_named
+  end subroutine give_load
+
   !> Assemble the parts of a scene from the case: joints with clearance, with their laws prepared, guide, elastic members and gas.
   !> With `makes_tables` missing tables of films are computed.
   subroutine assemble_scene(case, ideal_joint, makes_tables, scene)
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint, makes_tables
     type(scene_t), allocatable, intent(out) :: scene
-    integer :: i, n
+    integer, allocatable :: of_clearance(:), carried(:)   ! places
+    integer :: n
     allocate (scene)
-    if (ideal_joint) then
-      allocate (scene%joints(0))
-    else
-      allocate (scene%joints(count(case%joints%has_clearance())))
-    end if
-    n = 0
-    do i = 1, merge(n_places, 0, size(scene%joints) > 0)
-      associate (place => in_order(i))
-        if (.not. case%joints(place)%has_clearance()) cycle
-        n = n + 1
-        call build_joint(case, place, makes_tables, scene%joints(n))
-      end associate
+    of_clearance = pack(in_order, case%joints(in_order)%has_clearance() .and. .not. ideal_joint)
+    carried = pack(in_order, case%joints(in_order)%is_carried() .and. .not. ideal_joint)
+    scene%n_joints = size(of_clearance)
+    allocate (scene%joints(size(of_clearance) + size(carried)), scene%carried(size(carried)))
+    do n = 1, size(scene%joints)
+      if (n <= scene%n_joints) then
+        call build_joint(case, of_clearance(n), makes_tables, scene%joints(n))
+      else
+        associate (place => carried(n - scene%n_joints), bearing => scene%carried(n - scene%n_joints))
+          call build_joint(case, place, makes_tables, scene%joints(n))
+          bearing%joint = n
+          bearing%load_share = case%joints(place)%load_share
+        end associate
+      end if
     end do
-    scene%n_joints = n
-    if (n > 0) scene%chain%is_loose = case%loose_pins()
+    if (scene%n_joints > 0) scene%chain%is_loose = case%loose_pins()
+    if (allocated(case%load) .and. .not. ideal_joint) call give_load(case%load, scene)
     if (allocated(case%guide) .and. .not. (ideal_joint .and. case%has_loose_guide())) then
       allocate (scene%guide)
       call case%guide%build(scene%guide)
       scene%guide%start = [case%initial%piston_offset, case%initial%piston_tilt]
       scene%guide%start_rate = [case%initial%piston_offset_rate, case%initial%piston_tilt_rate]
-      do n = 1, scene%n_joints
+      do n = 1, size(scene%joints)
         if (scene%joints(n)%site%bearing == body_piston) scene%joints(n)%bearing_turns = scene%guide%is_loose
       end do
     end if
@@ -207,7 +242,7 @@ contains
       joint%pin_radius = joint%bearing%pin_radius()
       call add_elements(wanted, case%integrator%relative_tolerance, makes_tables, joint)
       if (allocated(wanted%wear)) allocate (joint%wear, source=wanted%wear)
-      joint%reports_film = wanted%reports_film .and. allocated(wanted%film)
+      joint%reports_film = (wanted%reports_film .or. wanted%is_carried() .and. case%output%answers) .and. allocated(wanted%film)
     end associate
   end subroutine build_joint
 

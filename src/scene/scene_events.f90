@@ -32,6 +32,7 @@ contains
     if (allocated(scene%turns)) call number(of_turns, n_turn_events)
     if (allocated(scene%wear_cycle)) call number(of_wear, 1)
     if (allocated(scene%guide)) call number(of_guide, n_guide_events(scene%guide))
+    if (allocated(scene%given_load)) call number(of_load, scene%given_load%n_events())
 
   contains
 
@@ -87,6 +88,10 @@ contains
       g_rate(k + n_corners + 1:k + n) = 0
       needs_forces = needs_forces .or. corners_may_lose_force(self)
     end if
+    if (allocated(self%given_load)) then   ! there is no guide then
+      if (self%given_load%n_events() > 0) &
+        call self%given_load%event(self%crank_angle(t, y), self%crank_speed(t, y), g(k + 1), g_rate(k + 1))
+    end if
     if (needs_forces) call find_force_events(self, t, y, g, g_rate)
   end procedure all_events
 
@@ -132,6 +137,8 @@ contains
         call pass_others(self, event, t, y, .true.)
       else if (i == of_turns) then
         call self%turns%pass(event, self%crank_angle(t, y), action)
+      else if (i == of_load) then
+        call self%given_load%pass(self%crank_speed(t, y))
       else if (i == of_wear) then
         self%wear_cycle%begin = self%crank_angle(t, y)
       else if (i == of_guide .and. event > n_corners) then
@@ -180,11 +187,11 @@ contains
     class(scene_t), intent(in) :: scene
     integer :: i
     mode_of = 0
-    do i = 1, size(scene%joints)
+    do i = 1, scene%n_joints
       mode_of = mode_of + scene%joints(i)%phase*n_phases**(i - 1)
     end do
     if (.not. allocated(scene%guide)) return
-    if (any(scene%guide%touches)) mode_of = mode_of + n_phases**size(scene%joints)
+    if (any(scene%guide%touches)) mode_of = mode_of + n_phases**scene%n_joints
   end function mode_of
 
   !> Choose the state of set-valued friction of one joint: its direction of sliding, or sticking.
@@ -267,6 +274,10 @@ contains
       if (.not. may_touch(self%joints(i))) cycle
       if (contact(1) >= -rounding*self%joints(i)%bearing%clearance) call self%joints(i)%begin_contact(contact(2))
     end do
+    do i = self%n_joints + 1, size(self%joints)
+      self%joints(i)%phase = self%joints(i)%phase_apart()
+    end do
+    if (allocated(self%given_load)) call self%given_load%start(self%crank_angle(0.0_dp, y), self%start_speed)
     if (allocated(self%guide)) call prepare_corners(self, y)
     do i = 1, self%n_joints
       if (self%joints(i)%phase == phase_contact) call decide_at_wall(self, i, y)
@@ -284,6 +295,7 @@ contains
     if (allocated(self%guide)) then
       if (self%guide%is_loose .and. .not. any(self%guide%touches)) call prepare_corners(self, y)
     end if
+    if (allocated(self%given_load)) call self%given_load%start(self%crank_angle(t, y), self%start_speed)
     call find_lost_forces(self, t, y)
     self%mode = mode_of(self)
   end procedure complete_state

@@ -12,9 +12,11 @@ module scene_problem
   use crank_rod, only: accelerate_crank_rod
   use ideal_chain, only: accelerate_ideal_chain
   use joint_evaluation, only: joint_evaluation_t, clear_loads
-  use clearance_joint, only: clearance_joint_t, most_joints, n_phases, phase_free, phase_film, phase_contact
+  use clearance_joint, only: clearance_joint_t, most_bearings, n_phases, phase_free, phase_film, phase_contact
   use joint_events, only: penetration_and_rate
   use sticking, only: hold_surfaces
+  use carried_bearing, only: carried_bearing_t
+  use bearing_load, only: bearing_load_t
   use piston_guide, only: piston_guide_t, guide_loads_t
   use working_gas, only: working_gas_t
   use other_cylinders, only: other_cylinders_t
@@ -29,13 +31,13 @@ module scene_problem
   !> Events reported in the trace.
   integer, parameter :: event_none = 0, event_contact_begins = 1, event_contact_ends = 2
 
-  !> The results of one evaluation of a scene. Arrays have one element for each joint with clearance. The right-hand side sets only
-  !> the components that it needs.
+  !> The results of one evaluation of a scene. Arrays have one element for each joint that is not ideal. The right-hand side sets
+  !> only the components that it needs.
   type :: evaluation_t
     type(motion_t) :: motion
     type(accelerations_t) :: accelerations
     type(loads_t) :: loads
-    type(joint_evaluation_t) :: joint(most_joints)
+    type(joint_evaluation_t) :: joint(most_bearings)
     type(guide_loads_t) :: guide    !! of a guide that is not ideal
     real(dp) :: crank_moment        !! moment of the drive on the crank [N m]
     real(dp) :: cylinder_pressure   !! [Pa]
@@ -43,11 +45,11 @@ module scene_problem
   end type evaluation_t
 
   !> Owners of events other than joints.
-  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2, of_wear = -3, of_other_gas = -4
+  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2, of_wear = -3, of_other_gas = -4, of_load = -5
 
   !> The owner of an event function of the integrator.
   type :: event_owner_t
-    integer :: joint = 0            !! or of_gas, of_turns, of_guide, of_wear, of_other_gas
+    integer :: joint = 0            !! or of_gas, of_turns, of_guide, of_wear, of_other_gas, of_load
     integer :: event = 0            !! number of the event within its owner
   end type event_owner_t
 
@@ -68,8 +70,10 @@ module scene_problem
   type, extends(ode_problem_t) :: scene_t
     type(chain_t) :: chain
     integer :: n_joints = 0         !! number of joints with clearance
-    type(clearance_joint_t), allocatable :: joints(:)
-    integer :: joint_at(n_places) = 0   !! index of the joint with clearance at each place; 0: an ideal pin, or none
+    type(clearance_joint_t), allocatable :: joints(:)      !! these, and then the joints of the carried bearings
+    type(carried_bearing_t), allocatable :: carried(:)     !! bearings without influence on the mechanism
+    type(bearing_load_t), allocatable :: given_load        !! of a bearing by itself; there is no mechanism
+    integer :: joint_at(n_places) = 0   !! index of the joint at each place; 0: an ideal pin, or none
     integer, allocatable :: reported(:) !! places with results: the first one, and those with a joint
     type(piston_guide_t), allocatable :: guide   !! not allocated: the guide is ideal
     type(working_gas_t), allocatable :: gas
@@ -88,6 +92,7 @@ module scene_problem
     type(slice_t) :: measures       !! indices of the integrals on request
     logical :: measures_loss = .false.   !! the last of them is the energy taken by the joints
     type(work_part_t), allocatable :: parts(:)   !! parts of the work, if they are told apart
+    integer :: n_works = 0          !! number of them; the following ones are works in carried bearings, which no body feels
     logical :: has_shared_loads = .false.   !! of these, film and contact act at the same time in a joint
     integer :: other_part = 0       !! the part that is the whole work without that of the others; 0: none
     logical :: is_plain = .true.    !! rigid bodies, an ideal guide and a drive that does not vary
@@ -118,6 +123,7 @@ module scene_problem
     procedure :: is_singular
     procedure :: crank_angle
     procedure :: crank_speed
+    procedure :: forced_revolutions
     procedure :: work
     procedure :: work_of_torque
     procedure :: measure_joint
@@ -220,6 +226,22 @@ module scene_problem
       logical, intent(out) :: in_domain
     end subroutine move_bodies
 
+    !> Motion and loads of the carried bearings, from the forces in the chain. `in_domain` is false if a pin is at the wall.
+    pure module subroutine look_at_carried(self, y, now, in_domain)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: y(self%n)
+      type(evaluation_t), intent(inout) :: now
+      logical, intent(out) :: in_domain
+    end subroutine look_at_carried
+
+    !> Set the motion of crank and rod in a scene without mechanism. `in_domain` is false if there is no rod angle.
+    pure module subroutine move_without_mechanism(self, t, y, now, in_domain)
+      class(scene_t), intent(in) :: self
+      real(dp), intent(in) :: t, y(self%n)
+      type(evaluation_t), intent(inout) :: now
+      logical, intent(out) :: in_domain
+    end subroutine move_without_mechanism
+
     !> Claim the states of the elastic members.
     module subroutine claim_elastic(self)
       class(scene_t), intent(inout) :: self
@@ -279,7 +301,10 @@ contains
         call clear_loads(now%joint(i))
       end do
     end if
+    if (size(self%carried) > 0) call clear_chain(now)
     call find_accelerations(self, self%n_joints, self%joints, t, y, now, in_domain)
+    if (.not. in_domain) return
+    if (size(self%carried) > 0) call look_at_carried(self, y, now, in_domain)
     if (.not. in_domain) return
     if (self%crank_moves) then
       dydt(self%crank%position) = now%motion%crank_speed
@@ -288,6 +313,11 @@ contains
     call set_rates(self%n_joints, self%joints, now, dydt)
     dydt(self%work_at) = now%power
     if (.not. self%has_more_rates) return
+    do i = 1, size(self%carried)
+      associate (it => self%carried(i))
+        dydt(it%place%first:it%place%last) = now%joint(it%joint)%eccentricity_rate
+      end associate
+    end do
     if (allocated(self%guide)) call self%guide%set_rates(now%motion%tilting, now%accelerations%offset, now%accelerations%tilt, &
       dydt)
     if (allocated(self%chain%elastic)) call self%chain%elastic%set_rates(now%motion, now%accelerations, dydt)
@@ -329,19 +359,26 @@ contains
     logical, intent(out) :: in_domain
     integer :: i
     evaluation%cylinder_pressure = 0
-    evaluation%loads%force = 0
-    evaluation%loads%moment = 0
-    evaluation%motion%crank_pin = 0
-    evaluation%motion%crank_pin_rate = 0
+    call clear_chain(evaluation)
     do i = 1, self%n_joints
       call clear_loads(evaluation%joint(i))
     end do
     call find_accelerations(self, self%n_joints, self%joints, t, y, evaluation, in_domain)
-    if (in_domain) call self%chain%move_piston(evaluation%motion)
+    if (in_domain .and. .not. allocated(self%given_load)) call self%chain%move_piston(evaluation%motion)
     do i = 1, self%n_joints
       call self%joints(i)%complete(evaluation%motion, in_domain, y, evaluation%joint(i))
     end do
+    if (in_domain .and. size(self%carried) > 0) call look_at_carried(self, y, evaluation, in_domain)
   end subroutine evaluate
+
+  !> Set what forces between the bodies depend on, and what a chain without clearance leaves as it is.
+  pure subroutine clear_chain(now)
+    type(evaluation_t), intent(inout) :: now
+    now%loads%force = 0
+    now%loads%moment = 0
+    now%motion%crank_pin = 0
+    now%motion%crank_pin_rate = 0
+  end subroutine clear_chain
 
   !> Compute motion, loads, accelerations and power. `in_domain` is false if an eccentricity is not admissible. (The joints are
   !> passed as an argument of fixed size, which avoids looking up bounds and strides. The equations of the two most common chains
@@ -452,9 +489,8 @@ contains
   subroutine claim(self)
     class(scene_t), intent(inout) :: self
     integer :: i
-    self%n_joints = size(self%joints)
     self%joint_at = 0
-    do i = 1, self%n_joints
+    do i = 1, size(self%joints)
       self%joint_at(self%joints(i)%place) = i
     end do
     self%reported = pack(in_order, in_order == in_order(1) .or. self%joint_at(in_order) > 0)
@@ -466,9 +502,9 @@ contains
     call self%layout%count_again()
     call claim_states(self)
     self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying) &
-      .or. allocated(self%chain%train))
+      .or. allocated(self%chain%train) .or. allocated(self%given_load))
     self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide) &
-      .or. allocated(self%chain%train)
+      .or. allocated(self%chain%train) .or. size(self%carried) > 0
     call self%set_layout()
   end subroutine claim
 
@@ -480,6 +516,9 @@ contains
     if (self%crank_moves) call self%layout%claim_positions(1, 1.0_dp, self%speed_scale(), self%crank, grows=.true.)
     do i = 1, self%n_joints
       call self%joints(i)%claim(self%layout, self%speed_scale(), self%span)
+    end do
+    do i = 1, size(self%carried)
+      call self%carried(i)%claim(self%layout, self%joints(self%carried(i)%joint))
     end do
     if (allocated(self%guide)) call self%guide%claim(self%layout, self%speed_scale(), self%span)
     if (allocated(self%chain%elastic)) call claim_elastic(self)
@@ -576,6 +615,9 @@ contains
     do i = 1, self%n_joints
       call self%joints(i)%set_start(y)
     end do
+    do i = 1, size(self%carried)
+      call self%carried(i)%set_start(self%joints(self%carried(i)%joint), y)
+    end do
     if (allocated(self%guide)) call self%guide%set_start(y)
   end function initial_state
 
@@ -585,7 +627,7 @@ contains
     real(dp), intent(in) :: y(:)
     integer :: i
     is_singular = .false.
-    do i = 1, self%n_joints
+    do i = 1, size(self%joints)
       is_singular = is_singular .or. self%joints(i)%is_singular(y)
     end do
   end function is_singular
@@ -613,6 +655,14 @@ contains
       if (self%runs_up) crank_speed = self%chain%varying%speed(t)
     end if
   end function crank_speed
+
+  !> Number of revolutions after which the gas pressure, or the given load of a bearing, repeats; else 1.
+  pure integer function forced_revolutions(self) result(revolutions)
+    class(scene_t), intent(in) :: self
+    revolutions = 1
+    if (allocated(self%gas)) revolutions = self%gas%revolutions
+    if (allocated(self%given_load)) revolutions = self%given_load%revolutions()
+  end function forced_revolutions
 
   !> Work of all non-conservative forces and the drive so far [J].
   pure real(dp) function work(self, y)

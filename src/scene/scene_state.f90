@@ -23,6 +23,9 @@ contains
     do i = 1, self%n_joints
       call self%joints(i)%declare(list, y)
     end do
+    do i = 1, size(self%carried)
+      call self%carried(i)%declare(list, self%joints(self%carried(i)%joint), y)
+    end do
     if (allocated(self%guide)) call self%guide%declare(list, y)
     if (allocated(self%chain%elastic)) call self%chain%elastic%declare(list, t, y, angle, speed)
     if (allocated(self%chain%train)) call self%chain%train%declare(list, t, y, angle, speed)
@@ -52,8 +55,7 @@ contains
     character(len=:), allocatable :: key
     real(dp) :: cycle
     if (.not. goes_on) then
-      cycle = two_pi
-      if (allocated(scene%gas)) cycle = scene%gas%revolutions*two_pi
+      cycle = scene%forced_revolutions()*two_pi
       angle = modulo(angle, cycle)
       scene%start_angle = angle
     end if

@@ -24,7 +24,7 @@ contains
     integer :: skip, n, i
 
     has_closed_form = self%chain%is_loose(piston_pin) .and. .not. (self%chain%is_loose(crank_pin) .or. allocated(self%guide) &
-      .or. allocated(self%chain%elastic))
+      .or. allocated(self%chain%elastic) .or. size(self%carried) > 0)
     if (has_closed_form) has_closed_form = self%joints(1)%place == piston_pin .and. self%joints(1)%has_slopes
     if (has_closed_form) then
       call self%evaluate(t, y, now, has_closed_form)

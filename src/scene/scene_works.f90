@@ -9,7 +9,7 @@ contains
     integer :: i, kind
     allocate (self%parts(0))
     if (allocated(self%gas)) call add(by_gas, 0)
-    call add(by_drive, 0)
+    if (.not. allocated(self%given_load)) call add(by_drive, 0)
     if (self%chain%drive%damping > 0) call add(by_damping, 0)
     do i = 1, self%n_joints
       do kind = 1, n_kinds
@@ -18,6 +18,12 @@ contains
     end do
     if (allocated(self%guide)) call add(by_guide, 0)
     if (allocated(self%chain%elastic) .or. has_stations(self)) call add(by_elastic, 0)
+    self%n_works = size(self%parts)
+    do i = self%n_joints + 1, size(self%joints)
+      do kind = 1, n_kinds
+        if (self%joints(i)%has_kind(kind)) call add(kind, i)
+      end do
+    end do
     self%has_shared_loads = any([(self%joints(i)%shares_load(), i=1, self%n_joints)])
     call choose_other_part(self)
     do i = 1, size(self%parts)
@@ -41,8 +47,8 @@ contains
     type(scene_t), intent(inout) :: scene
     integer :: i
     scene%other_part = 0
-    if (size(scene%parts) > 1 .or. .not. is_constant_torque(scene)) scene%other_part = size(scene%parts)
-    do i = size(scene%parts), 1, -1
+    if (scene%n_works > 1 .or. .not. is_constant_torque(scene)) scene%other_part = scene%n_works
+    do i = scene%n_works, 1, -1
       if (scene%parts(i)%what == of_film) scene%other_part = i
     end do
   end subroutine choose_other_part
@@ -61,13 +67,14 @@ contains
       .or. scene%chain%has_crankshaft() .or. has_stations(scene))
   end function is_constant_torque
 
-  !> Claim the quadrature of a part. Where the state has nothing but quadratures it takes part in the error control, since otherwise
-  !> the steps would be too long for it.
+  !> Claim the quadrature of a part. Where the mechanism has nothing but quadratures it takes part in the error control, since
+  !> otherwise the steps would be too long for it.
   subroutine claim_quadrature(scene, part)
     type(scene_t), intent(inout) :: scene
     type(work_part_t), intent(inout) :: part
     type(slice_t) :: one
-    call scene%layout%claim_quadratures(1, merge(0.0_dp, scene%energy_scale(), scene%n_positions > 0), one)
+    call scene%layout%claim_quadratures(1, merge(0.0_dp, scene%energy_scale(), scene%n_positions > 0 .or. &
+      part%joint > scene%n_joints), one)
     part%at = one%first
   end subroutine claim_quadrature
 
@@ -131,6 +138,6 @@ contains
         works(i) = self%work_of_torque(t, y)
       end if
     end do
-    if (self%other_part > 0) works(self%other_part) = self%work(y) - sum(works)
+    if (self%other_part > 0) works(self%other_part) = self%work(y) - sum(works(:self%n_works))
   end procedure works
 end submodule scene_works

@@ -23,6 +23,8 @@ module simulation
   use run_start, only: find_start
   use run_figures, only: run_figures_t
   use film_snapshots, only: film_field_t
+  use history_record, only: history_record_t
+  use joint_places, only: n_places, in_order
   use wear_record, only: wear_profile_t
   use train_record, only: train_result_t
   use trace_sink, only: trace_sink_t
@@ -37,6 +39,7 @@ module simulation
     type(step_statistics_t) :: statistics
     type(run_figures_t) :: figures
     type(film_field_t), allocatable :: films(:)  !! pressure fields, if the case asks for them
+    type(history_record_t), allocatable :: histories(:)  !! films with memory, to be marched, if the case asks for them
     type(wear_profile_t), allocatable :: wear(:) !! worn surfaces, if the case asks for them
     real(dp), allocatable :: time_with(:, :)  !! method auto: time with Adams and with Radau, for each mode, (2, 0:highest mode) [s]
     logical :: can_go_on = .false.  !! the run was stopped from outside or by a limit
@@ -154,6 +157,7 @@ contains
         allocate (recorder%films)
         call recorder%films%prepare(pack(case%output%snapshot_times, case%output%snapshot_times >= t), scene)
       end if
+      if (.not. ideal_joint) call prepare_histories(case, recorder%histories)
       call recorder%begin(scene, t, y)
       self%t = t
       call self%integration%begin(scene, self%method, t, y, recorder%rows%end_time, case%integrator%max_steps)
@@ -161,6 +165,20 @@ contains
       self%input = [(input_value(scene, self%inputs(i), t, y), i=1, size(self%inputs))]
     end associate
   end subroutine begin
+
+  !> Prepare the records of the films with memory that a case asks for; none: not allocated.
+  subroutine prepare_histories(case, histories)
+    type(case_t), intent(in) :: case
+    type(history_record_t), allocatable, intent(out) :: histories(:)
+    integer, allocatable :: at(:)
+    integer :: i
+    at = pack(in_order, [(allocated(case%joints(in_order(i))%history%march), i=1, n_places)])
+    if (size(at) == 0) return
+    allocate (histories(size(at)))
+    do i = 1, size(at)
+      call histories(i)%prepare(case, at(i))
+    end do
+  end subroutine prepare_histories
 
   !> Go on to time t [s], or through `most_steps` more steps (0: no limit), or to the end of the run if that comes first. Results
   !> do not depend on where a run pauses. After the end of the motion, the exponent is measured, a revolution in each call that has
@@ -330,7 +348,10 @@ contains
     call self%stop()   ! no effect if it is over
     report = self%report
     report%periods = self%recorder%periods
-    if (allocated(self%measurement)) report%exponent = self%measurement%exponent
+    if (allocated(self%measurement)) then
+      call self%measurement%explain()
+      report%exponent = self%measurement%exponent
+    end if
     report%statistics = self%method%totals()
     if (allocated(self%method%time_with)) report%time_with = self%method%time_with
     report%figures = self%recorder%extremes%figures
@@ -341,6 +362,7 @@ contains
     if (allocated(self%scene%chain%train)) report%train = train_results(self)
     if (self%has_cycles) call move_alloc(self%recorder%cycles, cycles)
     if (allocated(self%recorder%films)) report%films = self%recorder%films%fields(self%scene)
+    if (allocated(self%recorder%histories)) report%histories = self%recorder%histories
     associate (case => self%case, scene => self%scene, t => self%integration%t, y => self%integration%y)
       report%status = 'done'
       if (self%status /= integration_done) then

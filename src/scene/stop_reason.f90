@@ -78,7 +78,7 @@ contains
     character(len=:), allocatable :: at
     integer :: i
     at = ''
-    do i = 1, scene%n_joints
+    do i = 1, size(scene%joints)
       if (has_plain_names(scene) .or. .not. scene%joints(i)%is_singular(y)) cycle
       if (at /= '') at = at//' and'
       at = at//' at the '//joint_name(scene, i)
@@ -96,7 +96,7 @@ contains
     text = 'the pin'
     if (has_plain_names(scene)) return
     largest = -1
-    do i = 1, scene%n_joints
+    do i = 1, size(scene%joints)
       associate (at => scene%joints(i)%at%position)
         part = norm2(y(at:at + 1))/scene%joints(i)%reach(scene%joints(i)%phase)
       end associate
@@ -167,8 +167,8 @@ contains
     integer :: i
     call scene%evaluate(t, y, now, in_domain)
     text = 't = '//short_text(t, digits)//' s, crank angle '//short_text(now%motion%crank_angle/degree, digits)//' deg, phase '
-    if (scene%n_joints == 0) text = text//trim(phase_names(phase_free))
-    do i = 1, scene%n_joints
+    if (size(scene%joints) == 0) text = text//trim(phase_names(phase_free))
+    do i = 1, size(scene%joints)
       if (i > 1) text = text//', '
       text = text//trim(phase_names(scene%joints(i)%phase))
       if (.not. has_plain_names(scene)) text = text//' at the '//joint_name(scene, i)

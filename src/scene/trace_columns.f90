@@ -124,6 +124,13 @@ contains
     real(dp) :: energy
     integer :: i
     call row%add('time[s]', t, 'time since the start of the run')
+    if (allocated(scene%given_load)) then
+      call add_crank_angle(now%motion, row)
+      do i = 1, size(scene%joints)
+        call add_joint_columns(scene%joints(i), now%joint(i), row)
+      end do
+      return
+    end if
     call add_motion(now%motion, now%accelerations, row)
     call row%add('crank_moment[N.m]', now%crank_moment, &
       'moment of the drive on the crank, positive in the sense of crank_angle; at constant speed the one that holds the speed')
@@ -133,7 +140,7 @@ contains
     call row%add('energy[J]', energy, 'kinetic and potential energy of all bodies, with the energy stored in elastic members')
     call row%add('energy_residual[J]', energy - initial_energy - work, &
       'energy minus initial energy minus the work of all non-conservative forces and of the drive; 0 for an exact integration')
-    do i = 1, scene%n_joints
+    do i = 1, size(scene%joints)
       call add_joint_columns(scene%joints(i), now%joint(i), row)
     end do
     if (allocated(scene%guide)) call add_guide_columns(scene%guide, now%motion, now%accelerations, now%guide, row)
@@ -148,7 +155,7 @@ contains
     type(accelerations_t), intent(in) :: a
     type(trace_row_t), intent(inout) :: row
     real(dp) :: rod_angle
-    call row%add('crank_angle[rad]', m%crank_angle, 'angle of the crank from +x towards +y, counted on over whole revolutions')
+    call add_crank_angle(m, row)
     rod_angle = 0
     if (row%wants(1)) rod_angle = atan2(m%sin_rod, m%cos_rod)
     call row%add('rod_angle[rad]', rod_angle, 'angle of the connecting rod from the cylinder axis, positive from +x towards -y')
@@ -160,6 +167,12 @@ contains
     call row%add('rod_acceleration[rad/s2]', a%rod, 'rate of rod_speed')
     call row%add('piston_acceleration[m/s2]', a%piston, 'rate of piston_velocity')
   end subroutine add_motion
+
+  pure subroutine add_crank_angle(m, row)
+    type(motion_t), intent(in) :: m
+    type(trace_row_t), intent(inout) :: row
+    call row%add('crank_angle[rad]', m%crank_angle, 'angle of the crank from +x towards +y, counted on over whole revolutions')
+  end subroutine add_crank_angle
 
   !> Add the columns of the forces between the bodies.
   pure subroutine add_forces(scene, now, row, reaction)

@@ -9,7 +9,7 @@ module trace_sink
   public :: trace_sink_t, trace_event_t, joint_names
 
   !> Names of the places of contacts: the pins, and the corners of the skirt in the bore.
-  character(len=*), parameter :: joint_names(n_places + n_corners) = [character(len=10) :: places%name, corner_names]
+  character(len=*), parameter :: joint_names(n_places + n_corners) = [character(len=12) :: places%name, corner_names]
 
   !> One event in the trace.
   type :: trace_event_t

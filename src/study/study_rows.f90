@@ -81,7 +81,7 @@ contains
     logical, intent(in) :: has_strobes
     integer :: i
     self%has_strobes = has_strobes
-    self%has_place = base%joints%has_clearance()
+    self%has_place = base%joints%has_bearing()
     self%has_place(in_order(1)) = .true.
     self%has_guide = base%has_loose_guide() .or. any(keys == 'guide.kind')
     self%has_wear = base%has_wear() .or. any(index(keys, 'wear.') > 0)
@@ -245,7 +245,7 @@ contains
     type(case_t), intent(in) :: case
     logical, intent(in) :: is_known, with_means   !! the revolutions were made; means over several revolutions are wanted
     associate (first => in_order(1))
-      call add_pin(row, s, first, is_known .and. case%joints(first)%has_clearance(), is_known, with_means)
+      call add_pin(row, s, first, is_known .and. case%joints(first)%has_bearing(), is_known, with_means)
     end associate
     call row%add('mean_crank_speed', direction*two_pi*s%cycles/s%total%duration, is_known)
     call row%add('dissipated_energy', s%total%dissipated_energy/s%cycles, is_known .and. case%has_play())
@@ -260,7 +260,7 @@ contains
     logical :: is_loose
     integer :: i
     do i = 2, n_places
-      is_loose = is_known .and. case%joints(in_order(i))%has_clearance()
+      is_loose = is_known .and. case%joints(in_order(i))%has_bearing()
       if (row%has_place(in_order(i))) call add_pin(row, s, in_order(i), is_loose, is_loose, with_means)
     end do
     if (.not. row%has_guide) return

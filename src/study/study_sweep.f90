@@ -116,6 +116,7 @@ contains
       associate (case => sweep%base%case)
         if (allocated(case%drive%table%path)) call refuse('&drive torque_table', case%drive%table%path)
         if (allocated(case%measured)) call refuse('&cylinder_pressure table', case%measured%curve%path)
+        if (allocated(case%load)) call refuse('&bearing_load table', case%load%curve%path)
       end associate
     end do
 

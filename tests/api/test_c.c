@@ -29,7 +29,7 @@ static gudgeon_case *read_case(const char *name) {
   return it;
 }
 
-static double quantity(const gudgeon_run *run, const char *wanted, char *word) {
+static double quantity(gudgeon_run *run, const char *wanted, char *word) {
   char name[100], unit[20], text[500];
   double value;
   for (int i = 0; i < gudgeon_quantities(run); i++) {

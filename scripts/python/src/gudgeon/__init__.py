@@ -15,6 +15,7 @@ from typing import Any
 _HOMES = {
     "Case": "case", "CaseError": "case", "Column": "case", "read": "case", "template": "case",
     "Run": "run", "RunError": "run", "Summary": "run", "Certificate": "run", "load": "run", "compare": "run",
+    "orders": "run", "Page": "run",
     "Stepper": "stepper", "Snapshot": "stepper", "Inputs": "stepper",
     "sweep": "_sweep", "schema": "_schema", "fmu": "_fmu", "Key": "_keys", "keys": "_keys", "groups": "_keys",
 }  # fmt: skip

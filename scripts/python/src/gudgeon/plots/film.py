@@ -6,6 +6,7 @@ import pandas as pd
 from gudgeon.plots.style import BLACK, BLUE, GREEN, VERMILION, WIDTH
 from gudgeon.results import Results, Run
 from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import StrMethodFormatter
 
 SIMULATIONS = ("I", "II", "III", "IV", "V", "VI")
 #: Ending of the case's name, film, colour.
@@ -28,13 +29,17 @@ def grid_of(field: pd.DataFrame) -> tuple[np.ndarray, np.ndarray, np.ndarray, np
 
 
 def pressure_fields(run: Run, fields: list[pd.DataFrame], name: str) -> Drawing:
-    """One row for each time: the pressure over the unrolled bore, and the pressure in its middle plane with the film thickness."""
+    """One row for each time: the pressure over the unrolled bore (red: where the film of a film with memory ruptures), and the
+    pressure in its middle plane with the film thickness."""
     drawing, axes = plt.subplots(len(fields), 2, figsize=(WIDTH, 0.5 + 1.75 * len(fields)), squeeze=False,
                                  gridspec_kw={"width_ratios": (3, 2)})
     for (left, right), field in zip(axes, fields):
         angles, places, pressure, thickness = grid_of(field)
         degrees, mega = np.degrees(angles), 1e-6 * pressure
         top = max(mega.max(), 1e-9)
+        if "film_fraction" in field:
+            empty = grid_of(field.assign(pressure=field["film_fraction"]))[2]
+            left.contour(degrees, 1e3 * places, empty, levels=[0.999], colors=VERMILION, linewidths=0.8)
         mesh = left.pcolormesh(degrees, 1e3 * places, mega, cmap="viridis", vmin=0, vmax=top, shading="gouraud")
         left.contour(degrees, 1e3 * places, mega, levels=top * np.array([0.02, 0.25, 0.5, 0.75]), colors="white", linewidths=0.4)
         drawing.colorbar(mesh, ax=left, pad=0.01)
@@ -59,6 +64,36 @@ def pressure_fields(run: Run, fields: list[pd.DataFrame], name: str) -> Drawing:
     axes[-1, 0].set_xlabel("angle in the bearing, from the cylinder axis [°]")
     axes[-1, 1].set_xlabel("angle in the bearing [°]")
     drawing.suptitle(f"{name}: pressure of the film over the bore [MPa] (dotted: where it is thinnest)")
+    return drawing
+
+
+def with_memory(run: Run, table: pd.DataFrame, name: str) -> Drawing:
+    """A film with memory over its cycle beside the film of the run (NAME.film_history.csv): thickness, pressure, the part of the gap
+    that oil fills, flow from the supply and out of the ends."""
+    angle = np.degrees(table["crank_angle"].to_numpy())
+    order = np.argsort(angle % 720)
+    x = (angle % 720)[order]
+    drawing, axes = plt.subplots(4, 1, figsize=(WIDTH, 6.6), sharex=True)
+    series = (
+        (0, "min_film_thickness", 1e6, "film with memory", BLUE), (0, "quick_film_thickness", 1e6, "film of the run", GREEN),
+        (1, "max_film_pressure", 1e-6, "film with memory", BLUE), (1, "quick_film_pressure", 1e-6, "film of the run", GREEN),
+        (2, "film_fill", 1.0, "film with memory", BLUE),
+        (3, "supply_flow", 1e6, "from the supply", BLUE), (3, "side_flow", 1e6, "out of the ends", VERMILION))
+    for i, column, factor, label, colour in series:
+        axes[i].plot(x, factor * table[column].to_numpy()[order], color=colour, label=label)
+    for axis, label in zip(axes, ("thinnest film [µm]", "largest pressure [MPa]", "oil in the gap [-]", "flow [ml/s]")):
+        axis.set_ylabel(label)
+    axes[0].set_yscale("log")
+    for formatter in (axes[0].yaxis.set_major_formatter, axes[0].yaxis.set_minor_formatter):
+        formatter(StrMethodFormatter("{x:g}"))
+    axes[2].set_ylim(0, 1)
+    axes[0].legend(loc="best", ncols=2)
+    axes[3].legend(loc="best", ncols=2)
+    axes[3].set_xlim(0, 360 if np.ptp(angle) < 361 else 720)
+    axes[3].set_xticks(range(0, 361 if np.ptp(angle) < 361 else 721, 90))
+    axes[3].set_xlabel("crank angle [°]")
+    kind = run.parameter("supply", "kind")
+    drawing.suptitle(f"{name}: the film that must be fed" if kind else f"{name}: a film without supply")
     return drawing
 
 

@@ -222,16 +222,8 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
 
 
 def warnings(run: Run) -> list[str]:
-    """Warnings about a run."""
+    """What the program says of a run: how far it is certified, why it ended early, and the notes of its summary."""
     found = []
-
-    def number(name: str) -> float | None:
-        text = run.summary.get(name, ("", ""))[0]
-        try:
-            return float(text)
-        except ValueError:
-            return None
-
     if (until := run.certified_until) is not None:
         found.append(
             f"The run is certified up to {1e3 * until:.4g} ms: beyond, shaded in the plots, single values are not reliable. How far "
@@ -240,49 +232,12 @@ def warnings(run: Run) -> list[str]:
     status = run.summary.get("status", ("unknown", ""))[0]
     if status != "done":
         found.append(f"The run did not end as requested: {status}.")
-    for prefix, place, at in (("", "", ""), ("crank_pin_", "crank_pin.", " at the crank pin")):
-        contacts = number(f"{prefix}contacts") or 0
-        if (beyond := number(f"{prefix}impacts_beyond_validity") or 0) > 0:
-            found.append(
-                f"{beyond:.0f} of {contacts:.0f} impacts{at} were faster than the contact law's limit of "
-                "validity, 1e-5 √(E/ρ)."
-            )
-        if (deep := number(f"{prefix}contacts_beyond_validity") or 0) > 0:
-            found.append(
-                f"{deep:.0f} of {contacts:.0f} contacts{at} penetrated deeper than the contact geometry is valid for."
-            )
-        clearance = float(run.parameter(f"{place}joint", "clearance", 0.0)) if f"{prefix}film_thickness" in run else 0.0
-        if clearance and (deepest := number(f"{prefix}max_penetration") or 0) > 0.1 * clearance:
-            found.append(
-                f"The deepest penetration{at}, {1e6 * deepest:.3g} µm, is {deepest / clearance:.2g} clearances; contact "
-                "laws assume that it is small."
-            )
-        film, rough = (run.case.get(f"{place}{group}", run.case.get(group)) for group in ("lubrication", "asperities"))
-        if film and not rough and clearance and 0 < (number(f"{prefix}min_film_thickness") or 0) < 1e-6:
-            found.append(
-                f"The film{at} gets as thin as {1e6 * number(f'{prefix}min_film_thickness'):.3g} µm, the order of surface "
-                "roughness, which the film law neglects."
-            )
-        if abs(change := number(f"{prefix}film_thickness_change") or 0) > 0.05:
-            found.append(
-                f"The film{at} has not settled: its smallest thickness changed by {100 * abs(change):.2g} % in the last cycle."
-            )
-    if (residual := number("max_energy_residual_relative") or 0) > 1e-6:
-        found.append(f"The energy residual is {residual:.1e} of the energy: use a smaller tolerance.")
-    if (
-        run.parameter("lubrication", "law") == "oscillating_film"
-        and (share := number("contact_time_fraction") or 0) > 0.5
-    ):
-        found.append(f"The pin is in contact {100 * share:.0f} % of the time: this film carries no radial load.")
-    if not run.contacts.empty:
-        duration = float((run.contacts["end"] - run.contacts["begin"]).median())
-        interval = float(np.median(np.diff(run["time"])))
-        if duration < 5 * interval:
-            found.append(
-                f"Half of the contacts are shorter than {duration / interval:.1f} samples of the trace: peaks in the "
-                "plots may be too low; the time line and the summary have the exact peaks."
-            )
     return found
+
+
+def notes(run: Run) -> list[str]:
+    """The notes of the summary, in the words of the program."""
+    return [text for name, (text, _) in run.summary.items() if name.startswith("note_")]
 
 
 def contacts(run: Run) -> list[dict]:
@@ -402,7 +357,7 @@ def page(
     }
     if "normal_force" in columns:
         scene["peak"]["normal_force"] = max(scene["peak"]["normal_force"], float(columns["normal_force"].max()))
-    said = [say(text) for text in warnings(run)]
+    said = [*(say(text) for text in warnings(run)), *notes(run)]
     case = "".join(
         rows_html([(key, shown(value)) for key, value in keys.items()], f"&{group}") for group, keys in run.case.items()
     )
@@ -412,7 +367,7 @@ def page(
             [
                 (name, summary_number(value), "" if unit == "1" else unit)
                 for name, (value, unit) in run.summary.items()
-                if not name.startswith("steps_of_order") and (name in OF_THE_PROGRAM) == of_program
+                if not name.startswith(("steps_of_order", "note_")) and (name in OF_THE_PROGRAM) == of_program
             ]
         )
 

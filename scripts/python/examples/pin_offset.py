@@ -1,0 +1,52 @@
+#!/usr/bin/env python3
+"""The pin offset with the softest slap of the piston.
+
+    pin_offset.py [PICTURE]
+
+The skirt moves from wall to wall. The energy of a slap is half of the piston's mass times the square of the speed at which a corner of the
+skirt meets the wall; the hardest slap of the last cycle is made as soft as possible.
+"""
+
+import sys
+
+import gudgeon
+import matplotlib.pyplot as plt
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+MASS = 0.2  # of the piston of the template [kg]
+ALONG = 0.004  # centre of mass of the piston along its axis [m]
+
+engine = gudgeon.template("slap").set(integrator={"revolutions": 6}, output={"columns": ["time", "crank_angle"]})
+
+
+def hardest(run: gudgeon.Run) -> dict[str, float]:
+    """Energy of the hardest slap in the last cycle [J]."""
+    events = run.events
+    speeds = events.normal_speed[(events.event == "contact_begins") & (events.time >= run.summary["cycle_start"])]
+    return {"slap": 0.5 * MASS * float((speeds**2).max())}
+
+
+def slap(offset: float) -> float:
+    """The same for a pin offset [m]."""
+    return hardest(engine.set({"guide.piston_com": (ALONG, offset)}).run())["slap"]
+
+
+def main(picture: str | None = None) -> dict[str, float]:
+    best = minimize_scalar(slap, bounds=(0, 1e-3), method="bounded", options={"xatol": 1e-5, "maxiter": 15})
+    centred = slap(0.0)
+    print(f"offset {1e3 * best.x:.2f} mm: hardest slap {1e3 * best.fun:.1f} mJ; without offset {1e3 * centred:.1f} mJ")
+    if picture:
+        offsets = np.linspace(-1.2e-3, 1.2e-3, 25)
+        table = gudgeon.sweep(engine, {"guide.piston_com": [(ALONG, float(x)) for x in offsets]}, reduce=hardest)
+        axis = plt.figure(figsize=(6, 3.4), layout="constrained").gca()
+        axis.plot(1e3 * offsets, 1e3 * table.slap, "o-")
+        axis.plot(1e3 * best.x, 1e3 * best.fun, "s", label=f"best: {1e3 * best.x:.2f} mm")
+        axis.set(xlabel="pin offset [mm]", ylabel="hardest slap [mJ]", ylim=(0, None))
+        axis.legend()
+        axis.figure.savefig(picture, dpi=110)
+    return {"offset": best.x, "slap": best.fun, "centred": centred}
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:2])

@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""A Poincare section: where the pin is in its clearance, once a revolution, over a thousand revolutions.
+
+    poincare.py [PICTURE]
+
+Without friction the motion of Flores's mechanism fills a cloud: it is chaotic. With friction it settles on a point.
+"""
+
+import sys
+from pathlib import Path
+
+import gudgeon
+import matplotlib.pyplot as plt
+import numpy as np
+
+CASES = Path(__file__).resolve().parents[3] / "cases/flores"
+SETTLE = 200  # revolutions that are left out
+COLUMNS = ["time", "crank_angle", "eccentricity_x", "eccentricity_y", "eccentricity_ratio"]
+
+
+def section(name: str, turns: int) -> np.ndarray:
+    """Eccentricity over the clearance, (revolution, 2), at the crank angle 0."""
+    case = gudgeon.read(CASES / f"{name}.nml").set(
+        integrator={"revolutions": turns},
+        output={"sampling": "crank_angle", "samples_per_revolution": 1, "columns": COLUMNS, "ideal_twin": False},
+    )
+    run = case.run()
+    return np.column_stack([run["eccentricity_x"], run["eccentricity_y"]])[SETTLE:] / case.joint.clearance
+
+
+def main(picture: str | None = None) -> dict[str, float]:
+    sections = {"dry_0500um": section("dry_0500um", 1200), "friction_100": section("friction_100", 400)}
+    sizes = {name: float(np.ptp(points, axis=0).max()) for name, points in sections.items()}
+    print(", ".join(f"{name}: {len(sections[name])} points within {size:.3g} of the clearance" for name, size in sizes.items()))
+    if picture:
+        drawing, axes = plt.subplots(1, 2, figsize=(8, 4), layout="constrained")
+        for axis, (name, points) in zip(axes, sections.items()):
+            axis.add_patch(plt.Circle((0, 0), 1, fill=False, color="0.6"))
+            axis.plot(*points.T, ".", markersize=2)
+            axis.set(aspect="equal", xlim=(-1.15, 1.15), ylim=(-1.15, 1.15), title=name, xlabel="e_x / c", ylabel="e_y / c")
+        drawing.savefig(picture, dpi=110)
+    return sizes
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:2])

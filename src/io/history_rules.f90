@@ -1,0 +1,76 @@
+!> Rules that the groups of a film with memory must obey together, in a case with a mechanism and in that of a bearing.
+module history_rules
+  use kinds, only: dp
+  use history_case, only: history_case_t, most_positions
+  use case_values, only: case_values_t
+  use number_text, only: short_text
+  use value_reader, only: read_real
+  implicit none
+  private
+  public :: check_history, read_positions
+
+contains
+
+  !> Note the errors of a film with memory. The last arguments are the names of its groups.
+  subroutine check_history(values, history, bearing_radius, bearing_length, pressure_viscosity, ambient, supply_group, bore_group)
+    type(case_values_t), intent(inout) :: values
+    type(history_case_t), intent(in) :: history
+    real(dp), intent(in) :: bearing_radius, bearing_length   !! [m]
+    real(dp), intent(in) :: pressure_viscosity, ambient      !! [1/Pa], ambient over cavitation pressure [Pa]
+    character(len=*), intent(in) :: supply_group, bore_group
+    real(dp), parameter :: thinnest_ring = 1.02_dp, most_thickening = 20
+    if (allocated(history%bore)) then
+      associate (bore => history%bore)
+        call values%forbid(bore%outer_radius > 0 .and. bore%table%is_wanted(), bore_group, 'compliance_table', &
+          'cannot be combined with outer_radius: the bore is a ring or has a table')
+        call values%demand(bore%outer_radius > 0 .or. bore%table%is_wanted(), bore_group, 'outer_radius', &
+          'without compliance_table')
+        call values%forbid(bore%outer_radius > 0 .and. bore%outer_radius <= thinnest_ring*bearing_radius, bore_group, &
+          'outer_radius', 'must be > 1.02 bearing_radius = '//short_text(thinnest_ring*bearing_radius))
+      end associate
+    end if
+    if (.not. allocated(history%supply)) return
+    associate (supply => history%supply)
+      call values%forbid(pressure_viscosity*(supply%pressure + ambient) >= most_thickening, supply_group, 'pressure', &
+        'must be < 20/pressure_viscosity')
+      select case (supply%kind)
+      case ('grooves')
+        call values%demand(supply%width_deg > 0, supply_group, 'width_deg', 'with kind = ''grooves''')
+        call values%demand(supply%length > 0, supply_group, 'length', 'with kind = ''grooves''')
+        call values%forbid(supply%length > bearing_length, supply_group, 'length', 'must be <= bearing_length')
+      case ('holes')
+        call values%demand(supply%diameter > 0, supply_group, 'diameter', 'with kind = ''holes''')
+      case default
+        call values%demand(supply%groove_width > 0, supply_group, 'groove_width', 'with kind = ''circumferential_groove''')
+        call values%forbid(supply%groove_width >= bearing_length, supply_group, 'groove_width', 'must be < bearing_length')
+        call values%forbid(supply%fixed_to == 'pin', supply_group, 'fixed_to', &
+          'must be bearing with kind = ''circumferential_groove''')
+        return
+      end select
+      call values%forbid(size(supply%positions) == 0, supply_group, 'position_deg', 'must be 1 to 8 angles')
+    end associate
+  end subroutine check_history
+
+  !> Read the angles of grooves and holes; none if they are not a list of 1 to 8 numbers.
+  subroutine read_positions(history)
+    type(history_case_t), intent(inout) :: history
+    real(dp) :: found(most_positions)
+    character(len=:), allocatable :: wanted
+    integer :: n, first, length
+    if (.not. allocated(history%supply)) return
+    associate (supply => history%supply, text => history%supply%position_deg)
+      n = 0
+      first = 1
+      supply%positions = [real(dp) ::]
+      do while (first <= len(text) + 1)
+        length = index(text(first:)//',', ',') - 1
+        if (n == most_positions) return
+        n = n + 1
+        call read_real(trim(adjustl(text(first:first + length - 1))), found(n), wanted)
+        if (allocated(wanted)) return
+        first = first + length + 1
+      end do
+      supply%positions = found(:n)
+    end associate
+  end subroutine read_positions
+end module history_rules

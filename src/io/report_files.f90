@@ -1,0 +1,34 @@
+!> The files of a run beside its trace, its events and its summary: fields of films, films with memory, worn surfaces.
+module report_files
+  use error_handling, only: error_t
+  use case_definition, only: case_t
+  use film_files, only: write_film_file
+  use history_files, only: write_histories
+  use simulation, only: run_report_t
+  use wear_file, only: write_wear_file
+  implicit none
+  private
+  public :: result_suffixes, write_report_files
+
+  !> Suffixes of all files of results, the summaries first.
+  character(len=*), parameter :: result_suffixes(*) = [character(len=32) :: '.summary.csv', '.ideal.summary.csv', '.csv', &
+    '.events.csv', '.film.csv', '.wear.csv', '.certificate.csv', '.ideal.csv', '.ideal.events.csv', '.film_history.csv', &
+    '.piston_pin.film_history.csv', '.crank_pin.film_history.csv']
+
+contains
+
+  !> Write them. With a film with memory the fields are its own. Error: a file cannot be written (status_output).
+  subroutine write_report_files(base, case, report, error)
+    character(len=*), intent(in) :: base   !! path of the results without suffix
+    type(case_t), intent(in) :: case
+    type(run_report_t), intent(in) :: report
+    type(error_t), allocatable, intent(out) :: error
+    if (allocated(report%histories)) then
+      call write_histories(base, case, report%histories, error)
+    else if (allocated(report%films)) then
+      call write_film_file(base//'.film.csv', report%films, error)
+    end if
+    if (allocated(error) .or. .not. allocated(report%wear)) return
+    if (size(report%wear) > 0) call write_wear_file(base//'.wear.csv', report%wear, case%output%digits, error)
+  end subroutine write_report_files
+end module report_files

@@ -1,0 +1,79 @@
+!> The carried bearings of a scene: their loads are the forces in the chain, which they do not change, or follow from a table.
+submodule (scene_problem) scene_carried
+  use joint_places, only: main_bearing
+  use chain_motion, only: body_piston
+  use chain_reactions, only: reactions_t
+  implicit none
+
+contains
+
+  module procedure look_at_carried
+    real(dp) :: load(2)
+    logical :: inside
+    integer :: i
+    in_domain = .true.
+    do i = 1, size(self%carried)
+      associate (bearing => self%carried(i), joint => self%joints(self%carried(i)%joint), it => now%joint(self%carried(i)%joint))
+        call joint%find_speeds(now%motion, it)
+        load = load_at(self, joint%place, now)*bearing%load_share
+        call bearing%look(joint, load, [it%pin_angular_speed, it%bearing_speed], y, it, inside)
+        in_domain = in_domain .and. inside
+      end associate
+    end do
+  end procedure look_at_carried
+
+  module procedure move_without_mechanism
+    associate (motion => now%motion)
+      call self%read_crank(t, y, motion)
+      motion%offset = 0
+      motion%offset_rate = 0
+      call follow_rod(self%given_load%crank_to_rod, 1.0_dp, motion, in_domain)
+      motion%turning(body_piston) = 0
+      motion%tilting%tilt = 0
+      motion%piston_position = 0
+      motion%piston_velocity = 0
+    end associate
+    now%accelerations%crank = 0
+    now%accelerations%rod = 0
+    now%accelerations%piston = 0
+    now%loads%axial_force = 0
+    now%crank_moment = 0
+    now%power = 0
+  end procedure move_without_mechanism
+
+  !> Force of the pin on its bearing at a place [N].
+  pure function load_at(scene, place, now) result(load)
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: place   !! index in `places`
+    type(evaluation_t), intent(in) :: now
+    real(dp) :: load(2)
+    type(reactions_t) :: reactions
+    if (allocated(scene%given_load)) then
+      load = given_load(scene%given_load, now%motion)
+      return
+    end if
+    load = -now%loads%force(:, piston_pin)
+    if (place == piston_pin) return
+    reactions = scene%chain%reactions(now%motion, now%accelerations, now%loads)
+    load = reactions%crankpin
+    if (place == main_bearing) load = -reactions%crank_bearing
+  end function load_at
+
+  !> The load of a table at a motion of crank and rod, in fixed axes [N].
+  pure function given_load(table, motion) result(load)
+    type(bearing_load_t), intent(in) :: table
+    type(motion_t), intent(in) :: motion
+    real(dp) :: load(2)
+    real(dp) :: along(2)   ! the axis x of the frame
+    load = table%at(motion%crank_angle)
+    select case (table%frame)
+    case ('crank')
+      along = [motion%cos_crank, motion%sin_crank]
+    case ('rod')
+      along = [motion%cos_rod, -motion%sin_rod]
+    case default
+      return
+    end select
+    load = [along(1)*load(1) - along(2)*load(2), along(2)*load(1) + along(1)*load(2)]
+  end function given_load
+end submodule scene_carried
