@@ -114,7 +114,7 @@ contains
     rough = rough_bearing('exact', 0.1e-6_dp)
     motion = motion_of([9e-6_dp, -4e-6_dp], [3e-3_dp, 1e-3_dp])
     call film%film_force(motion, smooth, moment)
-    call mixed_forces(film, rough, 1e-2_dp, motion, force, moment, pressing, friction)
+    call mixed_forces(film, rough, 1e-2_dp, motion, 1.0_dp, force, moment, pressing, friction)
     call check%that(norm2(force - smooth) <= 1e-12_dp*norm2(smooth) .and. pressing <= 0, &
       'film of distant rough surfaces is that of smooth ones')
   end subroutine smooth_where_far
@@ -131,7 +131,7 @@ contains
     rough = rough_bearing('exact', 0.4e-6_dp)
     do k = 1, 2
       motion = motion_of([0.97_dp, 1.01_dp]*c*[cos(0.4_dp*k), sin(0.4_dp*k)], [1e-3_dp, -2e-3_dp])
-      call mixed_derivatives(film, rough, 1e-2_dp, motion, derivatives)
+      call mixed_derivatives(film, rough, 1e-2_dp, motion, 1.0_dp, derivatives)
       do i = 1, 2
         step = 1e-10_dp
         other = motion
@@ -151,7 +151,7 @@ contains
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(out) :: values(3)
     real(dp) :: pressing, friction, n(2)
-    call mixed_forces(film, rough, 1e-2_dp, motion, values(:2), values(3), pressing, friction)
+    call mixed_forces(film, rough, 1e-2_dp, motion, 1.0_dp, values(:2), values(3), pressing, friction)
     n = motion%eccentricity/norm2(motion%eccentricity)
     values(:2) = values(:2) - pressing*n + friction*[-n(2), n(1)]
     values(3) = values(3) + 1e-2_dp*friction
@@ -171,7 +171,7 @@ contains
       motion = motion_of([0.0_dp, 0.99_dp*c], [0.0_dp, 0.0_dp])
       motion%pin_speed = way*50.0_dp
       motion%turning_speed = motion%pin_speed
-      call mixed_forces(film, rough, 1e-2_dp, motion, force, moment, pressing, friction)
+      call mixed_forces(film, rough, 1e-2_dp, motion, 1.0_dp, force, moment, pressing, friction)
       call check%that(pressing > 100 .and. way*friction < 0, 'boundary friction opposes the sliding')
       call check%relative(abs(friction), 0.1_dp*pressing, 1e-6_dp, 'boundary friction at high sliding speed')
     end do

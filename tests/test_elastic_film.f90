@@ -215,7 +215,7 @@ contains
     real(dp) :: velocity(2)
     select type (element => scene%joints(1)%slots(1)%element)
     type is (elastic_film_t)
-      velocity = element%velocity(e, load)
+      velocity = element%velocity(e, load, 1.0_dp)
     class default
       error stop 'test_elastic_film: another element'
     end select

@@ -22,6 +22,7 @@ contains
   subroutine run_test_radau_runs(check)
     class(checks_t), intent(inout) :: check
     call jacobians_of_scenes(check)
+    call jacobian_of_heat(check)
     call no_jacobian_outside(check)
     call radau_agrees_with_adams(check)
     call loose_tolerances_survive(check)
@@ -69,6 +70,51 @@ contains
       deallocate (a_p, a_v, b_p, b_v, scale)
     end do
   end subroutine jacobians_of_scenes
+
+  !> The same for a film that heats up and thins with the shear, smooth and between rough surfaces. That its side flow depends on the
+  !> motion is left out: the last row is compared without a side flow of its own.
+  subroutine jacobian_of_heat(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: hot(10) = [character(len=60) :: 'lubrication.viscosity_law=walther', &
+      'lubrication.known_temperatures=313.15,373.15', 'lubrication.known_viscosities=1e-4,1.14e-5', 'lubrication.density=884', &
+      'lubrication.temperature=363.15', 'heat.heat_capacity=0.05', 'heat.inlet_temperature=350', 'heat.side_flow=1e-6', &
+      'lubrication.variant=short', 'lubrication.viscosity=0']
+    character(len=*), parameter :: thin(2) = [character(len=60) :: 'lubrication.thinning_ratio=0.6', &
+      'lubrication.thinning_rate=1e5']
+    character(len=*), parameter :: rough(1) = [character(len=60) :: 'asperities.roughness=1e-6']
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    type(scene_t), allocatable :: scene
+    real(dp), allocatable :: y(:), a_p(:, :), a_v(:, :), b_p(:, :), b_v(:, :), scale(:, :)
+    integer :: i, k, m, trial
+    do i = 1, 3
+      if (i == 1) call read_case('cases/film/sim_I_finite.nml', hot, case, error)
+      if (i == 2) call read_case('cases/film/sim_I_finite.nml', [hot, thin], case, error)
+      if (i == 3) call read_case('cases/film/sim_I_finite.nml', [hot, thin, rough], case, error)
+      call check%that(.not. allocated(error), 'a hot film is read')
+      if (allocated(error)) return
+      call build_scene(case, .false., scene, error)
+      m = scene%n_positions
+      k = m + 1
+      y = scene%initial_state()
+      allocate (a_p(k, m), a_v(k, k), b_p(k, m), b_v(k, k))
+      do trial = 1, 6
+        call set_pin(scene, y, 0.55_dp*2e-5_dp*[cos(1.0_dp*trial), sin(1.0_dp*trial)], &
+          [0.03_dp*cos(2.3_dp*trial), 0.02_dp*sin(3.1_dp*trial)])
+        call set_crank(scene, y, 6.4_dp + 0.02_dp*trial, case%initial%crank_speed)
+        y(scene%joints(1)%heat%at%first) = 365 + 3.0_dp*trial
+        call scene%jacobian(1e-3_dp*trial, y, a_p, a_v)
+        call difference_jacobian(scene, 1e-3_dp*trial, y, b_p, b_v)
+        scale = spread(maxval(abs(b_p), 2), 2, m)
+        call check%close_to(maxval(abs(a_p - b_p)/scale), 0.0_dp, 1e-2_dp, 'Jacobian of a hot film by positions')
+        scale = spread(maxval(abs(b_v), 2), 2, k)
+        call check%close_to(maxval(abs(a_v - b_v)/scale), 0.0_dp, 1e-2_dp, 'Jacobian of a hot film by rates and temperature')
+        call check%close_to(maxval(abs(a_v(:, k)/b_v(:, k) - 1), abs(b_v(:, k)) > 1e-3_dp*maxval(abs(b_v(:, k)))), 0.0_dp, &
+          1e-3_dp, 'Jacobian of a hot film by its temperature')
+      end do
+      deallocate (a_p, a_v, b_p, b_v, scale)
+    end do
+  end subroutine jacobian_of_heat
 
   !> Where a film has no force, with the pin on the wall and beyond it, its derivatives are zero and are computed without the
   !> undefined force.

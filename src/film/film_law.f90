@@ -39,6 +39,8 @@ module film_law
     logical :: film_moment = .false.          !! the shear of the film acts on the pin
     real(dp) :: viscosity = 0                 !! mu, dynamic [Pa s], > 0
     real(dp) :: kinematic_viscosity = 0       !! nu, of a law with inertia [m^2/s], > 0
+    real(dp) :: thinning_ratio = 1            !! viscosity at a large shear rate over that at rest; 1: no shear thinning [-]
+    real(dp) :: thinning_speed = 0            !! turning speed of a centred pin that loses half of the difference [rad/s]
     real(dp) :: least_film_ratio = 0          !! smallest film thickness over clearance of a law that limits it [-]
     logical :: singular_at_wall = .true.      !! the force has no bound at |e| = c, which the state must not reach
     character(len=:), allocatable :: table_file  !! file for the table chosen by the user, relative to the folder of the case; or
@@ -51,6 +53,10 @@ module film_law
     procedure(prepare), deferred :: prepare
     procedure(film_force), deferred :: film_force
     procedure :: force_derivatives => difference_derivatives
+    procedure, non_overridable :: thinning
+    procedure, non_overridable :: thinning_slopes
+    procedure, non_overridable :: loads
+    procedure, non_overridable :: load_slopes
     procedure, non_overridable :: add_viscosity
     procedure, non_overridable :: add_least_film
     procedure, non_overridable :: shear_moment
@@ -63,6 +69,7 @@ module film_law
     procedure, non_overridable :: neglects_shear
     procedure :: pressure => nowhere
     procedure :: peak_and_flow => peak_without_flow
+    procedure :: side_flow => flow_beside_peak
     procedure :: pressure_field => long_field
     procedure :: table_key => no_key
     procedure :: make_table => no_table
@@ -98,6 +105,75 @@ module film_law
   end interface
 
 contains
+
+  !> Ratio of the viscosity to that at rest, of an oil that shear thins (Cross 1965 with the exponent 1): r + (1 - r)/(1 + g/g_c),
+  !> with the mean rate g = |omega| R/(c sqrt(1 - eps^2)) of the shear that the turning of the pin makes. It is the same in the whole
+  !> film; the shear of the pressure flow, and of the squeeze motion, is left out.
+  pure real(dp) function thinning(self, motion)
+    class(film_law_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    thinning = 1
+    if (self%thinning_ratio < 1) thinning = self%thinning_ratio + (1 - self%thinning_ratio)/(1 + shear_of(self, motion))
+  end function thinning
+
+  !> g/g_c, see `thinning` [-].
+  pure real(dp) function shear_of(self, motion) result(shear)
+    class(film_law_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    shear = abs(motion%turning_speed)/(self%thinning_speed*sqrt(gap_of(self, motion)))
+  end function shear_of
+
+  !> 1 - eps^2, > 0.
+  pure real(dp) function gap_of(self, motion) result(gap)
+    class(film_law_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    gap = 1 - min(sum(motion%eccentricity**2)*self%per_clearance**2, 1 - 2*epsilon(1.0_dp))
+  end function gap_of
+
+  !> Derivatives of `thinning` with respect to e_x, e_y [1/m] and the turning speed [s].
+  pure function thinning_slopes(self, motion) result(slopes)
+    class(film_law_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp) :: slopes(3), shear, by_shear
+    slopes = 0
+    if (.not. self%thinning_ratio < 1) return
+    shear = shear_of(self, motion)
+    by_shear = -(1 - self%thinning_ratio)/(1 + shear)**2
+    slopes(:2) = by_shear*shear*motion%eccentricity*self%per_clearance**2/gap_of(self, motion)
+    slopes(3) = by_shear*sign(1/(self%thinning_speed*sqrt(gap_of(self, motion))), motion%turning_speed)
+  end function thinning_slopes
+
+  !> Force and moment of the film, as `film_force`, for a viscosity that is `ratio` times that of the law and thins with the shear.
+  pure subroutine loads(self, motion, ratio, force, moment)
+    class(film_law_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: ratio
+    real(dp), intent(out) :: force(2), moment
+    real(dp) :: factor
+    call self%film_force(motion, force, moment)
+    factor = ratio*self%thinning(motion)
+    force = factor*force
+    moment = factor*moment
+  end subroutine loads
+
+  !> Make the derivatives of force and moment (rows F_x, F_y, moment) with respect to e_x, e_y, e_x', e_y' and the angular speeds of
+  !> pin and bearing (columns) from those of the law those of `loads`.
+  pure subroutine load_slopes(self, motion, ratio, slopes)
+    class(film_law_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: ratio
+    real(dp), intent(inout) :: slopes(3, 6)
+    real(dp) :: whole(3), thin(3)
+    slopes = ratio*self%thinning(motion)*slopes
+    if (.not. self%thinning_ratio < 1) return
+    call self%film_force(motion, whole(:2), whole(3))
+    whole = ratio*whole
+    thin = self%thinning_slopes(motion)
+    slopes(:, 1) = slopes(:, 1) + whole*thin(1)
+    slopes(:, 2) = slopes(:, 2) + whole*thin(2)
+    slopes(:, 5) = slopes(:, 5) + whole*thin(3)
+    slopes(:, 6) = slopes(:, 6) - whole*thin(3)
+  end subroutine load_slopes
 
   !> Declare the parameter viscosity, which all laws have. It is not required if the viscosity is that of an oil at a temperature.
   subroutine add_viscosity(self, list)
@@ -204,6 +280,15 @@ contains
     eps = min(norm2(motion%eccentricity)*self%per_clearance, 1 - epsilon(1.0_dp))
     most = max(largest_pressure(self, motion, 1.0_dp), largest_pressure(self, motion, sqrt((1 - eps)/(1 + eps))))
   end subroutine peak_without_flow
+
+  !> Side flow out of both ends [m^3/s], 0 for laws that do not give it.
+  pure real(dp) function flow_beside_peak(self, motion) result(flow)
+    class(film_law_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp) :: most
+    flow = 0
+    if (self%gives_side_flow()) call self%peak_and_flow(motion, most, flow)
+  end function flow_beside_peak
 
   !> The pressure over half of the bearing [Pa], (angles, places): at angles [rad] from the direction of the eccentricity, and axial
   !> positions from the middle (0) to the end (1). The default is a long film, whose pressure is constant along the axis.

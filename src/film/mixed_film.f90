@@ -13,11 +13,12 @@ contains
 
   !> Forces of the film, which acts in the mean gap of the surfaces, and of the asperities, which press the pin towards the centre
   !> and cause friction.
-  pure subroutine mixed_forces(film, rough, pin_radius, motion, film_force, film_moment, pressing, friction)
+  pure subroutine mixed_forces(film, rough, pin_radius, motion, viscosity_ratio, film_force, film_moment, pressing, friction)
     class(film_law_t), intent(in) :: film
     type(asperities_t), intent(in) :: rough
     real(dp), intent(in) :: pin_radius                 !! [m]
     type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: viscosity_ratio            !! of the film to that of its law [-]
     real(dp), intent(out) :: film_force(2), film_moment   !! of the film on the pin [N], [N m]
     real(dp), intent(out) :: pressing, friction           !! of the asperities: towards the centre, and along t [N]
     type(film_motion_t) :: seen
@@ -27,7 +28,7 @@ contains
     bearing_speed = 0.5_dp*(motion%pin_speed - motion%turning_speed)
     pressing = rough%force(distance)
     friction = rough%friction_force(tangential + pin_angular_speed*pin_radius - bearing_speed*(distance + pin_radius), pressing)
-    call film%film_force(seen, film_force, film_moment)
+    call film%loads(seen, viscosity_ratio, film_force, film_moment)
   end subroutine mixed_forces
 
   !> The inverse of `mixed_forces`: the velocity e' with which film and asperities carry a load, at the eccentricity and with the
@@ -36,18 +37,20 @@ contains
   !> The film carries W - N n + f t. N depends on |e| alone; f depends on the tangential velocity u, which grows with f. So u -
   !> u(f(u)) increases strictly and has one root, between the velocities for f = -mu N and f = mu N. Mostly the surfaces slide so
   !> fast that one of these is the root.
-  pure subroutine mixed_velocity(film, rough, pin_radius, motion, load, velocity, pressing, friction)
+  pure subroutine mixed_velocity(film, rough, pin_radius, motion, viscosity_ratio, load, velocity, pressing, friction)
     class(film_law_t), intent(in) :: film
     type(asperities_t), intent(in) :: rough
     real(dp), intent(in) :: pin_radius            !! [m]
     type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: viscosity_ratio       !! of the film to that of its law [-]
     real(dp), intent(in) :: load(2)               !! of the pin on its bearing [N]
     real(dp), intent(out) :: velocity(2)          !! [m/s]
     real(dp), intent(out) :: pressing, friction   !! as in `mixed_forces` [N]
     real(dp), parameter :: centred = 1e-3_dp      !! over the clearance; nearer to the centre no roughness is felt
     real(dp), parameter :: close_enough = 1e-13_dp
     type(bracket_t) :: bracket
-    real(dp) :: distance, n(2), t(2), gap, slope, ratio, sliding, limit, u, next
+    type(film_motion_t) :: seen
+    real(dp) :: distance, n(2), t(2), gap, slope, ratio, sliding, limit, u, next, factor
     distance = norm2(motion%eccentricity)
     n = [1.0_dp, 0.0_dp]
     if (distance > 0) n = motion%eccentricity/distance
@@ -55,6 +58,9 @@ contains
     call rough%mean_gap(film%clearance - distance, gap, slope)
     ratio = slope
     if (distance > centred*film%clearance) ratio = max(film%clearance - gap, 0.0_dp)/distance
+    seen = motion
+    seen%eccentricity = ratio*motion%eccentricity
+    factor = viscosity_ratio*film%thinning(seen)
     pressing = rough%force(distance)
     sliding = 0.5_dp*(motion%pin_speed + motion%turning_speed)*pin_radius &
       - 0.5_dp*(motion%pin_speed - motion%turning_speed)*(distance + pin_radius)   ! without the velocity of the centre
@@ -92,7 +98,7 @@ contains
       real(dp), intent(in) :: force
       real(dp), intent(out) :: v(2)
       real(dp) :: driven(2)
-      call driven_velocity(film, ratio*motion%eccentricity, load - pressing*n + force*t, driven)
+      call driven_velocity(film, ratio*motion%eccentricity, (load - pressing*n + force*t)/factor, driven)
       v = dot_product(n, driven)/slope*n + (dot_product(t, driven)/ratio + 0.5_dp*motion%pin_speed*distance)*t
     end subroutine carry
   end subroutine mixed_velocity
@@ -133,11 +139,12 @@ contains
 
   !> Derivatives of the total force and moment on the pin (rows F_x, F_y, moment) with respect to e_x, e_y, e_x', e_y' and the
   !> angular speeds of pin and bearing (columns), by central differences.
-  pure subroutine mixed_derivatives(film, rough, pin_radius, motion, derivatives)
+  pure subroutine mixed_derivatives(film, rough, pin_radius, motion, viscosity_ratio, derivatives)
     class(film_law_t), intent(in) :: film
     type(asperities_t), intent(in) :: rough
     real(dp), intent(in) :: pin_radius
     type(film_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: viscosity_ratio
     real(dp), intent(out) :: derivatives(3, 6)
     real(dp) :: step(6), above(3), below(3)
     integer :: i
@@ -155,7 +162,7 @@ contains
       type(film_motion_t), intent(in) :: at
       real(dp), intent(out) :: values(3)
       real(dp) :: pressing, friction, distance, n(2)
-      call mixed_forces(film, rough, pin_radius, at, values(1:2), values(3), pressing, friction)
+      call mixed_forces(film, rough, pin_radius, at, viscosity_ratio, values(1:2), values(3), pressing, friction)
       distance = norm2(at%eccentricity)
       n = [1.0_dp, 0.0_dp]
       if (distance > 0) n = at%eccentricity/distance

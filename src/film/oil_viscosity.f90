@@ -10,7 +10,7 @@ module oil_viscosity
   use named_oils, only: named_oil_t, oil_temperatures => known_temperatures, find_oil, unknown_oil
   implicit none
   private
-  public :: oil_t
+  public :: oil_t, oil_curve_t
 
   type, extends(has_parameters_t) :: oil_t
     character(len=:), allocatable :: name     !! of a named oil, which sets the law, the known values and the density; else empty
@@ -20,6 +20,8 @@ module oil_viscosity
     real(dp) :: known_viscosities(2) = 0      !! kinematic, at these temperatures [m^2/s]
     real(dp) :: density = 0                   !! rho_15, at 288.15 K [kg/m^3]
     real(dp) :: vogel_temperature = 0         !! T0 [K]
+    real(dp) :: thinning_ratio = 1            !! viscosity at a large shear rate over that at rest; 1: no shear thinning [-]
+    real(dp) :: thinning_rate = 0             !! shear rate that takes half of the difference [1/s]
   contains
     procedure :: parameters
     procedure :: read_name
@@ -29,10 +31,26 @@ module oil_viscosity
     procedure :: kinematic_viscosity
     procedure :: density_at
     procedure :: dynamic_viscosity
+    procedure :: curve
   end type oil_t
+
+  !> Viscosity and density of an oil over its temperature.
+  type :: oil_curve_t
+    private
+    logical :: is_walther = .true.
+    real(dp) :: vogel_temperature = 0     !! T0 [K]
+    real(dp) :: density = 0               !! rho_15 [kg/m^3]
+    real(dp) :: x = 0, y = 0, slope = 0   !! of the straight line of the law, through its first known viscosity
+  contains
+    procedure :: kinematic
+    procedure :: rho
+    procedure :: relative_slope
+    procedure :: expansion_at
+  end type oil_curve_t
 
   real(dp), parameter :: mm2 = 1e-6_dp   !! [m^2]
   real(dp), parameter :: density_temperature = 288.15_dp   !! 15 degrees C [K]
+  real(dp), parameter :: expansion = 0.6278_dp   !! coefficient of the density times the density [kg/(m^3 K)]
 
 contains
 
@@ -55,6 +73,11 @@ contains
     call list%add('vogel_temperature', self%vogel_temperature, &
       'vogel: temperature at which the law has infinite viscosity', 'K', '>= 0', &
       default='178.15', usual='100 to 250')
+    call list%add('thinning_ratio', self%thinning_ratio, &
+      'shear thinning: viscosity at a large shear rate over that at rest; 1: none', range='> 0 and <= 1', default='1.0', &
+      usual='0.2 to 1')
+    call list%add('thinning_rate', self%thinning_rate, 'shear rate at which half of this reduction is reached', '1/s', '> 0', &
+      default='0.0', usual='1e4 to 1e8')
   end subroutine parameters
 
   !> Set the parameters that a named oil gives. A name that no oil has is found by `conflict`.
@@ -123,18 +146,73 @@ contains
   !> nu at the temperature of the film [m^2/s].
   pure real(dp) function kinematic_viscosity(self) result(nu)
     class(oil_t), intent(in) :: self
-    real(dp) :: x(2), logs(2), b
-    if (self%law == 'walther') then
+    type(oil_curve_t) :: curve
+    curve = self%curve()
+    nu = curve%kinematic(self%temperature)
+  end function kinematic_viscosity
+
+  !> The viscosity of the oil over its temperature, whatever that of the film is.
+  pure type(oil_curve_t) function curve(self)
+    class(oil_t), intent(in) :: self
+    real(dp) :: x(2), y(2)
+    curve%is_walther = self%law == 'walther'
+    curve%vogel_temperature = self%vogel_temperature
+    curve%density = self%density
+    if (curve%is_walther) then
       x = log(self%known_temperatures)
-      logs = [log(log(z_of(self%known_viscosities(1)/mm2))), log(log(z_of(self%known_viscosities(2)/mm2)))]
-      b = (logs(2) - logs(1))/(x(2) - x(1))
-      nu = mm2*viscosity_of(exp(exp(logs(1) + b*(log(self%temperature) - x(1)))))
+      y = [log(log(z_of(self%known_viscosities(1)/mm2))), log(log(z_of(self%known_viscosities(2)/mm2)))]
+      curve%slope = (y(2) - y(1))/(x(2) - x(1))
+      curve%y = y(1)
     else
       x = 1/(self%known_temperatures - self%vogel_temperature)
-      b = log(self%known_viscosities(2)/self%known_viscosities(1))/(x(2) - x(1))
-      nu = self%known_viscosities(1)*exp(b*(1/(self%temperature - self%vogel_temperature) - x(1)))
+      curve%slope = log(self%known_viscosities(2)/self%known_viscosities(1))/(x(2) - x(1))
+      curve%y = self%known_viscosities(1)
     end if
-  end function kinematic_viscosity
+    curve%x = x(1)
+  end function curve
+
+  !> nu at a temperature [m^2/s].
+  pure real(dp) function kinematic(self, temperature) result(nu)
+    class(oil_curve_t), intent(in) :: self
+    real(dp), intent(in) :: temperature   !! [K]
+    if (self%is_walther) then
+      nu = mm2*viscosity_of(exp(exp(self%y + self%slope*(log(temperature) - self%x))))
+    else
+      nu = self%y*exp(self%slope*(1/(temperature - self%vogel_temperature) - self%x))
+    end if
+  end function kinematic
+
+  !> Density at a temperature [kg/m^3].
+  pure real(dp) function rho(self, temperature)
+    class(oil_curve_t), intent(in) :: self
+    real(dp), intent(in) :: temperature   !! [K]
+    real(dp) :: k
+    k = expansion/self%density*(temperature - density_temperature)
+    rho = self%density*exp(-k*(1 + 0.8_dp*k))
+  end function rho
+
+  !> Derivative of the dynamic viscosity with respect to the temperature, over this viscosity [1/K].
+  pure real(dp) function relative_slope(self, temperature) result(slope)
+    class(oil_curve_t), intent(in) :: self
+    real(dp), intent(in) :: temperature   !! [K]
+    real(dp) :: nu, rest, z
+    if (self%is_walther) then
+      nu = self%kinematic(temperature)/mm2
+      rest = exp(-1.47_dp - 1.84_dp*nu - 0.51_dp*nu**2)
+      z = nu + 0.7_dp + rest
+      slope = z*log(z)*self%slope/(temperature*nu*(1 - (1.84_dp + 1.02_dp*nu)*rest))
+    else
+      slope = -self%slope/(temperature - self%vogel_temperature)**2
+    end if
+    slope = slope + self%expansion_at(temperature)
+  end function relative_slope
+
+  !> Derivative of the density with respect to the temperature, over the density [1/K].
+  pure real(dp) function expansion_at(self, temperature) result(slope)
+    class(oil_curve_t), intent(in) :: self
+    real(dp), intent(in) :: temperature   !! [K]
+    slope = -expansion/self%density*(1 + 1.6_dp*expansion/self%density*(temperature - density_temperature))
+  end function expansion_at
 
   !> Z for a viscosity in mm^2/s.
   pure real(dp) function z_of(nu)
@@ -145,22 +223,23 @@ contains
   !> The viscosity in mm^2/s for a value of Z > 1, by Newton's method; Z is a monotonic function of it.
   pure real(dp) function viscosity_of(z) result(nu)
     real(dp), intent(in) :: z
-    real(dp) :: rest
+    real(dp) :: rest, step
     integer :: i
     nu = max(z - 0.7_dp, 0.1_dp)
     do i = 1, 30
       rest = exp(-1.47_dp - 1.84_dp*nu - 0.51_dp*nu**2)
-      nu = nu - (nu + 0.7_dp + rest - z)/(1 - (1.84_dp + 1.02_dp*nu)*rest)
+      step = (nu + 0.7_dp + rest - z)/(1 - (1.84_dp + 1.02_dp*nu)*rest)
+      nu = nu - step
+      if (.not. abs(step) > 0) exit
     end do
   end function viscosity_of
 
   !> Density at the temperature of the film [kg/m^3].
   pure real(dp) function density_at(self)
     class(oil_t), intent(in) :: self
-    real(dp), parameter :: expansion = 0.6278_dp   !! coefficient times the density [kg/(m^3 K)]
-    real(dp) :: k
-    k = expansion/self%density*(self%temperature - density_temperature)
-    density_at = self%density*exp(-k*(1 + 0.8_dp*k))
+    type(oil_curve_t) :: curve
+    curve = self%curve()
+    density_at = curve%rho(self%temperature)
   end function density_at
 
   !> mu = rho nu at the temperature of the film [Pa s].

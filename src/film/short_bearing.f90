@@ -14,6 +14,7 @@ module short_bearing
     procedure :: conflict
     procedure :: reduced_force
     procedure :: reduced_peak_and_flow
+    procedure :: side_flow
     procedure :: pressure_field
   end type short_bearing_t
 
@@ -88,6 +89,15 @@ contains
     end do
     most = speed*6*self%half_length**2*cos(phi - alpha)/(gap + 2*eps*sin(0.5_dp*phi)**2)**3
   end subroutine reduced_peak_and_flow
+
+  !> Q = 2 R L |v*|.
+  pure real(dp) function side_flow(self, motion) result(flow)
+    class(short_bearing_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    associate (e => motion%eccentricity, v => motion%eccentricity_rate)
+      flow = 4*self%half_length*self%pin_radius**2*norm2(v - 0.5_dp*motion%pin_speed*[-e(2), e(1)])
+    end associate
+  end function side_flow
 
   !> The positive part of the pressure p = 6 mu v*.r (L^2/4 - z^2)/h^3.
   pure subroutine pressure_field(self, motion, angles, places, field)

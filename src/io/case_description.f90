@@ -131,6 +131,8 @@ contains
       else
         text = text//quantity_text(joint%film%viscosity, 'Pa s', 3)
       end if
+      if (allocated(joint%heat)) text = text//' at the start, heats up'
+      if (joint%oil%thinning_ratio < 1) text = text//', thins with the shear'
       if (joint%elastic%is_wanted) text = text//', elastic walls'
     end if
     if (allocated(joint%contact)) text = text//'; contact '//trim(joint%contact%name)//' on '//trim(joint%contact%geometry%name)

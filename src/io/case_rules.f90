@@ -161,7 +161,8 @@ contains
         'is for place = ''main_bearing'' alone')
       if (.not. joint%has_bearing()) then
         call forbid(has_own_law(place) .or. place == in_order(1) .and. (allocated(joint%contact) .or. &
-          allocated(joint%friction) .or. allocated(joint%film) .or. allocated(joint%asperities) .or. allocated(joint%wear)), &
+          allocated(joint%friction) .or. allocated(joint%film) .or. allocated(joint%asperities) .or. allocated(joint%wear) .or. &
+          allocated(joint%heat)), &
           group, 'kind', &
           'must be clearance (or quasi_static) with contact, friction or lubrication: an ideal joint has no '// &
           'clearance; remove these groups, for example with --set contact=none')
@@ -170,6 +171,7 @@ contains
         return
       end if
       if (allocated(joint%film)) call check_oil(joint, law_group('lubrication', place))
+      if (allocated(joint%heat)) call check_heat(joint, law_group('lubrication', place), law_group('heat', place))
       call values%demand(joint%clearance > 0, group, 'clearance', 'with kind = '''//joint%kind//'''')
       call values%demand(joint%bearing_radius > 0, group, 'bearing_radius', 'with kind = '''//joint%kind//'''')
       if (joint%bearing_radius > 0) call forbid(joint%bearing_radius <= joint%clearance, group, 'clearance', &
@@ -191,6 +193,7 @@ contains
       bearing_turns = places(place)%bearing /= body_piston .or. c%has_loose_guide()
       if (allocated(joint%wear)) call check_wear(joint, bearing_turns, group, law_group('wear', place))
       if (.not. allocated(joint%film)) return
+      call check_thinning(joint, law_group('lubrication', place))
       call check_transition(joint, law_group('lubrication', place))
       call check_elastic_film(joint, law_group('lubrication', place), law_group('contact', place))
     end subroutine check_joint
@@ -282,6 +285,41 @@ contains
           'needs viscosity_law = ''walther'' or ''vogel''; the default is given')
       end if
     end subroutine check_oil
+
+    !> Check that the film that heats up is one of an oil, whose force is proportional to its viscosity, and that heat can leave it.
+    subroutine check_heat(joint, own, group)
+      type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: own, group   !! groups of the film and of the heat
+      call forbid(.not. allocated(joint%film), group, 'heat_capacity', 'needs the group lubrication: it is the film that heats up')
+      if (.not. allocated(joint%film)) return
+      call forbid(.not. joint%oil%is_known(), own, 'viscosity_law', &
+        'must not be given: &heat needs an oil: oil, or viscosity_law = walther or vogel')
+      call forbid(.not. joint%film%is_quasi_static(), group, 'heat_capacity', &
+        'is for films whose force is proportional to the viscosity: finite_bearing, and closed_form and half_film of '// &
+        'pinkus_sternlicht')
+      associate (heat => joint%heat)
+        call forbid(.not. (joint%film%gives_side_flow() .or. heat%side_flow > 0 .or. heat%conductance > 0), group, 'side_flow', &
+          'required with this film, which has no side flow, unless conductance is given: no heat would leave')
+        call forbid(joint%oil%law == 'vogel' .and. joint%oil%vogel_temperature > min(heat%inlet_temperature, heat%around()) - 10, &
+          own, 'vogel_temperature', 'must be 10 K or more below inlet_temperature and housing_temperature')
+      end associate
+    end subroutine check_heat
+
+    !> Check that a film that thins with the shear is one of a quasi-static law between rigid walls.
+    subroutine check_thinning(joint, own)
+      type(joint_case_t), intent(in) :: joint
+      character(len=*), intent(in) :: own   !! group of the film
+      associate (oil => joint%oil)
+        call values%demand(oil%thinning_rate > 0 .or. .not. oil%thinning_ratio < 1, own, 'thinning_rate', 'with thinning_ratio')
+        call forbid(oil%thinning_rate > 0 .and. .not. (oil%thinning_ratio < 1 .or. values%is_given(own, 'thinning_ratio')), own, &
+          'thinning_rate', 'needs thinning_ratio, by which the viscosity is reduced')
+        if (.not. oil%thinning_ratio < 1) return
+        call forbid(.not. joint%film%is_quasi_static(), own, 'thinning_ratio', &
+          'is for films whose force is proportional to the viscosity: finite_bearing, and closed_form and half_film of '// &
+          'pinkus_sternlicht')
+        call forbid(joint%elastic%is_wanted, own, 'thinning_ratio', 'cannot be combined with elastic_film')
+      end associate
+    end subroutine check_thinning
 
     !> Check that a film and a contact that share the load both exist, and share it over a range of penetrations.
     subroutine check_transition(joint, own)

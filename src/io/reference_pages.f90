@@ -29,7 +29,7 @@ module reference_pages
     film = 'lubrication.viscosity=0.0117 '
 
   !> Kinds of scenes that together have every column.
-  type(scene_kind_t), parameter :: kinds(16) = [ &
+  type(scene_kind_t), parameter :: kinds(17) = [ &
     scene_kind_t('Every scene', ''), &
     scene_kind_t('Joint with clearance (the last three columns only with `&contact`)', play//contact), &
     scene_kind_t('Contact with `geometry = ''conformal''`', play//contact//'contact.geometry=conformal'), &
@@ -41,6 +41,8 @@ module reference_pages
       'lubrication.transition=weighted lubrication.transition_depth=1e-6'), &
     scene_kind_t('Elastic walls (`elastic_film`)', play//film//contact//'lubrication.elastic_film=T'), &
     scene_kind_t('Asperities', play//film//'asperities.roughness=0.4e-6'), &
+    scene_kind_t('Film that heats up', play//'lubrication.law=finite_bearing lubrication.variant=short '// &
+      'lubrication.oil=SAE30 lubrication.temperature=360 heat.heat_capacity=60 heat.inlet_temperature=350 heat.conductance=1'), &
     scene_kind_t('Wear', play//contact//'wear.rate=1e-15,1e-15'), &
     scene_kind_t('Crank pin with clearance', 'crank_pin.joint.kind=clearance crank_pin.joint.clearance=2e-5 '// &
       'crank_pin.joint.bearing_radius=0.02 crank_pin.contact.law=hertz'), &
@@ -153,7 +155,8 @@ contains
     type(column_list_t), intent(out) :: list
     type(error_t), allocatable, intent(out) :: error
     character(len=*), parameter :: rigid_and_dry = 'joint.kind=ideal contact=none friction=none lubrication=none guide=none '// &
-      'wear=none elastic_rod=none crankshaft=none combustion=none output.columns=standard output.ideal_twin=F output.film_times='
+      'heat=none wear=none elastic_rod=none crankshaft=none combustion=none film_history=none output.columns=standard '// &
+      'output.ideal_twin=F output.film_times='
     character(len=:), allocatable :: changes
     character(len=60), allocatable :: overrides(:)
     type(case_t) :: case

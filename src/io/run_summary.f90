@@ -14,6 +14,7 @@ module run_summary
   use period_watch, only: period_watch_t
   use joint_places, only: n_places, in_order, name_prefix
   use archard_wear, only: of_pin, of_bore
+  use film_heat, only: heat_totals_t
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use result_notes, only: notes_on_results, relative_residual, energy_warning, no_exponent
@@ -174,6 +175,7 @@ contains
       call table%add('contacts_beyond_validity', pin%contacts_beyond_validity, prefix)
       if (pin%friction_work < huge(pin%friction_work)) call table%add('friction_work', pin%friction_work, prefix)
       if (allocated(joint%wear) .and. allocated(report%wear)) call add_wear(prefix)
+      if (pin%heat%is_known) call add_heat(prefix, pin%heat)
       if (.not. (joint%reports_film .and. allocated(joint%film))) return
       call table%add('film_energy_lost', pin%film_energy_lost, prefix)
       if (joint%film%neglects_shear()) &
@@ -182,6 +184,22 @@ contains
       if (joint%film%gives_side_flow() .and. report%figures%time > 0) &
         call table%add('mean_film_side_flow', pin%film_volume/report%figures%time, prefix)
     end subroutine add_joint
+
+    !> Rows of the heat of a film.
+    subroutine add_heat(prefix, heat)
+      character(len=*), intent(in) :: prefix
+      type(heat_totals_t), intent(in) :: heat
+      call table%add('film_temperature', heat%temperature, prefix)
+      call table%add('heat_in', heat%came_in, prefix)
+      call table%add('heat_to_oil', heat%to_oil, prefix)
+      call table%add('heat_to_housing', heat%to_housing, prefix)
+      call table%add('heat_stored', heat%stored, prefix)
+      if (heat%jumps > 0) then
+        call table%add('temperature_jumps', heat%jumps, prefix)
+        call table%add('heat_extrapolated', heat%extrapolated, prefix)
+      end if
+      call table%add('heat_residual', heat%residual, prefix)
+    end subroutine add_heat
 
     !> Rows of the worn surfaces of a joint.
     subroutine add_wear(prefix)

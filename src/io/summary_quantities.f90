@@ -86,6 +86,16 @@ module summary_quantities
     quantity_t('wear_step_over_clearance', '1', 'largest change of its depth at once, over the clearance'), &
     quantity_t('wear_step_over_penetration', '1', &
       'the same over the mean penetration: a large value calls for less extrapolation or fewer `cycles_per_update`'), &
+    quantity_t('film_temperature', 'K', 'temperature of the film at the end of the run (group heat)'), &
+    quantity_t('heat_in', 'J', 'heat of the losses of the film, with its shear, and of friction'), &
+    quantity_t('heat_to_oil', 'J', 'heat that has left with the side flow'), &
+    quantity_t('heat_to_housing', 'J', 'heat that has flowed to the housing'), &
+    quantity_t('heat_stored', 'J', 'heat capacity times the rise of the temperature'), &
+    quantity_t('temperature_jumps', '1', &
+      'changes of the temperature that stand for a time that was left out (`until = ''periodic''`)'), &
+    quantity_t('heat_extrapolated', 'J', 'the part of the heat stored that comes from these changes'), &
+    quantity_t('heat_residual', 'J', &
+      'heat that came in less what has left and what was stored otherwise: a measure of the integration error'), &
     quantity_t('film_energy_lost', 'J', &
       'energy that the film took from the bodies; negative: it gave energy, as an oscillating film may'), &
     quantity_t('neglected_shear_loss', 'J', &

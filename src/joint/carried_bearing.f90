@@ -35,6 +35,7 @@ contains
     call layout%claim_states(2, joint%bearing%clearance, self%place)
     joint%at%position = self%place%first
     if (joint%slots(1)%element%n_states > 0) joint%slots(1)%element%states = self%place
+    if (allocated(joint%heat)) call joint%heat%claim(layout)
   end subroutine claim
 
   !> Set the initial position in the state vector.
@@ -43,13 +44,14 @@ contains
     type(clearance_joint_t), intent(in) :: joint
     real(dp), intent(inout) :: y(:)
     y(self%place%first:self%place%last) = joint%start_eccentricity
+    if (allocated(joint%heat)) y(joint%heat%at%first) = joint%heat%start
   end subroutine set_start
 
   !> Declare the position. In a bearing of another clearance it keeps its ratio to that.
   subroutine declare(self, list, joint, y)
     class(carried_bearing_t), intent(in) :: self
     type(run_state_t), intent(inout) :: list
-    type(clearance_joint_t), intent(in) :: joint
+    type(clearance_joint_t), intent(inout) :: joint
     real(dp), intent(inout) :: y(:)
     character(len=:), allocatable :: pre
     real(dp) :: clearance
@@ -58,12 +60,14 @@ contains
     call list%add(pre//'clearance', clearance, 'm', 'clearance of this position')
     call list%add(pre//'carried_eccentricity', y(self%place%first:self%place%last), 'm', &
       'centre of the '//trim(joint%site%title)//' from the centre of its bearing, where a film carries it (x, y)')
+    if (allocated(joint%heat)) call joint%heat%declare(pre, list, y)
     if (list%sets .and. abs(clearance - joint%bearing%clearance) > 0) &
       y(self%place%first:self%place%last) = y(self%place%first:self%place%last)*(joint%bearing%clearance/clearance)
   end subroutine declare
 
   !> Motion and loads of the bearing under a load (force of the pin on its bearing); the rate of the position is that of the
-  !> eccentricity. `in_domain` is false at the wall, where the film is not defined; then only the position is set.
+  !> eccentricity. `in_domain` is false at the wall, where the film is not defined, and for temperatures out of range; then only the
+  !> position is set.
   pure subroutine look(self, joint, load, speeds, y, now, in_domain)
     class(carried_bearing_t), intent(in) :: self
     type(clearance_joint_t), intent(in) :: joint
@@ -78,10 +82,12 @@ contains
     now%pin_angular_speed = speeds(1)
     now%bearing_speed = speeds(2)
     now%eccentricity_rate = 0
+    if (allocated(joint%heat)) call joint%read_temperature(y, now)
     associate (place => y(self%place%first:self%place%last))
       now%eccentricity = place
       in_domain = sum(place**2) < joint%reach(phase_film)**2
       if (joint%limits_states) in_domain = sum(place**2) < joint%bearing%clearance**2
+      in_domain = in_domain .and. joint%admits_temperature(now)
       if (in_domain) call joint%slots(1)%element%carry(place, load, now)
       now%power = power_of(now, now%force, now%eccentricity_rate, now%moment)
       call find_polar(joint%bearing%clearance, now)

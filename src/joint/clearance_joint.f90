@@ -14,10 +14,12 @@ module clearance_joint
   use ideal_chain, only: ideal_rod
   use chain_loads, only: loads_t, bearing_moment
   use archard_wear, only: wear_law_t
+  use film_law, only: film_motion_t
   use joint_evaluation, only: joint_evaluation_t, joint_rates_t, most_element_states, find_polar, find_sliding
   use load_element, only: load_element_t, n_motions, n_slopes, n_kinds, of_contact, of_friction, &
     of_film
-  use film_figures, only: film_figures_t, film_figures_of
+  use film_figures, only: film_figures_t, film_figures_of, film_losses_t, film_losses_of
+  use film_heat, only: film_heat_t, coldest, hottest
   implicit none
   private
   public :: clearance_joint_t, most_joints, most_bearings, most_joint_states, n_joint_slopes
@@ -26,7 +28,7 @@ module clearance_joint
   integer, parameter :: most_joints = 2     !! with clearance
   integer, parameter :: most_bearings = 3   !! with those whose pins are ideal in the mechanism
   integer, parameter :: most_elements = 2                                       !! of a joint
-  integer, parameter :: most_joint_states = most_elements*most_element_states   !! of all its elements
+  integer, parameter :: most_joint_states = most_elements*most_element_states + 1   !! of all its elements, and a temperature
   integer, parameter :: n_joint_slopes = n_motions + most_joint_states          !! columns of its slopes
 
   !> States of the joint: the values of the column `phase`.
@@ -48,11 +50,12 @@ module clearance_joint
     type(bearing_t) :: bearing
     real(dp) :: pin_radius = 0              !! of the pin [m]
     type(wear_law_t), allocatable :: wear   !! wear of pin and bore is counted
+    type(film_heat_t), allocatable :: heat  !! the film heats up
     ! the elements
     integer :: n_elements = 0
     type(slot_t) :: slots(most_elements)
     integer :: acting(0:n_phases - 1) = 0   !! number of the element that acts in each phase; 0: none
-    integer :: n_states = 0                 !! number of their states, one element after the other
+    integer :: n_states = 0                 !! number of their states, one element after the other, then the temperature
     integer :: n_events = 0                 !! number of event functions of the joint
     logical :: integrates_friction = .false.  !! the work of friction is integrated
     logical :: has_own_rates = .false.      !! elements have states, or the work of friction is integrated
@@ -74,11 +77,15 @@ module clearance_joint
   contains
     procedure :: set_place
     procedure :: add
+    procedure :: heat_up
     procedure :: claim
     procedure :: own_speed
     procedure :: set_start
     procedure :: declare
     procedure :: set_own_rates
+    procedure :: set_heat_rates
+    procedure, non_overridable :: read_temperature
+    procedure, non_overridable :: admits_temperature
     procedure :: reset_states
     procedure :: work_of_friction
     procedure, non_overridable :: read_state
@@ -99,6 +106,8 @@ module clearance_joint
     procedure :: is_singular
     procedure :: has_worn_bore
     procedure :: film_figures => figures_of_joint
+    procedure :: thins
+    procedure :: viscosity
     procedure :: powers
     procedure :: has_kind
     procedure :: shares_load
@@ -139,6 +148,15 @@ contains
     call self%find_reach()
   end subroutine add
 
+  !> Let the film of the elements, which have been added, heat up.
+  subroutine heat_up(self, heat)
+    class(clearance_joint_t), intent(inout) :: self
+    type(film_heat_t), intent(in) :: heat
+    self%heat = heat
+    self%n_states = self%n_states + 1
+    self%has_own_rates = .true.
+  end subroutine heat_up
+
   !> Claim the eccentricity, and what the elements need, in the state vector. The scale of the eccentricity is the clearance, that
   !> of its rate the clearance divided by the time in which the crank turns by one radian (errors: data/manual/choices.md).
   !>
@@ -162,6 +180,7 @@ contains
         if (element%integrates_friction) call layout%claim_quadratures(1, 0.0_dp, element%friction_work)
       end associate
     end do
+    if (allocated(self%heat)) call self%heat%claim(layout)
   end subroutine claim
 
   !> Natural size of the pin's speed in its bearing where it does not follow from the crank speed [m/s]: the initial speed, or
@@ -184,6 +203,7 @@ contains
         y(element%states%first:element%states%last) = element%start(:element%n_states)
       end associate
     end do
+    if (allocated(self%heat)) y(self%heat%at%first) = self%heat%start
   end subroutine set_start
 
   !> Declare the joint's state, which is in part in the state vector. A position in a bearing of another clearance keeps its
@@ -215,6 +235,7 @@ contains
           list%of_totals = .false.
         end associate
       end do
+      if (allocated(self%heat)) call self%heat%declare(pre, list, y)
       if (.not. list%sets) return
       distance = norm2(e)
       if (self%phase == phase_contact .and. self%acting(phase_contact) > 0) then
@@ -230,11 +251,12 @@ contains
     end associate
   end subroutine declare
 
-  !> Rates of the states of the elements, and of the work of friction. They are 0 while an element does not act, and without
-  !> contact.
-  pure subroutine set_own_rates(self, joint, dydt)
+  !> Rates of the states of the elements, of the work of friction, and of the heat of the film. Those of an element are 0 while it
+  !> does not act, that of the work without contact.
+  pure subroutine set_own_rates(self, joint, y, dydt)
     class(clearance_joint_t), intent(in) :: self
     type(joint_evaluation_t), intent(in) :: joint
+    real(dp), intent(in) :: y(*)   !! the whole state vector
     real(dp), intent(inout) :: dydt(*)
     integer :: k, i
     do k = 1, self%n_elements
@@ -248,7 +270,49 @@ contains
         if (joint%touches) dydt(element%friction_work%first) = joint%friction_force*joint%sliding_speed
       end associate
     end do
+    if (allocated(self%heat)) call self%set_heat_rates(whole_of(self, joint, y), y, dydt)
   end subroutine set_own_rates
+
+  !> Rates of the heat of the film, from the joint with all its loads, also those that the present phase does not have.
+  pure subroutine set_heat_rates(self, whole, y, dydt)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: whole
+    real(dp), intent(in) :: y(*)
+    real(dp), intent(inout) :: dydt(*)
+    type(film_losses_t) :: losses
+    real(dp) :: friction
+    call find_losses(self, whole, losses, friction)
+    call self%heat%set_rates(losses%power + losses%neglected_power + friction, losses%side_flow, y, dydt)
+  end subroutine set_heat_rates
+
+  !> Losses of the film, and power of the friction where the surfaces touch [W].
+  pure subroutine find_losses(self, whole, losses, friction)
+    type(clearance_joint_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: whole
+    type(film_losses_t), intent(out) :: losses
+    real(dp), intent(out) :: friction
+    integer :: k
+    friction = 0
+    k = self%acting(self%phase)
+    if (k == 0) return
+    associate (element => self%slots(k)%element)
+      if (allocated(element%film)) losses = film_losses_of(element, whole)
+      if (element%rubs) friction = -whole%friction_force*whole%sliding_speed
+    end associate
+  end subroutine find_losses
+
+  !> The joint as the right-hand side computes it, with what `complete` sets.
+  pure type(joint_evaluation_t) function whole_of(self, joint, y) result(whole)
+    type(clearance_joint_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    real(dp), intent(in) :: y(*)
+    whole = joint
+    associate (element => self%slots(self%acting(self%phase))%element)
+      whole%states(:element%n_states) = y(element%states%first:element%states%last)
+    end associate
+    call self%find_gap(y, whole)
+    call find_sliding(self%pin_radius, whole)
+  end function whole_of
 
   !> Set the states to 0 that are 0 at the beginning of each contact, those of friction laws.
   pure subroutine reset_states(self, y)
@@ -284,7 +348,26 @@ contains
     joint%eccentricity_rate(2) = y(self%at%rate + 1)
     joint%touches = self%phase == phase_contact
     joint%impact_speed = self%impact_speed
+    joint%viscosity_ratio = 1
+    if (allocated(self%heat)) call self%read_temperature(y, joint)
   end subroutine read_state
+
+  !> Set the temperature of the film, which heats up, and its viscosity where that is admissible.
+  pure subroutine read_temperature(self, y, joint)
+    class(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: y(*)
+    type(joint_evaluation_t), intent(inout) :: joint
+    joint%temperature = self%heat%temperature(y)
+    if (self%admits_temperature(joint)) joint%viscosity_ratio = self%heat%viscosity_ratio(joint%temperature)
+  end subroutine read_temperature
+
+  !> Whether the temperature of the film is admissible.
+  pure logical function admits_temperature(self, joint)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    admits_temperature = .true.
+    if (allocated(self%heat)) admits_temperature = joint%temperature > coldest .and. joint%temperature < hottest
+  end function admits_temperature
 
   !> Whether the state is admissible: the eccentricity within its reach, and the states of the elements within theirs.
   pure logical function admits(self, y, joint)
@@ -293,6 +376,7 @@ contains
     type(joint_evaluation_t), intent(in) :: joint
     integer :: k
     admits = joint%eccentricity(1)**2 + joint%eccentricity(2)**2 < self%reach(self%phase)**2
+    if (allocated(self%heat)) admits = admits .and. self%admits_temperature(joint)
     if (.not. self%limits_states) return
     do k = 1, self%n_elements
       associate (element => self%slots(k)%element)
@@ -464,7 +548,40 @@ contains
     of_loads(:, n_motions + first + 1:n_motions + first + n) = loads_slopes(:, n_motions + 1:n_motions + n)
     of_rates(first + 1:first + n, :n_motions) = rate_slopes(:n, :n_motions)
     of_rates(first + 1:first + n, n_motions + first + 1:n_motions + first + n) = rate_slopes(:n, n_motions + 1:n_motions + n)
+    if (allocated(self%heat)) call add_heat_slopes(self, joint, of_loads, of_rates)
   end subroutine slopes
+
+  !> Add the derivatives of and with respect to the temperature of the film. Left out is how its side flow depends on the motion.
+  pure subroutine add_heat_slopes(self, joint, of_loads, of_rates)
+    type(clearance_joint_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    real(dp), intent(inout) :: of_loads(3, n_joint_slopes), of_rates(most_joint_states, n_joint_slopes)
+    type(film_losses_t) :: losses
+    real(dp) :: friction, of_viscosity
+    integer :: by, at, k
+    at = self%n_states
+    by = n_motions + at
+    k = self%acting(self%phase)
+    call find_losses(self, joint, losses, friction)
+    call self%heat%slopes(joint%temperature, losses%power + losses%neglected_power, losses%side_flow, of_viscosity, &
+      of_rates(at, by))
+    associate (element => self%slots(k)%element, e => joint%eccentricity, rate => joint%eccentricity_rate)
+      if (.not. allocated(element%film)) return
+      of_loads(:, by) = [joint%film, element%film_moment(joint)]*of_viscosity
+      if (allocated(element%walls)) then   ! the load is given: the velocity of the film changes, not its force
+        of_loads(:2, by) = 0
+        of_rates(:2, by) = of_viscosity*(0.5_dp*(joint%pin_angular_speed + joint%bearing_speed)* &
+          [-joint%states(2), joint%states(1)] - joint%rates)
+      end if
+      ! of -(F . e' + M omega_pin + M_bearing omega_bearing), of all loads
+      of_rates(at, :n_motions) = -matmul([rate + joint%bearing_speed*[e(2), -e(1)], &
+        joint%pin_angular_speed - joint%bearing_speed], of_loads(:, :n_motions))
+      of_rates(at, 1:2) = of_rates(at, 1:2) - joint%bearing_speed*[-joint%force(2), joint%force(1)]
+      of_rates(at, 3:4) = of_rates(at, 3:4) - joint%force
+      of_rates(at, 5:6) = of_rates(at, 5:6) - [joint%moment, bearing_moment(e, joint%force, joint%moment)]
+      of_rates(at, :n_motions) = of_rates(at, :n_motions)/self%heat%given%heat_capacity
+    end associate
+  end subroutine add_heat_slopes
 
   !> The phase of the joint while there is no contact.
   pure integer function phase_apart(self)
@@ -536,6 +653,25 @@ contains
     if (self%acting(phase_film) > 0) figures = film_figures_of(self%slots(self%acting(phase_film))%element, joint)
   end function figures_of_joint
 
+  !> Whether the film of the joint thins with the shear.
+  pure logical function thins(self)
+    class(clearance_joint_t), intent(in) :: self
+    thins = .false.
+    if (self%acting(phase_film) > 0) thins = self%slots(self%acting(phase_film))%element%film%thinning_ratio < 1
+  end function thins
+
+  !> Dynamic viscosity of the film [Pa s], without pressure.
+  pure real(dp) function viscosity(self, joint)
+    class(clearance_joint_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    type(film_motion_t) :: seen
+    real(dp) :: rate(2), share, thickening
+    associate (element => self%slots(self%acting(phase_film))%element)
+      call element%see_film(joint, seen, rate, share, thickening)
+      viscosity = element%film%viscosity*joint%viscosity_ratio*element%film%thinning(seen)
+    end associate
+  end function viscosity
+
   !> Powers of the kinds of load on the bodies [W]; their sum is the power of the joint.
   pure function powers(self, joint)
     class(clearance_joint_t), intent(in) :: self
@@ -586,7 +722,6 @@ contains
     type(joint_evaluation_t), intent(in) :: joint
     real(dp), intent(in) :: y(*)   !! the whole state vector
     real(dp) :: rates(n_kinds)
-    type(joint_evaluation_t) :: whole
     integer :: k
     rates = 0
     k = self%acting(self%phase)
@@ -597,11 +732,7 @@ contains
           + joint%normal(2)*joint%eccentricity_rate(2))
         if (element%has_friction) rates(of_friction) = joint%friction_force*joint%sliding_speed
       else if (element%rubs .or. allocated(element%walls)) then
-        whole = joint
-        whole%states(:element%n_states) = y(element%states%first:element%states%last)
-        call self%find_gap(y, whole)
-        call find_sliding(self%pin_radius, whole)
-        rates = element%powers(whole)
+        rates = element%powers(whole_of(self, joint, y))
       else
         rates(of_film) = joint%power
       end if

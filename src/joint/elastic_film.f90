@@ -66,9 +66,10 @@ contains
     type(joint_evaluation_t), intent(inout) :: joint
     associate (e => y(self%states%first:self%states%last), drawn => 0.5_dp*(joint%pin_angular_speed + joint%bearing_speed))
       joint%film = -wall_load(self%walls, joint%eccentricity - e)
-      joint%rates = self%velocity(e, -joint%film) + drawn*[-e(2), e(1)]
+      joint%rates = self%velocity(e, -joint%film, joint%viscosity_ratio) + drawn*[-e(2), e(1)]
       joint%moment = 0
-      if (self%film%film_moment) joint%moment = moment(self, motion_of_film(self, joint, e), -joint%film)
+      if (self%film%film_moment) joint%moment = &
+        moment(self, motion_of_film(self, joint, e), -joint%film, joint%viscosity_ratio)
     end associate
     joint%force = joint%film
   end subroutine find_loads
@@ -80,13 +81,14 @@ contains
     real(dp), intent(in) :: place(2), load(2)
     type(joint_evaluation_t), intent(inout) :: joint
     joint%states = place
-    joint%rates = self%velocity(place, load) + 0.5_dp*(joint%pin_angular_speed + joint%bearing_speed)*[-place(2), place(1)]
+    joint%rates = self%velocity(place, load, joint%viscosity_ratio) &
+      + 0.5_dp*(joint%pin_angular_speed + joint%bearing_speed)*[-place(2), place(1)]
     joint%eccentricity = place + wall_deflection(self%walls, load)
     joint%eccentricity_rate = joint%rates
     joint%film = -load
     joint%force = -load
     joint%moment = 0
-    if (self%film%film_moment) joint%moment = moment(self, motion_of_film(self, joint, place), load)
+    if (self%film%film_moment) joint%moment = moment(self, motion_of_film(self, joint, place), load, joint%viscosity_ratio)
   end subroutine carry
 
   !> The motion on which the force of the film depends: that of the place where the film is.
@@ -111,7 +113,7 @@ contains
       joint%penetration = distance - self%bearing%clearance
       joint%penetration_rate = 0
       if (distance > 0 .and. distance < self%bearing%clearance) joint%penetration_rate = &
-        dot_product(e, self%velocity(e, wall_load(self%walls, joint%eccentricity - e)))/distance
+        dot_product(e, self%velocity(e, wall_load(self%walls, joint%eccentricity - e), joint%viscosity_ratio))/distance
     end associate
   end subroutine find_gap
 
@@ -160,21 +162,22 @@ contains
   end function thickening_of
 
   !> v* [m/s] at an eccentricity of the film under a load.
-  pure function velocity(self, e, load)
+  pure function velocity(self, e, load, viscosity_ratio)
     class(elastic_film_t), intent(in) :: self
-    real(dp), intent(in) :: e(2), load(2)   !! [m], [N]
+    real(dp), intent(in) :: e(2), load(2)     !! [m], [N]
+    real(dp), intent(in) :: viscosity_ratio   !! without pressure, to that of the film law [-]
     real(dp) :: velocity(2)
-    call driven_velocity(self%film, e, load/thickening_of(self, load), velocity)
+    call driven_velocity(self%film, e, load/(thickening_of(self, load)*viscosity_ratio), velocity)
   end function velocity
 
   !> Moment of the film on the pin about the pin's centre [N m]. It equals that about the film's own centre, since the load passes
   !> through both.
-  pure real(dp) function moment(self, seen, load)
+  pure real(dp) function moment(self, seen, load, viscosity_ratio)
     type(elastic_film_t), intent(in) :: self
     type(film_motion_t), intent(in) :: seen
-    real(dp), intent(in) :: load(2)
+    real(dp), intent(in) :: load(2), viscosity_ratio
     real(dp) :: factor
-    factor = thickening_of(self, load)
+    factor = thickening_of(self, load)*viscosity_ratio
     moment = factor*self%film%drag_moment(seen, -load/factor)
   end function moment
 
@@ -194,7 +197,7 @@ contains
     of_loads = 0
     of_loads(1:2, 1:2) = -wall
     of_loads(1:2, first:last) = wall
-    factor = thickening_of(self, pressing)
+    factor = thickening_of(self, pressing)*joint%viscosity_ratio
     if (self%film%film_moment) then
       drag = factor*unit_drag(self%film, seen)
       by_load = 0.5_dp*[-seen%eccentricity(2), seen%eccentricity(1)] &
@@ -265,6 +268,6 @@ contains
     seen = motion_of_film(self, joint, joint%states)
     rate = joint%rates
     share = 1
-    thickening = thickening_of(self, wall_load(self%walls, joint%eccentricity - joint%states))
+    thickening = thickening_of(self, wall_load(self%walls, joint%eccentricity - joint%states))*joint%viscosity_ratio
   end subroutine see_film
 end module elastic_film

@@ -8,20 +8,35 @@ module film_figures
   use load_element, only: load_element_t, power_of
   implicit none
   private
-  public :: film_figures_t, film_figures_of, add_film_force, add_film_figures
+  public :: film_losses_t, film_losses_of, film_figures_t, film_figures_of, add_film_force, add_film_figures
 
-  type :: film_figures_t
+  type :: film_losses_t
     real(dp) :: power = 0         !! taken from the bodies by the film's force and by the moment of its shear, if that acts [W]
     real(dp) :: neglected_moment = 0   !! of shear on the pin about its centre that does not act since the case neglects it [N m]
     real(dp) :: neglected_power = 0    !! that this moment would take from the bodies [W]
-    real(dp) :: max_pressure = 0  !! [Pa]
     real(dp) :: side_flow = 0     !! out of both ends of the bearing [m^3/s]
+  end type film_losses_t
+
+  type, extends(film_losses_t) :: film_figures_t
+    real(dp) :: max_pressure = 0  !! [Pa]
   end type film_figures_t
 
 contains
 
-  !> Results of a film; all are 0 while it does not act. If film and contact share the load, the film's results are multiplied by
-  !> its share.
+  !> Losses of a film; all are 0 while it does not act. If film and contact share the load, the film's results are multiplied by its
+  !> share.
+  pure type(film_losses_t) function film_losses_of(element, joint) result(losses)
+    class(load_element_t), intent(in) :: element   !! with a film
+    type(joint_evaluation_t), intent(in) :: joint
+    type(film_motion_t) :: seen
+    real(dp) :: rate(2), share, thickening
+    call element%see_film(joint, seen, rate, share, thickening)
+    if (.not. share > 0) return
+    call add_losses(element, joint, seen, rate, share*thickening, losses)
+    losses%side_flow = share*element%film%side_flow(seen)
+  end function film_losses_of
+
+  !> Results of a film, as `film_losses_of`.
   pure type(film_figures_t) function film_figures_of(element, joint) result(figures)
     class(load_element_t), intent(in) :: element   !! with a film
     type(joint_evaluation_t), intent(in) :: joint
@@ -29,18 +44,25 @@ contains
     real(dp) :: rate(2), share, thickening
     call element%see_film(joint, seen, rate, share, thickening)
     if (.not. share > 0) return
-    associate (film => element%film, factor => share*thickening)
-      figures%power = -power_of(joint, joint%film, rate, element%film_moment(joint))
-      if (film%neglects_shear()) then
-        figures%neglected_moment = factor*film%drag_moment(seen, joint%film/factor)
-        figures%neglected_power = -figures%neglected_moment*(joint%pin_angular_speed - joint%bearing_speed)
-      end if
-      if (.not. film%gives_pressure()) return
-      call film%peak_and_flow(seen, figures%max_pressure, figures%side_flow)
-      figures%max_pressure = factor*figures%max_pressure
-      figures%side_flow = share*figures%side_flow
-    end associate
+    call add_losses(element, joint, seen, rate, share*thickening, figures%film_losses_t)
+    if (.not. element%film%gives_pressure()) return
+    call element%film%peak_and_flow(seen, figures%max_pressure, figures%side_flow)
+    figures%max_pressure = share*thickening*figures%max_pressure
+    figures%side_flow = share*figures%side_flow
   end function film_figures_of
+
+  !> Set power and neglected shear of a film that acts; `factor` is that of its pressures.
+  pure subroutine add_losses(element, joint, seen, rate, factor, losses)
+    class(load_element_t), intent(in) :: element
+    type(joint_evaluation_t), intent(in) :: joint
+    type(film_motion_t), intent(in) :: seen
+    real(dp), intent(in) :: rate(2), factor
+    type(film_losses_t), intent(inout) :: losses
+    losses%power = -power_of(joint, joint%film, rate, element%film_moment(joint))
+    if (.not. element%film%neglects_shear()) return
+    losses%neglected_moment = factor*element%film%drag_moment(seen, joint%film/factor)
+    losses%neglected_power = -losses%neglected_moment*(joint%pin_angular_speed - joint%bearing_speed)
+  end subroutine add_losses
 
   !> Add the columns of the force of a film.
   pure subroutine add_film_force(joint, row)

@@ -15,6 +15,7 @@ module joint_case
   use archard_wear, only: wear_law_t
   use history_case, only: history_case_t
   use film_history, only: film_history_t
+  use film_heat, only: heat_case_t
   implicit none
   private
   public :: joint_case_t, visit_joint, drop_laws, select_contact, select_friction
@@ -43,6 +44,7 @@ module joint_case
     type(wear_law_t), allocatable :: wear
     real(dp) :: ambient_over_cavitation = 0   !! [Pa]
     type(history_case_t) :: history           !! the film with memory that is marched after the run
+    type(heat_case_t), allocatable :: heat
   contains
     procedure :: parameters => joint_parameters
     procedure :: has_clearance
@@ -100,6 +102,8 @@ contains
     class(joint_case_t), intent(in) :: self
     class(film_law_t), allocatable, intent(out) :: film
     allocate (film, source=self%film)
+    film%thinning_ratio = self%oil%thinning_ratio
+    film%thinning_speed = self%oil%thinning_rate*self%clearance/(self%bearing_radius - self%clearance)
     if (.not. self%oil%is_known()) return
     film%viscosity = self%oil%dynamic_viscosity()
     film%kinematic_viscosity = self%oil%kinematic_viscosity()
@@ -179,6 +183,7 @@ contains
     if (allocated(joint%asperities)) deallocate (joint%asperities)
     if (allocated(joint%wear)) deallocate (joint%wear)
     joint%history = history_case_t()
+    if (allocated(joint%heat)) deallocate (joint%heat)
   end subroutine drop_laws
 
   !> Select the contact law that a case names, if it names one.

@@ -33,6 +33,9 @@ contains
     do k = 1, joint%n_elements
       call joint%slots(k)%element%add_columns(now, row)
     end do
+    if (allocated(joint%heat)) call row%add('film_temperature[K]', now%temperature, 'temperature of the film')
+    if (allocated(joint%heat) .or. joint%thins()) call row%add_on_request('film_viscosity[Pa.s]', joint%viscosity(now), &
+      'dynamic viscosity of the film at its temperature and rate of shear')
     if (allocated(joint%wear)) call add_wear(joint, now, row)
     row%place = ''
   end subroutine add_joint_columns

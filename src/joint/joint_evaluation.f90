@@ -26,6 +26,9 @@ module joint_evaluation
     real(dp) :: ideal_speed           !! sum of the angular speeds of pin and bearing [rad/s]
     real(dp) :: ideal_acceleration    !! its rate at constant crank speed [rad/s^2]
     real(dp) :: frequency             !! |q'| [rad/s]
+    ! the film
+    real(dp) :: temperature           !! of a film that heats up [K]
+    real(dp) :: viscosity_ratio       !! of its viscosity to that which its law was prepared for [-]
     ! loads on the pin; the opposite forces act on the bearing
     real(dp) :: force(2)              !! of all kinds [N]
     real(dp) :: moment                !! of all kinds, about the pin's centre, positive from x to y [N m]
@@ -48,9 +51,10 @@ module joint_evaluation
 
 contains
 
-  !> Set all loads to 0.
+  !> Set all loads to 0, and the viscosity of a film to that of its law.
   pure subroutine clear_loads(joint)
     type(joint_evaluation_t), intent(inout) :: joint
+    joint%viscosity_ratio = 1
     joint%force = 0
     joint%moment = 0
     joint%power = 0

@@ -12,6 +12,7 @@ contains
   module procedure visit_joint
     type(asperities_t) :: asperities
     type(wear_law_t) :: wear
+    type(heat_case_t) :: heat
     call list%group('joint', 'Joint of rod and piston (piston pin)', .false., place)
     call joint%parameters(list)
     if (list%sets .and. another_has_bearing .and. .not. joint%has_bearing()) return
@@ -29,6 +30,11 @@ contains
     if (list%sets) joint%wear = wear
     if (list%is_absent()) deallocate (joint%wear)
     call visit_history(joint%history, place, list)
+    call list%group('heat', 'Heating of the film by its losses. Without this group the temperature is that of &lubrication', &
+      .true., place)
+    call heat%parameters(list)
+    if (list%sets) joint%heat = heat
+    if (list%is_absent()) deallocate (joint%heat)
   end procedure visit_joint
 
   subroutine visit_contact(law, place, list)

@@ -6,7 +6,7 @@ module oil_film
   use film_mobility, only: driven_velocity
   use joint_case, only: joint_case_t
   use joint_evaluation, only: joint_evaluation_t, most_element_states
-  use load_element, only: load_element_t, n_slopes, by_pin_speed, by_bearing_speed
+  use load_element, only: load_element_t, n_slopes, n_motions, by_pin_speed, by_bearing_speed
   use film_figures, only: add_film_force, add_film_figures
   implicit none
   private
@@ -36,7 +36,7 @@ contains
     class(oil_film_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
     type(joint_evaluation_t), intent(inout) :: joint
-    call self%film%film_force(film_motion_of(self%film, joint), joint%film, joint%moment)
+    call self%film%loads(film_motion_of(self%film, joint), joint%viscosity_ratio, joint%film, joint%moment)
     joint%force = joint%film
   end subroutine find_loads
 
@@ -60,8 +60,11 @@ contains
     real(dp), intent(out) :: of_loads(3, n_slopes), of_rates(most_element_states, n_slopes)
     of_loads = 0
     of_rates = 0
-    call self%film%force_derivatives(film_motion_of(self%film, joint), of_loads(:, :by_pin_speed))
-    call add_bearing_speed(self%film, film_motion_of(self%film, joint), of_loads)
+    associate (seen => film_motion_of(self%film, joint))
+      call self%film%force_derivatives(seen, of_loads(:, :by_pin_speed))
+      call add_bearing_speed(self%film, seen, of_loads)
+      call self%film%load_slopes(seen, joint%viscosity_ratio, of_loads(:, :n_motions))
+    end associate
   end subroutine find_slopes
 
   !> Add the derivatives with respect to the angular speed of the bearing to those of a film law: it entrains the film as that of
@@ -89,15 +92,18 @@ contains
     class(oil_film_t), intent(in) :: self
     real(dp), intent(in) :: place(2), load(2)
     type(joint_evaluation_t), intent(inout) :: joint
-    real(dp) :: drawn, velocity(2)
+    type(film_motion_t) :: seen
+    real(dp) :: drawn, velocity(2), factor
     drawn = 0.5_dp*(joint%pin_angular_speed + joint%bearing_speed)
-    call driven_velocity(self%film, place, load, velocity)
     joint%eccentricity = place
+    seen = film_motion_of(self%film, joint)   ! its rate is not known, and not used
+    factor = joint%viscosity_ratio*self%film%thinning(seen)
+    call driven_velocity(self%film, place, load/factor, velocity)
     joint%eccentricity_rate = velocity + drawn*[-place(2), place(1)]
     joint%film = -load
     joint%force = -load
     joint%moment = 0
-    if (self%film%film_moment) joint%moment = self%film%drag_moment(film_motion_of(self%film, joint), joint%film)
+    if (self%film%film_moment) joint%moment = factor*self%film%drag_moment(seen, joint%film/factor)
   end subroutine carry
 
   pure subroutine add_columns(self, joint, row)
@@ -116,6 +122,6 @@ contains
     seen = film_motion_of(self%film, joint)
     rate = joint%eccentricity_rate
     share = merge(0.0_dp, 1.0_dp, joint%touches)
-    thickening = 1
+    thickening = joint%viscosity_ratio*self%film%thinning(seen)
   end subroutine see_film
 end module oil_film

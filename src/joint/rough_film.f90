@@ -49,8 +49,8 @@ contains
     class(rough_film_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
     type(joint_evaluation_t), intent(inout) :: joint
-    call mixed_forces(self%film, self%asperities, self%pin_radius, film_motion_of(self%film, joint), joint%film, joint%moment, &
-      joint%normal_force, joint%friction_force)
+    call mixed_forces(self%film, self%asperities, self%pin_radius, film_motion_of(self%film, joint), joint%viscosity_ratio, &
+      joint%film, joint%moment, joint%normal_force, joint%friction_force)
     call find_polar(self%bearing%clearance, joint)
     associate (n => joint%normal)
       joint%contact = -joint%normal_force*n + joint%friction_force*[-n(2), n(1)]
@@ -64,10 +64,11 @@ contains
     real(dp), intent(in) :: place(2), load(2)
     type(joint_evaluation_t), intent(inout) :: joint
     type(film_motion_t) :: motion
+    real(dp) :: factor
     joint%eccentricity = place
     joint%eccentricity_rate = 0
-    call mixed_velocity(self%film, self%asperities, self%pin_radius, film_motion_of(self%film, joint), load, &
-      joint%eccentricity_rate, joint%normal_force, joint%friction_force)
+    call mixed_velocity(self%film, self%asperities, self%pin_radius, film_motion_of(self%film, joint), joint%viscosity_ratio, &
+      load, joint%eccentricity_rate, joint%normal_force, joint%friction_force)
     call find_polar(self%bearing%clearance, joint)
     associate (n => joint%normal)
       joint%contact = -joint%normal_force*n + joint%friction_force*[-n(2), n(1)]
@@ -77,7 +78,8 @@ contains
     joint%moment = joint%friction_force*self%pin_radius
     if (.not. self%film%film_moment) return
     motion = motion_in_gap(self%film, self%asperities, film_motion_of(self%film, joint))
-    joint%moment = joint%moment + self%film%drag_moment(motion, joint%film)
+    factor = joint%viscosity_ratio*self%film%thinning(motion)
+    joint%moment = joint%moment + factor*self%film%drag_moment(motion, joint%film/factor)
   end subroutine carry
 
   pure subroutine find_slopes(self, joint, of_loads, of_rates)
@@ -86,7 +88,8 @@ contains
     real(dp), intent(out) :: of_loads(3, n_slopes), of_rates(most_element_states, n_slopes)
     of_loads = 0
     of_rates = 0
-    call mixed_derivatives(self%film, self%asperities, self%pin_radius, film_motion_of(self%film, joint), of_loads(:, :n_motions))
+    call mixed_derivatives(self%film, self%asperities, self%pin_radius, film_motion_of(self%film, joint), joint%viscosity_ratio, &
+      of_loads(:, :n_motions))
   end subroutine find_slopes
 
   pure subroutine add_columns(self, joint, row)
@@ -107,6 +110,7 @@ contains
     real(dp), intent(out) :: rate(2), share, thickening
     call self%oil_film_t%see_film(joint, seen, rate, share, thickening)
     seen = motion_in_gap(self%film, self%asperities, seen)
+    thickening = joint%viscosity_ratio*self%film%thinning(seen)
   end subroutine see_film
 
   pure subroutine spread(self, joint, ratio, width, arc)

@@ -39,6 +39,7 @@ contains
     call self%prepare_film(wanted, tolerance, makes_tables)
     self%transition = wanted%transition
     call self%transition%prepare(self%bearing, self%film%least_film_ratio)
+    self%has_slopes = self%has_slopes .and. .not. self%film%thinning_ratio < 1
     self%kinks = [self%transition%film_reach, self%transition%contact_reach]
   end subroutine prepare
 
@@ -50,7 +51,7 @@ contains
     real(dp) :: w, force(2), moment
     if (.not. joint%touches) then
       joint%rates = 0
-      call self%film%film_force(held_motion(self, joint), joint%film, joint%moment)
+      call self%film%loads(held_motion(self, joint), joint%viscosity_ratio, joint%film, joint%moment)
       joint%force = joint%film
       return
     end if
@@ -58,7 +59,7 @@ contains
     joint%film = 0
     if (.not. self%is_beyond(gone)) then
       w = contact_weight(self, joint)
-      call self%film%film_force(held_motion(self, joint), force, moment)
+      call self%film%loads(held_motion(self, joint), joint%viscosity_ratio, force, moment)
       joint%film = (1 - w)*force
       joint%contact = w*joint%contact
       joint%moment = w*joint%moment + (1 - w)*moment
@@ -103,6 +104,7 @@ contains
     call self%transition%film_derivatives(self%film, film_motion_of(self%film, joint), self%is_beyond(held), &
       of_film(:, :by_pin_speed))
     call add_bearing_speed(self%film, held_motion(self, joint), of_film)
+    of_film = joint%viscosity_ratio*of_film
     of_loads = of_film
     if (.not. joint%touches) return
     dry = joint
@@ -112,7 +114,7 @@ contains
     call self%dry_contact_t%find_slopes(dry, of_loads, of_rates)
     if (self%is_beyond(gone)) return
     call self%transition%weight(joint%penetration, .false., w, slope)
-    call self%film%film_force(held_motion(self, joint), force, moment)
+    call self%film%loads(held_motion(self, joint), joint%viscosity_ratio, force, moment)
     associate (n => joint%normal, pressing => dry%normal_force, friction => dry%friction_force)
       change = [-pressing*n(1) - friction*n(2), friction*n(1) - pressing*n(2), friction*self%pin_radius] - [force, moment]
       of_loads = w*of_loads + (1 - w)*of_film
@@ -142,6 +144,6 @@ contains
     rate = joint%eccentricity_rate
     share = 1 - contact_weight(self, joint)
     if (joint%touches .and. self%is_beyond(gone)) share = 0
-    thickening = 1
+    thickening = joint%viscosity_ratio*self%film%thinning(seen)
   end subroutine see_film
 end module weighted_contact

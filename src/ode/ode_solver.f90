@@ -51,6 +51,7 @@ module ode_solver
     procedure :: go_to
     procedure :: cut
     procedure :: restart
+    procedure :: go_on_from
     procedure :: state
     procedure :: finish
   end type integration_t
@@ -249,6 +250,22 @@ contains
     call self%watch%begin(problem, self%t, self%y, self%event, self%falls)
     self%is_over = self%status /= step_done
   end subroutine restart
+
+  !> Start again from (t, y), not after the last reported time, at which the observer has stopped the integration.
+  subroutine go_on_from(self, problem, method, t, y)
+    class(integration_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    class(ode_method_t), intent(inout) :: method
+    real(dp), intent(in) :: t, y(:)
+    call method%count_time(method%t_old - (self%t - t))   ! the time after t is counted again
+    self%t = t
+    self%y = y
+    self%event = 0
+    self%in_place = 0
+    self%status = step_done
+    self%is_over = .false.
+    call self%restart(problem, method)
+  end subroutine go_on_from
 
   !> The state at time t while nothing is kept.
   pure function state(self, method) result(y)

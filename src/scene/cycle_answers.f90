@@ -13,6 +13,7 @@ module cycle_answers
   use run_extremes, only: run_extremes_t
   use archard_wear, only: of_pin, of_bore
   use run_length, only: longest_period
+  use film_heat, only: temperature_sum, heat_to_oil, heat_to_housing
   implicit none
   private
   public :: answer_t, quantity_t, find_answers, cycle_quantities
@@ -63,6 +64,9 @@ module cycle_answers
     quantity_t('cycle_max_film_pressure', 'Pa', 'largest pressure in the film in the cycle, with `report`'), &
     quantity_t('cycle_max_film_pressure_angle', 'deg', 'crank angle then'), &
     quantity_t('cycle_mean_film_side_flow', 'm3/s', 'mean oil flow out of both ends of the bearing in the cycle'), &
+    quantity_t('cycle_mean_film_temperature', 'K', 'mean temperature of the film in the cycle, with `&heat`'), &
+    quantity_t('cycle_heat_to_oil', 'J', 'heat that the oil carries out of the film in the cycle'), &
+    quantity_t('cycle_heat_to_housing', 'J', 'heat that flows from the film to the housing in the cycle'), &
     quantity_t('cycle_wear_depth_rate_pin', 'm/h', &
       'largest depth by which a bin of the pin has worn in the cycle, in an hour of such cycles; without `extrapolation`'), &
     quantity_t('cycle_wear_depth_rate_bore', 'm/h', 'the same on the bore'), &
@@ -191,6 +195,11 @@ contains
         worn = extremes%wear_growth(scene, joint%place, revolutions)*3600/cycle%duration
         if (all(worn >= 0)) call add('cycle_wear_depth_rate_pin', worn(of_pin), i)
         if (all(worn >= 0)) call add('cycle_wear_depth_rate_bore', worn(of_bore), i)
+        if (allocated(joint%heat)) then
+          call add('cycle_mean_film_temperature', pin%heat(temperature_sum)/cycle%duration, i)
+          call add('cycle_heat_to_oil', pin%heat(heat_to_oil), i)
+          call add('cycle_heat_to_housing', pin%heat(heat_to_housing), i)
+        end if
         if (pin%load_integral > 0) call add('cycle_asperity_load_share', pin%asperity_integral/pin%load_integral, i)
         if (.not. (joint%reports_film .and. joint%has_kind(of_film))) return
         if (pin%max_film_pressure > 0) then

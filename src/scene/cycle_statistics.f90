@@ -2,6 +2,7 @@
 module cycle_statistics
   use kinds, only: dp
   use joint_places, only: n_places
+  use film_heat, only: n_sums
   implicit none
   private
   public :: cycle_t, cycle_statistics_t, skirt, most_parts
@@ -27,6 +28,7 @@ module cycle_statistics
     real(dp) :: asperity_integral = 0, load_integral = 0   !! integrals of the load of the asperities and of the whole force, if
                                                            !! results of the film are requested [N s]
     real(dp) :: film_volume = 0                       !! volume of oil that left the film at its ends, if they are requested [m^3]
+    real(dp) :: heat(n_sums) = 0                      !! integrals of the heat of its film, see `film_heat`
   end type pin_cycle_t
 
   !> Results of one revolution.
@@ -59,6 +61,7 @@ contains
   pure subroutine add(self, cycle)
     class(cycle_statistics_t), intent(inout) :: self
     type(cycle_t), intent(in) :: cycle
+    integer :: i
     self%cycles = self%cycles + 1
     self%total%duration = self%total%duration + cycle%duration
     self%total%dissipated_energy = self%total%dissipated_energy + cycle%dissipated_energy
@@ -86,6 +89,9 @@ contains
       total%max_force = max(total%max_force, one%max_force)
       total%force_integral = total%force_integral + one%force_integral
     end associate
+    do i = 1, skirt
+      self%total%pin(i)%heat = self%total%pin(i)%heat + cycle%pin(i)%heat
+    end do
     where (cycle%pin%min_film_thickness < huge(1.0_dp)) self%film_sum = self%film_sum + cycle%pin%min_film_thickness
     self%force_sum = self%force_sum + cycle%pin%max_force
   end subroutine add

@@ -4,6 +4,7 @@ module cycle_watch
   use constants, only: two_pi
   use ode_method, only: ode_method_t
   use joint_places, only: n_places
+  use film_heat, only: n_sums
   use scene_problem, only: scene_t, evaluation_t, phase_contact
   use crank_passage, only: find_passage
   use revolutions, only: revolutions_t
@@ -34,6 +35,7 @@ module cycle_watch
     type(cycle_t) :: recent(0:longest_period - 1)   !! revolution k in element mod(k, longest_period), for the last ones that ended
     type(machine_record_t), private :: machine
     real(dp), private :: works(most_parts) = 0, energy = 0   !! at the start of the revolution [J]
+    real(dp), private :: heat(n_sums, n_places) = 0          !! integrals of the heat of films then
     type(cycle_t), private :: present
     integer :: ended = 0                  !! number of revolutions that have ended
     integer :: followed = 0               !! number of those that have results: a run that goes on begins inside one
@@ -94,6 +96,7 @@ contains
     self%loss = scene%joint_loss(t, y)
     self%works = 0
     if (allocated(scene%parts)) self%works(:size(scene%parts)) = scene%works(t, y)
+    self%heat = heat_of(scene, y)
     self%energy = 0
     if (in_domain) self%energy = scene%chain%energy(now%motion)
     self%initial_energy = initial_energy
@@ -323,7 +326,8 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(in) :: now
-    real(dp) :: force_integral(n_places), loss, works(most_parts), energy
+    real(dp) :: force_integral(n_places), loss, works(most_parts), energy, heat(n_sums, n_places)
+    integer :: i
     force_integral = scene%force_integrals(y)
     loss = scene%joint_loss(t, y)
     energy = scene%chain%energy(now%motion)
@@ -336,6 +340,10 @@ contains
     self%present%start = self%cycle_start
     self%present%work = works - self%works
     self%present%energy_change = energy - self%energy
+    heat = heat_of(scene, y)
+    do i = 1, n_places
+      self%present%pin(i)%heat = heat(:, i) - self%heat(:, i)
+    end do
     self%ended = self%ended + 1
     self%recent(mod(self%ended, longest_period)) = self%present
     if (self%is_whole) self%followed = self%followed + 1
@@ -355,7 +363,22 @@ contains
     self%loss = loss
     self%works = works
     self%energy = energy
+    self%heat = heat
   end subroutine end_cycle
+
+  !> Integrals of the heat of the films at the places so far; 0 where films do not heat up.
+  pure function heat_of(scene, y) result(heat)
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: y(:)
+    real(dp) :: heat(n_sums, n_places)
+    integer :: i
+    heat = 0
+    do i = 1, size(scene%joints)
+      associate (joint => scene%joints(i))
+        if (allocated(joint%heat)) heat(:, joint%place) = y(joint%heat%sums%first:joint%heat%sums%last)
+      end associate
+    end do
+  end function heat_of
 
   !> Sample the columns at (t, y), where the crank passes the strobe angle.
   subroutine strobe(self, scene, t, y)

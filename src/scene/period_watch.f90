@@ -36,13 +36,14 @@ module period_watch
     integer :: window_after = -1           !! number of revolutions made when the window began; -1: it has not begun
     real(dp) :: window_start = huge(1.0_dp)   !! [s]
     real(dp) :: t = 0                      !! time at which the crank completed the last revolution [s]
-    integer, private :: forcing = 1        !! period of the excitation [revolutions]
-    integer, private :: made = 0           !! number of complete revolutions
+    integer :: forcing = 1                 !! period of the excitation [revolutions]
+    integer :: made = 0           !! number of complete revolutions
     integer, private :: earlier = 0        !! number of revolutions before the beginning
     integer, allocatable, private :: at(:)       !! indices of the components that are compared
     real(dp), allocatable, private :: smallest_range(:)
     real(dp), allocatable, private :: turning(:)  !! 1 for an angle that grows with the crank angle, which is subtracted from it;
                                                   !! else 0
+    logical, allocatable, private :: is_slow(:)   !! temperatures
     real(dp), allocatable, private :: states(:, :), low(:, :), high(:, :)  !! states and ranges of revolution k, in column mod(k,
                                                                            !! depth)
     real(dp), private :: times(0:depth - 1) = 0
@@ -51,6 +52,9 @@ module period_watch
     procedure :: record_point
     procedure :: end_revolution
     procedure :: change
+    procedure :: fast_change
+    procedure :: range_of
+    procedure :: restate
   end type period_watch_t
 
 contains
@@ -68,6 +72,10 @@ contains
     call scene%layout%natural_scales(scales, growing)
     self%smallest_range = least_range*scales(self%at)
     self%turning = merge(1.0_dp, 0.0_dp, growing(self%at))
+    allocate (self%is_slow(size(self%at)), source=.false.)
+    do i = 1, size(scene%joints)
+      if (allocated(scene%joints(i)%heat)) where (self%at == scene%joints(i)%heat%at%first) self%is_slow = .true.
+    end do
     self%forcing = scene%forced_revolutions()
     self%earlier = int(abs(scene%crank_angle(t, y) - scene%start_angle)/two_pi)
     allocate (self%states(size(self%at), 0:depth - 1), source=0.0_dp)
@@ -139,6 +147,42 @@ contains
       change = max(change, maxval(abs(self%states(:, mod(k, depth)) - self%states(:, mod(k - p, depth)))/range))
     end do
   end function change
+
+  !> Largest difference of the state from that p revolutions earlier, without the temperatures, over the range of each component in
+  !> the last p revolutions; large if the run is too short.
+  pure real(dp) function fast_change(self, p) result(change)
+    class(period_watch_t), intent(in) :: self
+    integer, intent(in) :: p
+    real(dp) :: range(size(self%at))
+    integer :: k
+    change = huge(change)
+    if (self%made - p < 1) return   ! the start is not stored
+    range = self%smallest_range
+    do k = self%made - p + 1, self%made
+      range = max(range, self%high(:, mod(k, depth)) - self%low(:, mod(k, depth)))
+    end do
+    associate (now => self%states(:, mod(self%made, depth)), then => self%states(:, mod(self%made - p, depth)))
+      change = maxval(abs(now - then)/range, .not. self%is_slow)
+    end associate
+  end function fast_change
+
+  !> Least range of the component of the state with this index.
+  pure real(dp) function range_of(self, index)
+    class(period_watch_t), intent(in) :: self
+    integer, intent(in) :: index
+    range_of = self%smallest_range(findloc(self%at, index, 1))
+  end function range_of
+
+  !> The state at the end of the last revolution has been changed.
+  subroutine restate(self, y, crank_angle)
+    class(period_watch_t), intent(inout) :: self
+    real(dp), intent(in) :: y(:), crank_angle
+    integer :: next
+    next = mod(self%made + 1, depth)
+    self%states(:, mod(self%made, depth)) = y(self%at) - self%turning*crank_angle
+    self%low(:, next) = self%states(:, mod(self%made, depth))
+    self%high(:, next) = self%low(:, next)
+  end subroutine restate
 
   !> Search the shortest period of the stored states.
   subroutine look_for_period(self)

@@ -152,7 +152,7 @@ contains
     end do
     call self%guide%search(method, scene, t, now, self%figures)
     call self%elastic%search(method, scene, t, now, self%figures%elastic)
-    call self%train%search(scene, t, now)
+    call self%train%search(scene, t, now, present(cycles))
     if (present(cycles)) call cycles%search_machine(method, scene, t, now)
   end subroutine search
 
@@ -189,6 +189,7 @@ contains
         associate (figures => f%pin(self%pins(i)%pin), joint => scene%joints(self%pins(i)%joint))
           if (self%pins(i)%is_touching(scene)) figures%contact_time = figures%contact_time + (t - f%time)
           if (joint%integrates_friction) figures%friction_work = joint%work_of_friction(y)
+          if (allocated(joint%heat)) figures%heat = joint%heat%totals(y)
         end associate
       end do
       call self%guide%add_time(scene, t - f%time, f)

@@ -4,6 +4,7 @@ module run_figures
   use run_state, only: run_state_t
   use joint_places, only: n_places
   use piston_guide, only: n_corners
+  use film_heat, only: heat_totals_t
   implicit none
   private
   public :: run_figures_t, pin_figures_t, elastic_figures_t
@@ -25,6 +26,7 @@ module run_figures
     real(dp) :: film_volume = 0               !! volume of oil that has left the film at its ends [m^3]
     real(dp) :: max_film_pressure = 0         !! [Pa]
     real(dp) :: friction_work = huge(1.0_dp)  !! work of the friction forces on the bodies so far [J]; huge: not integrated
+    type(heat_totals_t) :: heat               !! of its film
   contains
     procedure :: declare => declare_pin
   end type pin_figures_t

@@ -14,6 +14,7 @@ module run_recorder
   use revolutions, only: revolutions_t
   use period_watch, only: period_watch_t
   use cycle_watch, only: cycle_watch_t
+  use temperature_jumps, only: temperature_jumps_t
   use run_extremes, only: run_extremes_t
   use run_limits, only: run_limits_t
   use trace_sink, only: trace_sink_t, trace_event_t
@@ -34,7 +35,8 @@ module run_recorder
     type(revolutions_t) :: crank      !! revolutions, if they are followed
     type(cycle_watch_t), allocatable :: cycles     !! results of each revolution, if they are requested
     type(period_watch_t) :: periods   !! search for a periodic motion that ends the run
-    type(scene_t), allocatable :: scene_at_end     !! the scene at the end of that period
+    type(temperature_jumps_t) :: jumps             !! of films that heat up, in such a run
+    type(scene_t), allocatable :: scene_at_end     !! the scene at the end of that period, or at a jump
     real(dp), allocatable :: state_at_end(:)       !! the state then
     logical :: goes_on = .false.      !! the run goes on with the totals of another one
     logical :: has_left = .false.     !! the run is to end because the state of a row is outside the model
@@ -47,6 +49,7 @@ module run_recorder
     procedure :: step_accepted
     procedure :: event_accepted
     procedure :: event_handled
+    procedure :: jump
     procedure :: finish
     procedure :: row
   end type recorder_t
@@ -152,7 +155,8 @@ contains
     associate (f => self%extremes%figures)
       call self%limits%follow(f%time, f%crank_travel, method%statistics%evaluations)
     end associate
-    self%wants_to_stop = self%limits%over_budget .or. self%has_left .or. self%periods%has_ended .or. self%limits%turn_limit%is_over
+    self%wants_to_stop = self%limits%over_budget .or. self%has_left .or. self%periods%has_ended .or. self%jumps%is_due &
+      .or. self%limits%turn_limit%is_over
   end subroutine step_accepted
 
   !> Find the ends of revolutions in the last step, up to t_end, and whether the motion is periodic. If so, t_end may be moved to an
@@ -167,7 +171,10 @@ contains
       call crank%find_ends(method, scene, t_end)
       do k = 1, crank%n
         call self%periods%end_revolution(crank%t(k), crank%y(:, k), crank%angle(crank%ended - crank%n + k))
-        if (.not. self%periods%has_ended) cycle
+        if (self%periods%is_on .and. self%periods%window_after < 0 .and. .not. self%periods%has_ended) &
+          call self%jumps%consider(scene, self%periods, crank%y(:, k), &
+            method%settings%relative*abs(crank%y(:, k)) + method%settings%absolute)
+        if (.not. (self%periods%has_ended .or. self%jumps%is_due)) cycle
         t_end = crank%t(k)
         self%scene_at_end = scene
         self%state_at_end = crank%y(:, k)
@@ -287,7 +294,7 @@ contains
     type(evaluation_t) :: now
     logical :: in_domain
 
-    if (self%periods%has_ended .or. self%limits%turn_limit%is_over) return
+    if (self%periods%has_ended .or. self%limits%turn_limit%is_over .or. self%jumps%is_due) return
     select type (problem)
     class is (scene_t)
       call self%extremes%change_phases()
@@ -338,6 +345,20 @@ contains
     if (.not. is_found .or. (self%periods%keeps_one_more .and. self%periods%window_after < 0)) return
     call self%sink%accept_event(event)
   end subroutine record_event
+
+  !> Make the jumps of temperatures that are due, at the end of a revolution: the integration goes on with this scene from (t, y).
+  subroutine jump(self, scene, t, y)
+    class(recorder_t), intent(inout) :: self
+    type(scene_t), allocatable, intent(inout) :: scene
+    real(dp), intent(out) :: t, y(:)
+    call move_alloc(self%scene_at_end, scene)
+    t = self%crank%t(self%crank%n)
+    y = self%state_at_end
+    call self%jumps%make(scene, y)
+    call self%periods%restate(y, scene%crank_angle(t, y))
+    call self%extremes%change_phases()
+    self%wants_to_stop = .false.
+  end subroutine jump
 
   !> End the run at (t, y), and with it a revolution and a cycle of wear that are complete but for rounding. Writes the last row if
   !> rows are written at every step, or if rounding left out the last row of the grid.

@@ -12,6 +12,7 @@ module scene_builder
   use joint_events, only: may_touch, may_pass_static
   use load_elements, only: add_elements
   use train_builder, only: build_train, build_other_gas, axis_gravity
+  use film_heat, only: film_heat_t
   use clearance_joint, only: clearance_joint_t
   use scene_problem, only: scene_t
   use monotone_cubic, only: new_monotone_cubic
@@ -234,6 +235,7 @@ contains
     integer, intent(in) :: place   !! index in `places`
     logical, intent(in) :: makes_tables
     type(clearance_joint_t), intent(out) :: joint
+    type(film_heat_t) :: heat
     joint%start_eccentricity = case%initial%eccentricity(:, place)
     joint%start_rate = case%initial%eccentricity_rate(:, place)
     call joint%set_place(place)
@@ -242,6 +244,10 @@ contains
       joint%pin_radius = joint%bearing%pin_radius()
       call add_elements(wanted, case%integrator%relative_tolerance, makes_tables, joint)
       if (allocated(wanted%wear)) allocate (joint%wear, source=wanted%wear)
+      if (allocated(wanted%heat)) then
+        call heat%prepare(wanted%heat, wanted%oil)
+        call joint%heat_up(heat)
+      end if
       joint%reports_film = (wanted%reports_film .or. wanted%is_carried() .and. case%output%answers) .and. allocated(wanted%film)
     end associate
   end subroutine build_joint

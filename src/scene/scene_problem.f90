@@ -93,7 +93,7 @@ module scene_problem
     logical :: measures_loss = .false.   !! the last of them is the energy taken by the joints
     type(work_part_t), allocatable :: parts(:)   !! parts of the work, if they are told apart
     integer :: n_works = 0          !! number of them; the following ones are works in carried bearings, which no body feels
-    logical :: has_shared_loads = .false.   !! of these, film and contact act at the same time in a joint
+    logical :: clears_loads = .false.       !! the right-hand side needs all loads of a joint, also those that do not act
     integer :: other_part = 0       !! the part that is the whole work without that of the others; 0: none
     logical :: is_plain = .true.    !! rigid bodies, an ideal guide and a drive that does not vary
     logical :: may_stick = .false.  !! a joint has set-valued friction
@@ -296,7 +296,7 @@ contains
     logical, intent(out) :: in_domain
     type(evaluation_t) :: now
     integer :: i
-    if (self%has_shared_loads) then
+    if (self%clears_loads) then
       do i = 1, self%n_joints
         call clear_loads(now%joint(i))
       end do
@@ -316,6 +316,7 @@ contains
     do i = 1, size(self%carried)
       associate (it => self%carried(i))
         dydt(it%place%first:it%place%last) = now%joint(it%joint)%eccentricity_rate
+        if (allocated(self%joints(it%joint)%heat)) call self%joints(it%joint)%set_heat_rates(now%joint(it%joint), y, dydt)
       end associate
     end do
     if (allocated(self%guide)) call self%guide%set_rates(now%motion%tilting, now%accelerations%offset, now%accelerations%tilt, &
@@ -323,7 +324,7 @@ contains
     if (allocated(self%chain%elastic)) call self%chain%elastic%set_rates(now%motion, now%accelerations, dydt)
     if (allocated(self%chain%train)) call self%chain%train%set_rates(now%motion, now%accelerations, dydt)
     do i = 1, self%n_joints
-      if (self%joints(i)%has_own_rates) call self%joints(i)%set_own_rates(now%joint(i), dydt)
+      if (self%joints(i)%has_own_rates) call self%joints(i)%set_own_rates(now%joint(i), y, dydt)
     end do
     if (allocated(self%parts)) call set_work_rates(self, y, now, dydt)
     if (self%measures%last < self%measures%first) return
@@ -501,6 +502,7 @@ contains
     call claim_states(self)
     call self%layout%count_again()
     call claim_states(self)
+    self%clears_loads = any([(allocated(self%joints(i)%heat), i=1, self%n_joints)])
     self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying) &
       .or. allocated(self%chain%train) .or. allocated(self%given_load))
     self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide) &

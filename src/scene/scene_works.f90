@@ -24,7 +24,7 @@ contains
         if (self%joints(i)%has_kind(kind)) call add(kind, i)
       end do
     end do
-    self%has_shared_loads = any([(self%joints(i)%shares_load(), i=1, self%n_joints)])
+    self%clears_loads = self%clears_loads .or. any([(self%joints(i)%shares_load(), i=1, self%n_joints)])
     call choose_other_part(self)
     do i = 1, size(self%parts)
       if (i == self%other_part .or. is_constant_torque(self) .and. self%parts(i)%what == by_drive) cycle

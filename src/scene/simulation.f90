@@ -188,13 +188,17 @@ contains
     real(dp), intent(in) :: t
     integer, intent(in) :: most_steps
     real(dp) :: until
+    logical :: jumps
     if (.not. (self%has_ended .or. self%is_over)) then
       do
         call accept_inputs(self, t)
         until = min(t, self%ramp_end)
         call self%integration%go_to(self%scene, self%method, self%recorder, until, most_steps)
+        jumps = self%recorder%jumps%is_due
+        if (jumps) call jump(self)
         self%t = self%integration%t
         if (self%integration%is_kept) self%t = until
+        if (jumps .and. most_steps == 0 .and. .not. self%integration%is_over) cycle
         if (self%integration%is_over .or. most_steps > 0 .or. .not. until < t .or. self%t < until) exit
       end do
       if (self%integration%is_over) call conclude(self)
@@ -206,6 +210,14 @@ contains
       if (most_steps > 0) return
     end do
   end subroutine advance
+
+  !> Let temperatures of films jump, and go on from there.
+  subroutine jump(self)
+    class(run_t), intent(inout) :: self
+    real(dp) :: t, y(self%scene%n)
+    call self%recorder%jump(self%scene, t, y)
+    call self%integration%go_on_from(self%scene, self%method, t, y)
+  end subroutine jump
 
   !> Set input i of the run, which changes at the beginning of the next advance: to this value and held there, or linearly to this
   !> value at the end of that advance. The value that it has changes nothing.

@@ -7,6 +7,7 @@ module stop_reason
   use ode_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached
   use scene_problem, only: scene_t, evaluation_t, phase_free
   use joint_places, only: in_order
+  use film_heat, only: hottest
   implicit none
   private
   public :: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, &
@@ -37,6 +38,8 @@ contains
     case (tolerance_too_small)
       text = 'tolerance below the rounding of the state'
     case (left_domain, start_outside)
+      text = hot_film_reason(scene, y)
+      if (text /= '') return
       text = 'the state left the range of the model ('//leaving_pin(scene, y)//' left its bearing or its film)'
       if (scene%chain%has_elastic_rod()) text = text(:len(text) - 1)// &
         ', or the elastic rod bent or stretched beyond the validity of its equations)'
@@ -61,6 +64,21 @@ contains
       text = 'stopped'
     end select
   end function reason
+
+  !> Text that says that a film has left the range of temperatures, or an empty one.
+  function hot_film_reason(scene, y) result(text)
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: y(:)
+    character(len=:), allocatable :: text
+    real(dp), parameter :: close = 1   !! to the limit [K]
+    integer :: i
+    text = ''
+    do i = 1, size(scene%joints)
+      if (.not. allocated(scene%joints(i)%heat)) cycle
+      if (scene%joints(i)%heat%temperature(y) > hottest - close) text = 'the film of the '//joint_name(scene, i)//' reached '// &
+        short_text(hottest, 3)//' K: no steady state; more side_flow or conductance'
+    end do
+  end function hot_film_reason
 
   !> Number of turns that the crank has made, as a text, in a scene that counts them.
   function turns_text(scene, t, y) result(text)
@@ -126,6 +144,8 @@ contains
     real(dp), intent(in) :: t, y(:)
     character(len=:), allocatable :: text
     real(dp), parameter :: appreciable = 0.01_dp
+    text = hot_film_reason(scene, y)
+    if (text /= '') return
     if (scene%is_singular(y)) then
       text = ill_posed_text(scene, y)
     else if (settings%tolerance <= tight_tolerance) then
