@@ -87,6 +87,7 @@ Fortran tests of single models|fpm @strict --target units
 force tables of films|tests/test_film_tables.py
 command line|tests/test_program.sh
 bearing cases|python3 tests/test_bearing_cases.py
+bearings under load|python3 tests/test_bearings.py
 build scripts|tests/test_build.sh
 states and runs that go on from them|tests/test_state_file.py
 layers, linters|tests/test_layers.py
@@ -94,6 +95,7 @@ failures of the machine|tests/test_faults.py --kills 10
 heat and work of the gas|.venv/bin/python tests/test_gas.py
 several cylinders|.venv/bin/python tests/test_cylinders.py
 heating of films|.venv/bin/python tests/test_film_heat.py
+statistics of columns|.venv/bin/python tests/test_column_statistics.py
 END
   $all && cat <<'END'
 independent judge of runs|tests/test_judge.py

@@ -314,6 +314,69 @@ def refusals(runs: Runs) -> None:
           "a film without steady state ends the run", f"{outcome.returncode} {outcome.stderr}")
 
 
+def carried(runs: Runs) -> None:
+    """Quasi-static bearings against an independent program: a film that warms under a steady load, and one settled by jumps."""
+    bearing = """&bearing_load table='one.csv', period_deg=360 /
+&initial crank_speed=314.1592653589793 /
+&joint kind='quasi_static', clearance=3e-05, bearing_radius=0.02503, bearing_length=0.02 /
+&lubrication law='finite_bearing', variant='short', viscosity_law='walther', temperature=353.15, known_temperatures=313.15,373.15,
+  known_viscosities=0.0001,1.14e-05, density=884.0 /
+&heat heat_capacity=2.0, inlet_temperature=353.15, conductance=5.0, housing_temperature=343.15 /
+&integrator revolutions=50, relative_tolerance=1e-10 /
+&output samples_per_revolution=2, digits=17, columns='time, standard, film_power, film_side_flow, max_film_pressure' /
+"""
+    (runs.folder / "one.csv").write_text("crank_angle[deg],load[N]\n0,4000\n180,4000\n")
+    rows, _ = runs.run(bearing, "steady")
+    wanted = pd.read_csv(TOP / "data" / "bearing" / "steady_heat.csv").rename(columns=lambda column: column.split("[")[0])
+    for name in wanted:
+        wrong = np.abs(rows[name].to_numpy()[:len(wanted)] - wanted[name].to_numpy()).max()
+        limit = 1e-8 if name == "film_temperature" else 2e-9 * max(np.ptp(wanted[name]), np.abs(wanted[name]).max())
+        check(wrong <= limit, f"steady load, film that warms, {name}", f"{wrong:.1e}")
+    facts = pd.read_csv(TOP / "data" / "bearing" / "facts.csv").groupby("case")
+    facts = {case: dict(zip(group["quantity"], group["value"], strict=True)) for case, group in facts}
+    # settled: the temperature by jumps, and the same far from its start
+    for start in (353.15, 420.0):
+        _, summary = runs.run(bearing, "settled", "run.until=periodic", "integrator.revolutions=0", "heat.heat_capacity=40",
+                              f"lubrication.temperature={start}", "run.periodic_tolerance=1e-7")
+        fixed = facts["steady_heat, settled (closed form)"]
+        wrong = abs(summary["cycle_mean_film_temperature"] - fixed["cycle_mean_film_temperature"])
+        check(wrong < 1e-8, f"closed fixed point of the temperature, from {start} K", f"{wrong:.1e} K")
+        for name in ("cycle_max_eccentricity_ratio", "cycle_mean_film_power", "cycle_mean_film_side_flow", "cycle_heat_to_oil",
+                     "cycle_heat_to_housing"):
+            check(abs(summary[name] / fixed[name] - 1) < 1e-8, f"closed fixed point, {name}", str(summary[name]))
+    # near the fixed point the true time constant is 2.8 s with C = 40 J/K, below C/(rho c_p Q + G) = 3.6 s
+    rows, _ = runs.run(bearing, "relaxes", "heat.heat_capacity=40", "lubrication.temperature=361.0", "integrator.revolutions=100")
+    away = rows["film_temperature"].to_numpy() - fixed["cycle_mean_film_temperature"]
+    constant = (rows["time"].iloc[-1] - rows["time"].iloc[40]) / np.log(away[40] / away[-1])
+    check(abs(constant - 2.8) < 0.06, "time constant", f"{constant:.3f} s")
+    case = (TOP / "cases" / "bearings" / "big_end_heat.nml").read_text()
+    for tolerance, limit, relative in (("1e-4", 2e-6, 2e-7), ("1e-7", 3e-8, 2e-8)):
+        rows, summary = runs.run(case, "big_end_heat", "integrator.relative_tolerance=1e-10", f"run.periodic_tolerance={tolerance}",
+                                 "output.digits=17", "output.window=last_period")
+        for name, value in facts["big_end_heat"].items():
+            if name == "film_temperature at 0 deg":
+                found = rows["crank_pin_film_temperature"].iloc[0]
+                check(abs(found - value) < limit, "settled temperature at 0 degrees", f"{found - value:.1e} K")
+            elif name != "cycle_mean_load":
+                found = summary[f"crank_pin_{name}"]
+                bound = limit if "temperature" in name else 2e-3 if name.endswith("angle") else relative * abs(value)
+                check(abs(found - value) < bound, f"big end that heats up, {name}", f"{found} {value}")
+        check(summary["periodic_after"] <= 2 * 16, "settled within 16 cycles", str(summary["periodic_after"]))
+        check(summary.get("method_switches", 0) == 0, "auto stays explicit")
+    # thinning, closed forms: the load, from near the angle of the fixed point
+    closed = pd.read_csv(TOP / "data" / "bearing" / "closed.csv")
+    for row in closed[closed.iloc[:, 0].str.contains("thinning")].itertuples(index=False):
+        eps, load, speed, angle = row[1], row[2], row[3], np.radians(row[6])
+        text = bearing.replace("viscosity_law='walther', temperature=353.15, known_temperatures=313.15,373.15,", "viscosity=0.011,")
+        text = "\n".join(line for line in text.split("\n") if not line.startswith("&heat")).replace(
+            "known_viscosities=0.0001,1.14e-05, density=884.0", "thinning_ratio=0.5, thinning_rate=2e5")
+        text = text.replace("bearing_radius=0.02503, bearing_length=0.02", "bearing_radius=0.02003, bearing_length=0.016")
+        rows, _ = runs.run(text, "thin_steady", f"initial.crank_speed={speed}", f"bearing_load.factor={load / 4000!r}",
+                           "integrator.revolutions=30", f"initial.eccentricity={3e-5 * eps * np.cos(angle)},{3e-5 * eps * np.sin(angle)}")
+        check(abs(rows["eccentricity_ratio"].iloc[-1] / eps - 1) < 1e-9, f"eccentricity of a film that thins, {eps}",
+              str(rows["eccentricity_ratio"].iloc[-1]))
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", type=Path, help="the program; default: the release build")
@@ -322,7 +385,7 @@ def main() -> int:
     program = (options.program or release_program()).resolve()
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(program, Path(folder))
-        for part in (balance, other_elements, settled, halves, thinning, refusals):
+        for part in (balance, other_elements, settled, halves, thinning, carried, refusals):
             if not options.parts or part.__name__ in options.parts:
                 part(runs)
     return assertions.report()

@@ -20,14 +20,23 @@ import time
 import urllib.error
 import urllib.request
 from pathlib import Path
+from types import SimpleNamespace
 
 from assertions import Assertions
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts" / "bench"))
+
+from measured import use_virtual_environment
+
+use_virtual_environment()
+
+from gudgeon.report.answers import lines, unsettled
 
 TOP = Path(__file__).resolve().parents[1]
 
 #: A film without contact, a film with contacts and gas, dry contact, a piston with clearance in its bore (with clearance at the
-#: pin, with ideal pins), an ideal joint, dry contact with an elastic rod, clearance at both pins.
-CASES = ("sim_I", "sim_V_oscillating", "dry_0500um", "piston_slap", "slider_clearance", "ideal", "dry_friction", "both_pins")
+#: pin, with ideal pins), an ideal joint, dry contact with an elastic rod, clearance at both pins, a crank pin whose film heats up.
+CASES = ("sim_I", "sim_V_oscillating", "dry_0500um", "piston_slap", "slider_clearance", "ideal", "dry_friction", "both_pins", "heat")
 
 LARGEST_PAGE = 6_000_000  # bytes
 
@@ -49,6 +58,10 @@ blank.width = c.width; blank.height = c.height; return c.toDataURL() !== blank.t
 
 #: The image on a canvas.
 IMAGE = "return document.getElementById(arguments[0]).toDataURL()"
+
+#: Chooses the abscissa of the plots, and whether the last cycle is shown alone.
+CHOOSE = """for (const [id, key, value] of [['abscissa', 'value', arguments[0]], ['last-cycle', 'checked', arguments[1]]]) {
+const e = document.getElementById(id); e[key] = value; e.dispatchEvent(new Event('change', {bubbles: true})); }"""
 
 #: Moves a slider as a user would.
 MOVE = """const e = document.getElementById(arguments[0]); e.value = arguments[1];
@@ -205,6 +218,23 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
         "gudgeon.charts.filter(c => c.timed).every(c => Math.abs(c.div.layout.xaxis.range[1] - 2) < 1e-9)", 10
     )
     checks.check(linked, f"{name}: time axes zoom together")
+    cycle = browser.run("return gudgeon.scene.cycle")
+    browser.run(CHOOSE, "angle", bool(cycle))
+    titled = "gudgeon.charts.filter(c => c.timed).every(c => c.div.layout.xaxis.title.text === 'crank angle [deg]')"
+    checks.check(browser.wait(titled, 30), f"{name}: plots over the crank angle")
+    ends = browser.run("const x = gudgeon.charts.find(c => c.timed).div.data[0].x; return [x[0], x[x.length - 1]]")
+    if cycle:
+        turned = ends[1] - ends[0]
+        checks.check(0.95 * cycle["degrees"] < turned < 1.01 * cycle["degrees"] and -1 < ends[0] < cycle["degrees"],
+                     f"{name}: the last cycle alone, {ends} of {cycle}")
+    browser.run(CHOOSE, "time", False)
+    titled = titled.replace("crank angle [deg]", "time [ms]")
+    checks.check(browser.wait(titled, 30), f"{name}: plots over time again")
+    rows = browser.run("return gudgeon.charts.find(c => c.timed).div.data[0].x.length")
+    checks.check(rows == browser.run("return gudgeon.scene.rows"), f"{name}: all rows again")
+    answers = browser.run("return [...document.querySelectorAll('#answers tr')].map(r => r.textContent)")
+    checks.check(4 <= len(answers) <= 12, f"{name}: answers: {answers}")
+    checks.check(browser.run("return document.querySelector('section').id") == "answers", f"{name}: answers come first")
     messages = browser.messages()
     checks.check(not messages, f"{name}: console: {messages}")
     if pictures:
@@ -216,6 +246,27 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
         browser.screenshot(pictures / f"{name}_plots.png")
         browser.run("document.querySelector('.tables').scrollIntoView()")
         browser.screenshot(pictures / f"{name}_tables.png")
+
+
+def check_answers(checks: Assertions) -> None:
+    """The answers are the values of the summary, in the units of an engineer."""
+    rows = {"min_film_thickness": ("1e-6", "m"), "cycle_start": ("0", "s"), "cycle_revolutions": ("2", "1"),
+            "cycle_min_film_thickness": ("2.5e-6", "m"), "cycle_min_film_thickness_angle": ("643.25", "deg"),
+            "cycle_mean_film_power": ("100", "W"), "cycle_mean_friction_power": ("20", "W"), "cycle_max_force": ("1234.5", "N"),
+            "crank_pin_min_film_thickness": ("3e-6", "m"), "crank_pin_cycle_mean_film_temperature": ("373.15", "K"),
+            "crank_pin_cycle_mean_film_side_flow": ("1e-6", "m3/s"), "cycle_imep": ("9.8e5", "Pa"), "cycle_bmep": ("9.7e5", "Pa"),
+            "cycle_fmep": ("1e4", "Pa"), "cycle_mean_crank_speed": ("314.159265358979", "rad/s"), "cycle_is_settled": ("no", ""),
+            "film_thickness_change": ("0.65", "1")}
+    places, ours, others = lines(SimpleNamespace(summary=rows))
+    said = {name: texts for name, texts in ours} | {name: [text] for name, text in others}
+    wanted = {"Thinnest film": ["2.5 µm at 643.2°", "3 µm"], "Largest force": ["1.234 kN", ""], "Mean loss": ["120 W", ""],
+              "Film temperature": ["", "100 °C"], "Oil flow": ["", "60 cm³/min"], "Crank speed": ["3000 rpm"],
+              "Mean effective pressures": ["IMEP 9.8, BMEP 9.7, FMEP 0.1 bar"]}
+    checks.check(places == ["piston pin", "crank pin"], f"bearings with answers: {places}")
+    checks.check(said == wanted, f"answers: {said}")
+    checks.check(len(ours) + len(others) <= 10, "ten lines at most")
+    text = unsettled(SimpleNamespace(summary=rows))
+    checks.check("piston pin changes by 65 %" in text and "run.until=periodic" in text, f"a motion that has not settled: {text}")
 
 
 def main() -> int:
@@ -231,6 +282,7 @@ def main() -> int:
     if options.screenshots:
         options.screenshots.mkdir(parents=True, exist_ok=True)
     checks = Assertions()
+    check_answers(checks)
     with tempfile.TemporaryDirectory() as work:
         pages = options.page
         for case in CASES if not pages else ():

@@ -58,7 +58,14 @@ study tables <<'END'
 &study case = 'base.nml', table = 'tables.csv' /
 END
 printf 'joint.clearance\n1e-5\n20 um\n' >"$work/tables.csv"
-refused "a unit in a table" 3 "tables.csv:3: column 1, joint.clearance = 20 um: must be a number without unit" "$work/tables.nml"
+run sweep -o "$work/units" "$work/tables.nml"
+check "a table with units, status $status" [ "$status" = 0 ]
+mv "$work/units/tables.runs.csv" "$work/with_units.csv"
+printf 'joint.clearance\n1e-5\n2e-5\n' >"$work/tables.csv"
+run sweep -o "$work/units" "$work/tables.nml"
+check "a table with units is the table in SI" cmp -s "$work/with_units.csv" "$work/units/tables.runs.csv"
+printf 'joint.clearance\n1e-5\n20 K\n' >"$work/tables.csv"
+refused "a unit of another kind in a table" 3 "tables.csv:3: column 1, joint.clearance = 20 K: K is a temperature; clearance is a length (m, km" "$work/tables.nml"
 
 # parts
 run sweep -o "$work/parts" --rows 1:5 "$work/grid.nml"

@@ -4,6 +4,7 @@ module short_bearing
   use constants, only: pi
   use film_law, only: film_motion_t, angles_of_film
   use finite_bearing, only: finite_bearing_t
+  use root_search, only: bracket_t, next_abscissa, narrow
   implicit none
   private
   public :: short_bearing_t
@@ -67,8 +68,8 @@ contains
     class(short_bearing_t), intent(in) :: self
     real(dp), intent(in) :: eps_squared, b, t
     real(dp), intent(out) :: most, flow
-    real(dp) :: speed, eps, gap, alpha, lower, upper, phi
-    integer :: i
+    type(bracket_t) :: bracket
+    real(dp) :: speed, eps, gap, alpha, lower, phi
     most = 0
     speed = sqrt(b**2 + t**2)
     flow = 4*self%half_length*speed
@@ -77,17 +78,23 @@ contains
     gap = (1 - eps_squared)/(1 + eps)
     alpha = atan2(abs(t), b)
     lower = max(alpha - 0.5_dp*pi, 0.0_dp)
-    upper = alpha
-    do i = 1, 200   ! bisection until the interval cannot be divided
-      phi = 0.5_dp*(lower + upper)
-      if (.not. (phi > lower .and. phi < upper)) exit
-      if ((gap + 2*eps*sin(0.5_dp*phi)**2)*sin(phi - alpha) + 3*eps*sin(phi)*cos(phi - alpha) < 0) then
-        lower = phi
-      else
-        upper = phi
-      end if
+    bracket = bracket_t(lower, alpha, fall(lower), fall(alpha), 0, alpha - lower)
+    do
+      phi = next_abscissa(bracket)
+      if (.not. (phi > bracket%a .and. phi < bracket%b)) exit
+      call narrow(bracket, phi, fall(phi))
+      if (.not. bracket%fb > 0) exit
     end do
+    phi = bracket%b
     most = speed*6*self%half_length**2*cos(phi - alpha)/(gap + 2*eps*sin(0.5_dp*phi)**2)**3
+
+  contains
+
+    !> -H^4 dP/dphi over 6 lambda^2.
+    pure real(dp) function fall(phi)
+      real(dp), intent(in) :: phi
+      fall = (gap + 2*eps*sin(0.5_dp*phi)**2)*sin(phi - alpha) + 3*eps*sin(phi)*cos(phi - alpha)
+    end function fall
   end subroutine reduced_peak_and_flow
 
   !> Q = 2 R L |v*|.

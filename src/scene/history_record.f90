@@ -15,9 +15,9 @@ module history_record
   private
   public :: history_record_t
 
-  integer, parameter :: n_values = 9
+  integer, parameter :: n_values = 10
   integer, parameter :: of_time = 1, of_angle = 2, of_speed = 3, of_x = 4, of_y = 5, of_load_x = 6, of_load_y = 7, &
-    of_thickness = 8, of_pressure = 9
+    of_thickness = 8, of_pressure = 9, of_viscosity = 10
 
   type :: history_record_t
     integer :: place = 0                       !! index in `places`
@@ -77,6 +77,7 @@ contains
       row(of_thickness) = -it%penetration
       film = joint%film_figures(it)
       row(of_pressure) = film%max_pressure
+      row(of_viscosity) = it%viscosity_ratio
     end associate
   end subroutine add
 
@@ -103,7 +104,7 @@ contains
     end do
   end function first_row
 
-  !> March the film over the last cycle. `watch` receives its progress and may stop it. Errors (status_integration): the run has no
+  !> March the film over the last cycle, with the mean viscosity of the run there. `watch` receives its progress and may stop it. Errors (status_integration): the run has no
   !> whole cycle; the film cannot be marched; `watch` stopped it.
   subroutine march(self, watch, error)
     class(history_record_t), intent(inout) :: self
@@ -128,6 +129,7 @@ contains
       self%angle = kept(of_angle, 2:)
       self%quick_thickness = kept(of_thickness, 2:)
       self%quick_pressure = kept(of_pressure, 2:)
+      self%history%viscosity = self%history%viscosity*sum(kept(of_viscosity, 2:))/size(self%angle)   ! as warm as in the run
     end associate
     call self%history%march(self%duty, error, watch)
     if (allocated(error)) error%message = 'film_history: '//error%message

@@ -149,7 +149,7 @@ contains
   end function change
 
   !> Largest difference of the state from that p revolutions earlier, without the temperatures, over the range of each component in
-  !> the last p revolutions; large if the run is too short.
+  !> the last p revolutions and at least its natural size, since it follows the temperatures; large if the run is too short.
   pure real(dp) function fast_change(self, p) result(change)
     class(period_watch_t), intent(in) :: self
     integer, intent(in) :: p
@@ -157,7 +157,7 @@ contains
     integer :: k
     change = huge(change)
     if (self%made - p < 1) return   ! the start is not stored
-    range = self%smallest_range
+    range = self%smallest_range/least_range
     do k = self%made - p + 1, self%made
       range = max(range, self%high(:, mod(k, depth)) - self%low(:, mod(k, depth)))
     end do

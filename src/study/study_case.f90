@@ -11,7 +11,7 @@ module study_case
   use case_loader, only: load_case
   use case_rules, only: check_rules
   use case_notes, only: note_case
-  use value_reader, only: read_value => convert, has_unit
+  use value_reader, only: read_value => convert, convert_list
   use namelist_reader, only: token_t
   implicit none
   private
@@ -31,6 +31,7 @@ module study_case
     procedure :: set_values
     procedure :: set_number
     procedure :: load
+    procedure :: take_units
     procedure :: convert
     procedure :: check
   end type study_case_t
@@ -120,6 +121,21 @@ contains
     call load_case(self%values, self%case, self%groups)
   end subroutine load
 
+  !> Replace numbers with units by numbers in the units of their keys, as the rows of the results have them, in values that `convert`
+  !> accepts.
+  subroutine take_units(self, texts)
+    class(study_case_t), intent(in) :: self
+    character(len=*), intent(inout) :: texts(:)   !! of the parameters
+    character(len=:), allocatable :: text, wanted
+    integer :: i
+    do i = 1, size(texts)
+      if (.not. self%is_number(i)) cycle
+      text = trim(texts(i))
+      call convert_list(text, self%values%keys(self%places(i)), wanted)
+      texts(i) = text
+    end do
+  end subroutine take_units
+
   !> Convert the value of parameter i, which `set_values` sets in the case. Error: a text that is not a value of its key; the
   !> message does not name the key.
   subroutine convert(self, i, text, error)
@@ -132,9 +148,10 @@ contains
     associate (place => self%places(i))
       if (self%is_number(i)) then
         token%text = text
-        if (has_unit(text)) call fail(error, 'must be a number without unit', status_case_file)   ! in a table
-        if (allocated(error)) return
-        call read_value(self%values%keys(place), token, self%values%values(place), 1, wanted)
+        call convert_list(token%text, self%values%keys(place), wanted)
+        if (allocated(wanted)) wanted = wanted(index(wanted, ': ') + 2:)   ! without the text itself
+        if (.not. allocated(wanted)) &
+          call read_value(self%values%keys(place), token, self%values%values(place), 1, wanted)
         self%values%values(place)%written(1) = text
         if (allocated(wanted)) call fail(error, wanted, status_case_file)
       else

@@ -36,6 +36,7 @@ module study_definition
     logical :: cycles = .false.                     !! write the statistics of every revolution too
     real(dp) :: strobe_angle_deg = 0
     character(len=:), allocatable :: strobe_columns !! columns sampled once per revolution; empty: none
+    character(len=:), allocatable :: statistics     !! statistics of columns, separated by commas; empty: none
     integer :: strobe_cycles = 0                    !! number of samples in a run; 0: no limit
     type(parameter_t), allocatable :: varied(:)
     character(len=:), allocatable :: resolved       !! study file with all defaults, which gives the same study
@@ -74,6 +75,9 @@ contains
       'case: each run starts as its case says; previous: with the motion at the end of the run before it, at t = 0')
     call list%word('traces', self%traces, 'none, all, failed', 'none', 'runs whose trace is written to NAME/RUN.csv')
     call list%add('cycles', self%cycles, 'also write the statistics of each revolution to NAME.cycles.csv', '.false.')
+    call list%text('statistics', self%statistics, &
+      'statistics of any columns over the last cycle: min, max, max abs, range, mean or rms; e.g. ''max abs guide_force''', &
+      '', .true.)
     call list%add('strobe_angle_deg', self%strobe_angle_deg, &
       'crank angle at which the strobe columns are recorded, once in each revolution', 'degrees', default='0.0')
     call list%text('strobe_columns', self%strobe_columns, 'columns of NAME.strobe.csv; empty: the file is not written', '', .true.)

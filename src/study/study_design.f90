@@ -44,7 +44,7 @@ contains
       if (allocated(error)) error%message = printable(study%file, 200)//': &study table: '//error%message
       if (allocated(error)) return
       design%runs = design%table%rows
-      design%text_length = design%table%longest
+      design%text_length = max(design%table%longest, longest_number)
       allocate (design%keys, source=design%table%keys)
       return
     end if

@@ -8,6 +8,7 @@ module study_rows
   use trace_columns, only: column_list_t, column_name
   use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt
   use cycle_watch, only: cycle_watch_t
+  use column_statistics, only: statistic_t
   use simulation, only: run_report_t
   use result_notes, only: relative_residual
   use archard_wear, only: of_pin, of_bore
@@ -27,6 +28,7 @@ module study_rows
     logical :: has_guide = .false.       !! the study has columns of the piston in its bore
     logical :: has_wear = .false.        !! the study has columns of wear
     logical :: has_motion = .false.      !! the study has columns of the period or the Lyapunov exponent
+    type(statistic_t), allocatable :: statistics(:)   !! of columns, in the rows of runs
     type(number_writer_t) :: numbers
     character(len=:), allocatable :: prefix   !! place of the joint whose columns are put
   contains
@@ -93,10 +95,11 @@ contains
   end subroutine choose
 
   !> Header of NAME.runs.csv.
-  function run_header(keys, base, has_strobes) result(text)
+  function run_header(keys, base, has_strobes, statistics) result(text)
     character(len=*), intent(in) :: keys(:)
     type(case_t), intent(in) :: base
     logical, intent(in) :: has_strobes
+    type(statistic_t), intent(in) :: statistics(:)
     character(len=:), allocatable :: text
     type(study_row_t) :: row
     type(cycle_watch_t) :: no_watch
@@ -104,6 +107,7 @@ contains
     type(case_t) :: no_case
     row%is_header = .true.
     call row%choose(keys, base, has_strobes)
+    row%statistics = statistics
     call add_run(row, 0, keys, 'status', .false., 0, no_watch, no_report, no_case)
     text = row%text(:row%used)
   end function run_header
@@ -175,8 +179,29 @@ contains
     do i = 1, n_places
       if (row%has_wear .and. row%has_place(in_order(i))) call add_wear(row, report, in_order(i), is_done)
     end do
+    if (allocated(row%statistics)) call add_statistics(row, watch, report)
     call row%end_row()
   end subroutine add_run
+
+  !> Append the statistics of columns; a run that has reached its end has them, also without a whole revolution.
+  subroutine add_statistics(row, watch, report)
+    class(study_row_t), intent(inout) :: row
+    type(cycle_watch_t), intent(in) :: watch
+    type(run_report_t), intent(in) :: report
+    real(dp) :: value
+    logical :: is_done, is_known
+    integer :: i
+    is_done = allocated(report%status)
+    if (is_done) is_done = report%status == 'done'
+    do i = 1, size(row%statistics)
+      if (row%is_header) then
+        call row%add_text(trim(row%statistics(i)%name))
+        cycle
+      end if
+      call watch%find_statistic(i, merge(report%periods%period, report%periods%forcing, report%periods%period > 0), value, is_known)
+      call row%add_number(row%numbers, value, is_done .and. is_known)
+    end do
+  end subroutine add_statistics
 
   !> Append the columns of the worn surfaces of one joint: of the whole run, also of the revolutions that are not counted.
   subroutine add_wear(row, report, pin, is_done)

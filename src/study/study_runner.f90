@@ -235,7 +235,8 @@ contains
     type(sweep_t), intent(in) :: sweep
     integer, intent(in) :: kind
     character(len=:), allocatable :: text
-    if (kind == of_runs) text = run_header(sweep%design%keys, sweep%base%case, sweep%has_strobes)
+    if (kind == of_runs) text = run_header(sweep%design%keys, sweep%base%case, sweep%has_strobes, &
+      sweep%statistics)
     if (kind == of_cycles) text = cycle_header(sweep%design%keys, sweep%base%case)
     if (kind == of_strobes) text = strobe_header(sweep%strobe_list)
   end function header_of
@@ -253,7 +254,8 @@ contains
     if (self%is_over .or. .not. is_whole) return
     if (.not. allocated(self%worker)) then
       allocate (self%worker)
-      call self%worker%prepare(self%sweep%study, self%sweep%design, self%sweep%base, self%sweep%strobe_list, self%sweep%path)
+      call self%worker%prepare(self%sweep%study, self%sweep%design, self%sweep%base, self%sweep%strobe_list, &
+        self%sweep%statistics, self%sweep%path)
     end if
     associate (chunk => self%missing(task), worker => self%worker)
       do kind = 1, n_kinds

@@ -5,6 +5,7 @@ module study_sweep
   use text_tools, only: printable, integer_text, lowercase
   use checksums, only: checksum_t
   use version_number, only: program_version
+  use column_statistics, only: statistic_t, read_statistics
   use trace_columns, only: column_list_t, choose_columns
   use case_definition, only: case_t
   use case_file, only: read_case_values
@@ -29,6 +30,7 @@ module study_sweep
     type(study_design_t) :: design
     type(study_case_t) :: base
     type(column_list_t) :: strobe_list
+    type(statistic_t), allocatable :: statistics(:)
     character(len=:), allocatable :: path          !! of the results, without suffix
     integer :: first = 1, last = 0                 !! range of runs that are to be carried out
     logical :: has_strobes = .false.
@@ -97,6 +99,9 @@ contains
         call choose_columns(case, .false., sweep%strobe_list, error)
         if (allocated(error)) error%message = at//'strobe_columns: '//error%message
       end if
+      if (allocated(error)) return
+      call read_statistics(study%statistics, sweep%base%case, sweep%statistics, error)
+      if (allocated(error)) error%message = at//'&study statistics = '//error%message
       if (.not. allocated(error)) call keep_inputs(sweep, error)
       sweep%has_strobes = study%strobe_columns /= ''
     end associate

@@ -6,6 +6,7 @@ module study_worker
   use constants, only: degree
   use trace_columns, only: column_list_t, choose_columns
   use cycle_watch, only: cycle_watch_t
+  use column_statistics, only: statistic_t
   use film_files, only: provide_tables
   use simulation, only: run_t, run_report_t
   use whole_run, only: go_to_end
@@ -43,15 +44,17 @@ module study_worker
 contains
 
   !> Prepare a worker. `strobe_list` has no columns if there are no strobes; traces are written into `trace_folder`.
-  subroutine prepare(self, study, design, base, strobe_list, trace_folder)
+  subroutine prepare(self, study, design, base, strobe_list, statistics, trace_folder)
     class(study_worker_t), intent(inout) :: self
     type(study_t), intent(in) :: study
     type(study_design_t), intent(in) :: design
     type(study_case_t), intent(in) :: base
     type(column_list_t), intent(in) :: strobe_list
+    type(statistic_t), intent(in) :: statistics(:)
     character(len=*), intent(in) :: trace_folder
     self%base = base
     call self%run_row%choose(design%keys, base%case, size(strobe_list%id) > 0)
+    self%run_row%statistics = statistics
     call self%run_row%numbers%prepare(base%case%output%digits)
     self%cycle_rows = self%run_row
     self%strobe_rows = self%run_row
@@ -63,6 +66,7 @@ contains
     self%watch%settle = study%settle_cycles
     self%watch%keeps_cycles = study%cycles
     self%watch%strobe_list = strobe_list
+    self%watch%columns%wanted = statistics
     self%watch%strobe_angle = study%strobe_angle_deg*degree
     self%watch%most_strobes = study%strobe_cycles
     allocate (self%no_columns%id(0))
@@ -84,6 +88,7 @@ contains
     self%was_interrupted = .false.
     has_begun = .false.
     call design%get_values(number, self%values)
+    call self%base%take_units(self%values)
     call self%base%set_values(self%values, error)
     if (.not. allocated(error)) call self%base%check(error)
     if (.not. allocated(error)) then
@@ -132,6 +137,8 @@ contains
       self%base%case%initial%state = self%previous
       self%base%case%initial%goes_on = .false.
     end if
+    call self%watch%columns%prepare(self%base%case, error)
+    if (allocated(error)) return
     call run%begin(self%base%case, .false., list, sink, error, self%watch)
     if (allocated(error)) return
     call go_to_end(run, self%was_interrupted)

@@ -50,6 +50,8 @@ class Run:
     @property
     def cycle(self) -> float:
         """Crank angle after which the loads repeat [rad]: two revolutions with the gas of four strokes, else one."""
+        if "bearing_load" in self.case:
+            return np.radians(float(self.parameter("bearing_load", "period_deg")))
         one_turn = self.parameter("combustion", "cycle") in ("two_stroke", "compressor") or self.parameter("cylinder_pressure", "period_deg") == 360
         has_gas = "gas_force" in self or bool({"combustion", "cylinder_pressure"} & self.case.keys())
         return (4 if has_gas and not one_turn else 2) * np.pi

@@ -124,15 +124,15 @@ def fields_of(path: Path) -> list[pd.DataFrame]:
     return [field for _, field in table[table["joint"] == "piston_pin"].groupby("time", sort=True)]
 
 
-def from_fields(run: Run, fields: list[pd.DataFrame], angles: np.ndarray) -> np.ndarray:
-    """Pressure [Pa] in the middle plane of the bore at the angles from the eccentricity, interpolated linearly between the times of
-    a NAME.film.csv; 0 before the first and after the last."""
+def from_fields(run: Run, fields: list[pd.DataFrame], angles: np.ndarray, quantity: str = "pressure") -> np.ndarray:
+    """Pressure [Pa] or another column of a NAME.film.csv in the middle plane of the bore at the angles from the eccentricity,
+    interpolated linearly between its times; 0 before the first and after the last."""
     times = np.array([field["time"].iloc[0] for field in fields])
     lines = []
     for field in fields:
         line = field[field["place"] == field["place"].min()].sort_values("angle")
         thinnest = line["angle"].to_numpy()[np.argmin(line["film_thickness"].to_numpy())]
-        lines.append(np.interp(angles, line["angle"] - thinnest, line["pressure"], period=2 * np.pi))
+        lines.append(np.interp(angles, line["angle"] - thinnest, line[quantity], period=2 * np.pi))
     time = run["time"]
     place = np.clip(np.searchsorted(times, time, side="right"), 1, max(len(times) - 1, 1))
     if len(times) < 2:

@@ -8,6 +8,7 @@ import gzip
 import html
 import json
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from gudgeon.names import prefixed
 from gudgeon.plots import film_pressure
 from gudgeon.plots import wear as wear_pictures
 from gudgeon.plots.style import BLACK, BLUE, GREEN, PURPLE, VERMILION
+from gudgeon.report import answers
 from gudgeon.report import cycles as report_cycles
 from gudgeon.results import Run, numbered
 from plotly.offline import get_plotlyjs
@@ -88,6 +90,23 @@ OVER_TIME = (
     ("energy_residual", "Energy residual", "J", 1.0),
 )
 
+#: Plots over time of every bearing, by the part of their columns behind the place: title, unit shown, factor.
+OF_BEARINGS = (
+    ("eccentricity_ratio", "eccentricity over the clearance", "-", 1.0),
+    ("asperity_force", "force of the asperities", "kN", 1e-3),
+    ("friction_force", "friction", "N", 1.0),
+    ("film_temperature", "film temperature", "K", 1.0),
+    ("film_viscosity", "viscosity of the film", "mPa s", 1e3),
+    ("max_film_pressure", "largest film pressure", "MPa", 1e-6),
+    ("film_power", "power that the film takes", "W", 1.0),
+    ("film_side_flow", "oil flow out of the film", "cm³/s", 1e6),
+    ("film_moment", "moment of the oil shear", "N m", 1.0),
+    ("film_force", "film force", "kN", 1e-3),
+)
+
+#: Units of columns in a trace, and what a page shows: unit and factor.
+UNITS = {"m": ("µm", 1e6), "N": ("kN", 1e-3), "Pa": ("MPa", 1e-6), "Pa.s": ("mPa s", 1e3), "N.m": ("N m", 1.0)}
+
 #: Plots in which the run of the ideal joint has a plot of its own, because the quantity is a property of that run.
 APART = ("energy_residual",)
 
@@ -113,10 +132,31 @@ def chosen_rows(columns: list[np.ndarray], most: int = MOST_ROWS) -> np.ndarray:
 
 
 def with_sizes(run: Run) -> dict[str, np.ndarray]:
-    """The run's columns, and the magnitude of the pin's force."""
+    """The run's columns, and the magnitudes of the forces on the pins, the crank and in the films."""
     columns = {name: run[name] for name in run.trace.columns}
-    columns["pin_force"] = np.hypot(run["pin_force_x"], run["pin_force_y"])
+    for name in [name.removesuffix("_x") for name in columns if name.endswith("force_x")]:
+        if f"{name}_y" in columns:
+            columns[name] = np.hypot(run[f"{name}_x"], run[f"{name}_y"])
     return columns
+
+
+def over_time(columns: dict[str, np.ndarray], run: Run) -> list[tuple[str, str, str, float]]:
+    """The plots over time: those of every run, of every bearing, and of the columns that the case asks for by name."""
+    found = list(OVER_TIME)
+    if "crankpin_force" in columns:
+        found.insert(2, ("crankpin_force", "Crank pin force", "kN", 1e-3))
+    for pre, place in answers.PLACES:
+        named = "" if pre == "" and not any(other + "eccentricity_x" in columns for other, _ in answers.PLACES[1:]) else f"{place}: "
+        found += [(pre + name, (named + title).capitalize(), unit, factor) for name, title, unit, factor in OF_BEARINGS]
+        if pre not in ("", "crank_pin_"):
+            found.append((f"{pre}film_thickness", f"{place}: film thickness".capitalize(), "µm", 1e6))
+    known = {name for name, *_ in found} | {name for name in columns if name.endswith(("_x", "_y")) and name[:-2] in columns}
+    asked = [part.strip() for part in str(run.parameter("output", "columns", "")).split(",")]
+    for name in asked:
+        if name in columns and name not in known and name not in ("time", "crank_angle"):
+            unit, factor = UNITS.get(run.units.get(name, ""), (run.units.get(name, ""), 1.0))
+            found.append((name, name.replace("_", " ").capitalize(), unit, factor))
+    return found
 
 
 def is_informative(values: np.ndarray) -> bool:
@@ -126,7 +166,7 @@ def is_informative(values: np.ndarray) -> bool:
 def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
     """The plots of the page, in the form that its script expects: curves refer to columns by name."""
     found = []
-    for name, title, unit, factor in OVER_TIME:
+    for name, title, unit, factor in over_time(columns, run):
         if name not in columns or not is_informative(columns[name]):
             continue
         curves = [{"name": "this run", "x": "time", "x_factor": 1e3, "y": name, "y_factor": factor, "colour": BLUE}]
@@ -282,6 +322,26 @@ def film_columns(run: Run, rows: np.ndarray, fields: list[pd.DataFrame] | None =
     return np.rint(127 * levels).astype(np.int8), found.max(axis=1), bool((found < 0).any())
 
 
+def oil_of(run: Run, rows: np.ndarray, fields: list[pd.DataFrame] | None) -> np.ndarray | None:
+    """Part of the gap that oil fills, as bytes (rows, angles), of a film with memory; None of other films."""
+    if not fields or "film_fraction" not in fields[0]:
+        return None
+    angles = 2 * np.pi * np.arange(ANGLES) / ANGLES - np.pi
+    return np.rint(127 * film_pressure.from_fields(run, fields, angles, "film_fraction")[rows]).astype(np.int8)
+
+
+def supply_of(run: Run) -> list[dict[str, float]]:
+    """Middles and half widths [rad] of the grooves and holes that feed the piston pin's film, if they are in its bearing."""
+    if run.parameter("supply", "kind") in (None, "circumferential_groove") or run.parameter("supply", "fixed_to") == "pin":
+        return []
+    radius = float(run.parameter("joint", "bearing_radius"))
+    wide = float(run.parameter("supply", "width_deg", 0.0)) * np.pi / 360
+    half = wide or 0.5 * float(run.parameter("supply", "diameter", 0.0)) / radius
+    middles = run.parameter("supply", "position_deg")
+    middles = middles if isinstance(middles, list) else str(middles).split(",")
+    return [{"angle": float(np.radians(float(middle))), "half": half} for middle in middles]
+
+
 def largest_deflection(columns: dict[str, np.ndarray]) -> float:
     """Largest deflection of an elastic rod across its chord, anywhere along the rod [m]."""
     modes = [name for name in columns if name.startswith("rod_mode_")]
@@ -344,6 +404,7 @@ def page(
     used += [name for name in (engine or {}).get("twists", []) if name and name not in used]
     rows = chosen_rows([columns[name] for name in used])
     film = film_columns(run, rows, fields)
+    oil = oil_of(run, rows, fields)
     if film:
         columns["film_peak"] = np.zeros(len(run["time"]))
         columns["film_peak"][rows] = film[1]
@@ -359,10 +420,12 @@ def page(
         "line": time_line(columns, run) | {"title": say(time_line(columns, run)["title"])},
         "words": {word: say(word) for word in script_words()},
         "comma": bool(language and not language.is_english),
-        "start": first_moment(columns),
+        "start": first_moment(columns, [field["time"].iloc[0] for field in fields or []]),
         "angles": ANGLES if film else 0,
         "signed": bool(film and film[2]),
+        "supply": supply_of(run),
         "certified": run.certified_until,
+        "cycle": last_cycle(run, columns),
         "clearance": run.clearance,
         "crank": float(run.parameter("mechanism", "crank_length")),
         "rod": float(run.parameter("mechanism", "rod_length")),
@@ -412,6 +475,7 @@ def page(
         "warnings": "".join(f'<p class="warning">{html.escape(text)}</p>' for text in said)
         or f'<p class="fine">{html.escape(say("No warnings."))}</p>',
         "wear": wear_section(worn, language or Language()) if worn else "",
+        "answers": answers.section(run, language),
         "cycles": report_cycles.section(run, cycle_columns, language),
         "summary": f"<table>{summary(False)}</table>",
         "program": f"<table>{summary(True)}</table>",
@@ -425,6 +489,7 @@ def page(
         "scene": json.dumps(scene, ensure_ascii=False).replace("</", "<\\/"),
         "trace": packed(data),
         "pressure": packed(film[0].tobytes()) if film else "",
+        "oil": packed(oil.tobytes()) if oil is not None else "",
         "library": packed(get_plotlyjs().encode("utf-8")),
     }
     text = (PAGE / "page.html").read_text(encoding="utf-8")
@@ -441,10 +506,27 @@ def wear_section(worn: list[tuple[str, pd.DataFrame]], language: Language) -> st
     return f'<section id="wear"><h2>{html.escape(heading)}</h2>{report_cycles.picture(drawing, said, language)}</section>'
 
 
-def first_moment(columns: dict[str, np.ndarray]) -> float:
-    """The time at which the page opens [s]: that of the largest pin force after the first tenth of the run."""
+def last_cycle(run: Run, columns: dict[str, np.ndarray]) -> dict[str, float] | None:
+    """Times at which the last whole cycle of the run begins and ends [s], the angle at its beginning [rad] and its length [degrees];
+    None without one in the trace."""
+    try:
+        begin, length, turns = (float(run.summary[f"cycle_{name}"][0]) for name in ("start", "duration", "revolutions"))
+    except (KeyError, ValueError):
+        return None
     time = columns["time"]
-    force = np.where(time >= time[0] + 0.1 * (time[-1] - time[0]), columns["pin_force"], 0.0)
+    if not (length > 0 and time[0] <= begin + 0.01 * length and begin < time[-1]):
+        return None
+    return {"begin": begin, "end": begin + length, "angle": float(np.interp(begin, time, columns["crank_angle"])), "degrees": 360 * turns}
+
+
+def first_moment(columns: dict[str, np.ndarray], of_fields: Sequence[float] = ()) -> float:
+    """The time at which the page opens [s]: that of the largest pin force after the first tenth of the run, where there are fields of
+    a film between the first and the last of them."""
+    time = columns["time"]
+    shown = time >= time[0] + 0.1 * (time[-1] - time[0])
+    if of_fields:
+        shown = (time >= min(of_fields)) & (time <= max(of_fields))
+    force = np.where(shown, columns["pin_force"], 0.0)
     return float(time[int(np.argmax(force))])
 
 

@@ -24,6 +24,7 @@
     const values = new Float32Array(await unpack("trace"));
     scene.columns.forEach((name, i) => { column[name] = values.subarray(i * scene.rows, (i + 1) * scene.rows); });
   }
+  const oil = document.getElementById("oil").textContent ? new Int8Array(await unpack("oil")) : null;
   const pressure = scene.angles ? new Int8Array(await unpack("pressure")) : null;
   const time = column.time, begin = time[0], end = time[scene.rows - 1];
   const joint = scene.clearance > 0;
@@ -35,6 +36,7 @@
   document.body.classList.toggle("contactless", scene.contacts.length === 0);
   document.body.classList.toggle("filmless", !scene.angles);
   document.body.classList.toggle("unsigned", !scene.signed);
+  document.body.classList.toggle("cycleless", !scene.cycle);
 
   // ---- the moment shown
   let now = begin, playing = false, before = null, row = 0, share = 0;
@@ -194,6 +196,20 @@
       }
     }
     circle(g, cx, cy, radius, "#fff", COLOUR.ink, 2);
+    if (oil) {   // where the gap is full the ring is dark, where the film has ruptured it is pale
+      const first = nearest() * scene.angles, direction = Math.atan2(uy, ux), step = 2 * Math.PI / scene.angles;
+      g.lineWidth = 5; g.strokeStyle = COLOUR.sky;
+      for (let i = 0; i < scene.angles; i++) {
+        const angle = direction + i * step - 1.5 * Math.PI;
+        g.globalAlpha = Math.max(0, oil[first + i]) / 127;
+        g.beginPath(); g.arc(cx, cy, radius - 4, angle - step / 2, angle + step / 2); g.stroke();
+      }
+      g.globalAlpha = 1;
+    }
+    for (const { angle, half } of scene.supply) {
+      g.beginPath(); g.arc(cx, cy, radius + 5, angle - half - Math.PI / 2, angle + half - Math.PI / 2);
+      g.lineWidth = 9; g.strokeStyle = COLOUR.sky; g.stroke();
+    }
     circle(g, pinX, pinY, radius - gap, COLOUR.steel, COLOUR.ink, 1.2);
     circle(g, cx, cy, radius, null, COLOUR.ink, 2);
     const turn = -at("rod_angle"), mark = radius - gap;   // a line on the pin shows that it turns with the rod
@@ -440,18 +456,58 @@
   const charts = [];
   let linking = false, marked = null;
 
+  // ---- the abscissa of the plots over time: time [ms] or crank angle [degrees], of all rows or of the last cycle
+  const overAngle = () => byId("abscissa").value === "angle";
+  const cycleAlone = () => Boolean(scene.cycle) && byId("last-cycle").checked;
+  const shownRows = () => {
+    if (!cycleAlone()) return [0, scene.rows];
+    const slack = 1e-4 * (scene.cycle.end - scene.cycle.begin);
+    let first = time.findIndex((t) => t >= scene.cycle.begin - slack), last = scene.rows;
+    while (last > first && time[last - 1] > scene.cycle.end + slack) last--;
+    return [first, last];
+  };
+  const angleOf = (radians) => {   // within the cycle as the summary counts it, or counted on over all revolutions
+    const degrees = radians * 180 / Math.PI;
+    if (!cycleAlone()) return degrees;
+    const from = scene.cycle.angle * 180 / Math.PI, length = scene.cycle.degrees;
+    return degrees - from + (((from % length) + length) % length) % length;
+  };
+  const abscissae = () => {
+    const [first, last] = shownRows();
+    return Array.from(overAngle() ? column.crank_angle.subarray(first, last) : time.subarray(first, last), (v) => (overAngle() ? angleOf(v) : 1e3 * v));
+  };
+  const abscissaAt = (t) => {
+    if (!overAngle()) return 1e3 * t;
+    let i = time.findIndex((other) => other >= t);
+    if (i < 0) i = scene.rows - 1;
+    const before = Math.max(i - 1, 0), part = i > before ? (t - time[before]) / (time[i] - time[before]) : 0;
+    return angleOf(column.crank_angle[before] + part * (column.crank_angle[i] - column.crank_angle[before]));
+  };
+
   // The part of the run beyond its certified time.
-  const uncertified = scene.certified === null ? [] : [{ type: "rect", layer: "below", x0: 1e3 * scene.certified, x1: 1e3 * end,
-    yref: "paper", y0: 0, y1: 1, fillcolor: "rgba(127,127,127,0.18)", line: { width: 0 } }];
+  const uncertified = () => (scene.certified === null ? [] : [{ type: "rect", layer: "below", x0: abscissaAt(scene.certified), x1: abscissaAt(end),
+    yref: "paper", y0: 0, y1: 1, fillcolor: "rgba(127,127,127,0.18)", line: { width: 0 } }]);
 
   function markPlots() {   // mark the moment shown on the time axes; not while playing, which would be too slow
     clearTimeout(marked);
     marked = setTimeout(() => {
       for (const chart of charts.filter((c) => c.timed)) {
-        Plotly.relayout(chart.div, { shapes: [...uncertified, { type: "line", x0: 1e3 * now, x1: 1e3 * now, yref: "paper", y0: 0, y1: 1,
+        const x = abscissaAt(now);
+        Plotly.relayout(chart.div, { shapes: [...uncertified(), { type: "line", x0: x, x1: x, yref: "paper", y0: 0, y1: 1,
           line: { color: COLOUR.vermilion, width: 1 } }] });
       }
     }, 150);
+  }
+
+  async function changeAbscissa() {
+    const x = abscissae(), [first, last] = shownRows(), title = overAngle() ? W("crank angle [deg]") : W("time [ms]");
+    linking = true;
+    for (const chart of charts.filter((c) => c.timed)) {
+      await Plotly.update(chart.div, { x: chart.curves.map(() => x), y: chart.curves.map((curve) => values(curve, "y").slice(first, last)) },
+        { "xaxis.title.text": title, "xaxis.autorange": true, "yaxis.autorange": true });
+    }
+    linking = false;
+    markPlots();
   }
 
   async function linkZoom(source, change) {
@@ -483,7 +539,7 @@
       const touching = (i) => phase[i] === 2 || phase[i - 1] === 2 || phase[i + 1] === 2;
       return [trace(W("apart"), curve.colour, (i) => phase[i] !== 2), trace(W("in contact"), COLOUR.purple, touching)];
     });
-    const shapes = plot.circle ? [{ type: "circle", x0: -1, x1: 1, y0: -1, y1: 1, line: { color: COLOUR.ink, width: 1 } }] : plot.timed ? uncertified : [];
+    const shapes = plot.circle ? [{ type: "circle", x0: -1, x1: 1, y0: -1, y1: 1, line: { color: COLOUR.ink, width: 1 } }] : plot.timed ? uncertified() : [];
     await Plotly.newPlot(div, data, {
       title: { text: plot.title, font: { size: 14 }, x: 0, xref: "paper", xanchor: "left", y: 1, yref: "container",
         yanchor: "top", pad: { t: 10 } }, margin: { l: 70, r: 15, t: data.length > 1 ? 54 : 40, b: 45 }, shapes,
@@ -492,10 +548,10 @@
       xaxis: { title: { text: plot.x }, zeroline: false },
       yaxis: { title: { text: plot.y }, zeroline: true, scaleanchor: plot.circle ? "x" : undefined },
     }, { responsive: true, displaylogo: false, displayModeBar: "hover", modeBarButtons: [["toImage", "zoom2d", "pan2d", "resetScale2d"]] });
-    charts.push({ div, timed: plot.timed });
+    charts.push({ div, timed: plot.timed, curves: plot.curves });
     if (plot.timed) {
       div.on("plotly_relayout", (change) => linkZoom(div, change));
-      div.on("plotly_click", (event) => { play(false); seek(event.points[0].x / 1e3); });
+      div.on("plotly_click", (event) => { play(false); seek(time[shownRows()[0] + event.points[0].pointNumber]); });
     }
   }
 
@@ -512,6 +568,8 @@
   const scrubbed = () => { if (!playing) markPlots(); };
   byId("scrub").addEventListener("change", scrubbed);
   line.addEventListener("pointerup", scrubbed);
+  byId("abscissa").addEventListener("change", changeAbscissa);
+  byId("last-cycle").addEventListener("change", changeAbscissa);
   window.gudgeon.ready = true;
 })().catch((error) => {
   const box = document.getElementById("failure");

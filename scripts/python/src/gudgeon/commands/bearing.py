@@ -1,0 +1,36 @@
+"""Draws the orbit of a pin in its clearance circle over the last cycle of a run, in fixed axes and in those of the load.
+
+    gudgeon-plot bearing big_end                     results/big_end.csv; the case is run if it is missing
+    gudgeon-plot bearing engine --place main_bearing
+    gudgeon-plot bearing --shipped -o cases/bearings   the picture that is shipped
+
+The thinnest film and every 90 degrees of the crank are marked. The load, the force of the pin on its bearing, is drawn to its own scale.
+"""
+
+import argparse
+
+from gudgeon.commands import Refused, add_output, add_results, save
+from gudgeon.plots import bearing as pictures
+from gudgeon.results import located
+
+SHIPPED = "big_end"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("source", nargs="?", metavar="RUN", help="name of a run, its trace or its case file")
+    parser.add_argument("--place", choices=tuple(pictures.PLACES), help="which bearing (default: the first that has a film)")
+    parser.add_argument("--shipped", action="store_true", help="draw the shipped case")
+    add_results(parser)
+    add_output(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    if options.shipped == bool(options.source):
+        raise Refused("give a run, or --shipped")
+    results, name = located(options.source or SHIPPED, options.results, not options.no_run)
+    one = results[name]
+    place = options.place or next((place for place in pictures.PLACES if pictures.has_film(one, place)), "")
+    if not place or not pictures.has_film(one, place):
+        raise Refused(f"{name}: no film with columns film_force and eccentricity{f' at {place}' if place else ''}")
+    save(pictures.orbit(one, place, name), options, results.path(name).parent, name if options.shipped else f"{name}_orbit")
+    return 0
