@@ -57,7 +57,7 @@ def of_program() -> Rows:
 
 def of_units(folder: str) -> Rows:
     """Mock-up units against runs."""
-    complaints, worst, other, common = 0, 0.0, 0.0, 0
+    complaints, worst, other = 0, 0.0, 0.0
     for (name, fmi) in itertools.product(SCENES, (2, 3)):
         case = scene(name)
         path = gudgeon.fmu(case, Path(folder) / "unit.fmu", fmi)
@@ -73,18 +73,18 @@ def of_units(folder: str) -> Rows:
                 unit.unit.doStep(run["time"][i - 1], t - run["time"][i - 1])
             worst = max(worst, float(np.nanmax(np.abs(unit.get() - run._rows[i, columns]) / spans)))
         unit.free()
-        unit, step = test_fmu.Unit(path, fmi, folder, end), end / 8
-        for i in range(7):   # at times that rows have as well
+        unit, step, last = test_fmu.Unit(path, fmi, folder, end), end / 8, 0
+        for i in range(7):   # to rows at eighths of the run, in five steps each
+            row = int(np.argmin(np.abs(run["time"] - (i + 1) * step)))
+            times = np.linspace(run["time"][last], run["time"][row], 6)
             for k in range(5):
-                unit.unit.doStep(i * step + k * step / 5, step / 5)
-            at = np.flatnonzero(np.abs(run["time"] - (i + 1) * step) < 1e-12 * end)
-            if len(at):
-                common += 1
-                other = max(other, float(np.nanmax(np.abs(unit.get() - run._rows[at[0], columns]) / spans)))
+                unit.unit.doStep(times[k], times[k + 1] - times[k])
+            last = row
+            other = max(other, float(np.nanmax(np.abs(unit.get() - run._rows[row, columns]) / spans)))
         unit.free()
     yield "FMPy's validation of ten scenes, FMI 2.0 and 3.0", f"{complaints} complaints", "none"
     yield "the same stepped at the times of the rows: largest difference over the column's range", f"{worst:.1e}", "1e-9"
-    yield f"another step, at {common} common times", f"{other:.1e}", "1e-9"
+    yield "another step, at seven common times of each", f"{other:.1e}", "1e-9"
     sets = [("joint.clearance", 3e-5), ("mechanism.rod_com[1]", 0.06)]
     path = gudgeon.fmu(case_of("sim_I"), Path(folder) / "unit.fmu")
     unit, stepper = test_fmu.Unit(path, 2, folder, 0.02, sets), case_of("sim_I").set({"joint.clearance": 3e-5, "mechanism.rod_com": (0.06, 0.0)}).begin(end=0.02)
@@ -98,7 +98,7 @@ def of_units(folder: str) -> Rows:
     right = free.set({"integrator.relative_tolerance": 1e-12}).run(end=0.1)["crank_speed"]
     smooth, cut = free.run(end=0.1)["crank_speed"], free.begin(end=0.1)
     for i in range(1, 501):
-        cut.inputs["drive.torque"] = 1e-12 * i
+        cut.inputs["drive.torque"] = 1e-12 * (i % 2)
         cut.advance(0.1 * i / 500)
     own, apart = np.abs(smooth - right).max(), np.abs(cut.finish()["crank_speed"] - right).max()
     yield "a torque cut 500 times at a tolerance of 1e-9: its error over the run's own error", f"{apart / own:.1f} ({own:.1e} rad/s)", "5"
@@ -191,7 +191,7 @@ def growth(once: Callable[[], None], times: int = 1000) -> int:
     return resident() - before
 
 
-def best(*calls: Callable[[], object], repeats: int = 5) -> list[tuple[float, float]]:
+def best(*calls: Callable[[], object], repeats: int = 4) -> list[tuple[float, float]]:
     """Least time of the clock and of the processor of each call [s], called in turn."""
     def processor() -> float:
         return sum(part.ru_utime + part.ru_stime for part in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))

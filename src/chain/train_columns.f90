@@ -2,7 +2,6 @@
 !> engine on its frame, main bearings, and the other cylinders.
 module train_columns
   use kinds, only: dp
-  use text_tools, only: integer_text
   use trace_row, only: trace_row_t
   use chain_motion, only: motion_t, accelerations_t
   use chain_reactions, only: reactions_t
@@ -146,16 +145,16 @@ contains
       'the same across')
   end subroutine add_cylinder
 
-  !> station_3_twist[rad]; only while names are collected.
+  !> station_3_twist[rad]; only while names are collected. Of one length, so that threads may call it at once.
   pure function numbered(what, number, quantity, row) result(name)
     character(len=*), intent(in) :: what, quantity
     integer, intent(in) :: number
     type(trace_row_t), intent(in) :: row
-    character(len=:), allocatable :: name
-    if (row%is_naming) then
-      name = what//'_'//integer_text(number)//'_'//quantity
-    else
-      name = ''
-    end if
+    character(len=48) :: name
+    character(len=11) :: digits
+    name = ''
+    if (.not. row%is_naming) return
+    write (digits, '(i0)') number
+    name = what//'_'//trim(digits)//'_'//quantity
   end function numbered
 end module train_columns

@@ -264,7 +264,7 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
 
 
 def warnings(run: Run) -> list[str]:
-    """What the program says of a run: how far it is certified, why it ended early, and the notes of its summary."""
+    """What the program says of a run: how far it is certified, and why it ended early."""
     found = []
     if (until := run.certified_until) is not None:
         found.append(
