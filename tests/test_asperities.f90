@@ -178,8 +178,8 @@ contains
     end do
   end subroutine rubs
 
-  !> The velocity with which film and asperities carry a load: with it their forces are opposite to the load, from the centre to beyond
-  !> the clearance, at fast and slow sliding, where the friction has any value below its largest.
+  !> The velocity with which film and asperities carry a load: with it their forces are opposite to the load, from the centre to
+  !> beyond the clearance, at fast and slow sliding, where the friction has any value below its largest.
   subroutine carries_a_load(check)
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: ratios(6) = [0.0_dp, 1e-4_dp, 0.5_dp, 0.95_dp, 0.99_dp, 1.01_dp], speeds(4) = [50.0_dp, -50.0_dp, &

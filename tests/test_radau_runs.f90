@@ -71,8 +71,7 @@ contains
     end do
   end subroutine jacobians_of_scenes
 
-  !> The same for a film that heats up and thins with the shear, smooth and between rough surfaces. That its side flow depends on the
-  !> motion is left out: the last row is compared without a side flow of its own.
+  !> The same for a film that heats up and thins with the shear, smooth and between rough surfaces, with a side flow of its own.
   subroutine jacobian_of_heat(check)
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: hot(10) = [character(len=60) :: 'lubrication.viscosity_law=walther', &

@@ -107,8 +107,8 @@ module film_law
 contains
 
   !> Ratio of the viscosity to that at rest, of an oil that shear thins (Cross 1965 with the exponent 1): r + (1 - r)/(1 + g/g_c),
-  !> with the mean rate g = |omega| R/(c sqrt(1 - eps^2)) of the shear that the turning of the pin makes. It is the same in the whole
-  !> film; the shear of the pressure flow, and of the squeeze motion, is left out.
+  !> with the mean rate g = |omega| R/(c sqrt(1 - eps^2)) of the shear that the turning of the pin makes. It is the same in the
+  !> whole film; the shear of the pressure flow, and of the squeeze motion, is left out.
   pure real(dp) function thinning(self, motion)
     class(film_law_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion

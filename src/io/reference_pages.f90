@@ -155,8 +155,8 @@ contains
     type(column_list_t), intent(out) :: list
     type(error_t), allocatable, intent(out) :: error
     character(len=*), parameter :: rigid_and_dry = 'joint.kind=ideal contact=none friction=none lubrication=none guide=none '// &
-      'heat=none wear=none elastic_rod=none crankshaft=none combustion=none film_history=none output.columns=standard '// &
-      'output.ideal_twin=F output.film_times='
+      'heat=none wear=none elastic_rod=none crankshaft=none combustion=none film_history=none supply=none '// &
+      'bore=none output.columns=standard output.ideal_twin=F output.film_times='
     character(len=:), allocatable :: changes
     character(len=60), allocatable :: overrides(:)
     type(case_t) :: case

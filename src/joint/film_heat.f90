@@ -2,9 +2,9 @@
 !>
 !>     C T' = P + P_f - rho(T) c_p Q (T - T_in) - G (T - T_h)
 !>
-!> with the power P of the film, always with that of its shear, the power P_f of friction, and the side flow Q, which leaves at T and
-!> is replaced at T_in. The viscosity is that of the oil at T. Heat capacity C and conductance G are those of the metal: the oil in
-!> the clearance alone has some tenths of a joule per kelvin.
+!> with the power P of the film, always with that of its shear, the power P_f of friction, and the side flow Q, which leaves at T
+!> and is replaced at T_in. The viscosity is that of the oil at T. Heat capacity C and conductance G are those of the metal: the oil
+!> in the clearance alone has some tenths of a joule per kelvin.
 module film_heat
   use kinds, only: dp
   use model_parameters, only: has_parameters_t, parameter_list_t
@@ -167,8 +167,8 @@ contains
     end associate
   end subroutine set_rates
 
-  !> Derivative of the viscosity with respect to T over itself, and of T' where the power of the film is proportional to the viscosity
-  !> and its flow does not depend on it [1/K], [1/s].
+  !> Derivative of the viscosity with respect to T over itself, and of T' where the power of the film is proportional to the
+  !> viscosity and its flow does not depend on it [1/K], [1/s].
   pure subroutine slopes(self, t, film_power, film_flow, of_viscosity, of_rate)
     class(film_heat_t), intent(in) :: self
     real(dp), intent(in) :: t, film_power, film_flow   !! T [K], P [W], side flow of the film [m^3/s]

@@ -335,7 +335,7 @@ contains
       value = sums%high(k) - sums%low(k)
     case (of_mean)
       value = sums%sum(k)/sums%duration
-    case (of_rms)
+    case default   ! of_rms
       value = sqrt(sums%square(k)/sums%duration)
     end select
 

@@ -12,8 +12,8 @@ module film_peak
 
 contains
 
-  !> Find the peak of the pressure from its values at increasing times inside the last step, if it may exceed `known` and the largest
-  !> value. The value at the largest point is known; the search is between its neighbours. At an end of the interval the value a
+  !> Find the peak of the pressure from its values at increasing times inside the last step, if it may exceed `known` and the
+  !> largest value. The value at the largest point is known; the search is between its neighbours. At an end of the interval the value a
   !> little inside decides whether the pressure rises from there.
   subroutine find_film_peak(method, scene, joint, t, pressure, known, evaluations, peak, angle)
     class(ode_method_t), intent(inout) :: method

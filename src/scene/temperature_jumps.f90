@@ -1,11 +1,11 @@
-!> Jumps of the temperatures of films to their settled values, in a run until the motion is periodic. A film settles over thousands of
-!> cycles, the rest of the motion within some: after a cycle in which the other states repeat, each temperature is set to where its
-!> change in a cycle is expected to be 0.
+!> Jumps of the temperatures of films to their settled values, in a run until the motion is periodic. A film settles over
+!> thousands of cycles, the rest of the motion within some: after a cycle in which the other states repeat, each temperature is set
+!> to where its change in a cycle is expected to be 0.
 !>
 !> The first jump follows from the heat that leaves for each kelvin, u = rho c_p Q + G: over a cycle T' = -u (T - T_s)/C with mean u
 !> gives T_s = T + dT/(1 - exp(-Int u dt/C)). Later ones follow by the secant through the last two changes. The settled temperature
-!> does not depend on the jumps, since the motion must repeat over plain cycles after the last one. Of jumps that the tolerance of the
-!> integration may explain only a few are made.
+!> does not depend on the jumps, since the motion must repeat over plain cycles after the last one. Of jumps that the tolerance of
+!> the integration may explain only a few are made.
 module temperature_jumps
   use kinds, only: dp
   use film_heat, only: uptake
@@ -29,8 +29,8 @@ module temperature_jumps
     real(dp) :: change = 0              !! of it in that cycle [K]
     integer :: small_jumps = 0          !! number of jumps below the error of the settled temperature
     real(dp) :: slope = 0               !! of this change over the temperature; 0: not known [-]
-    real(dp) :: begin(0:depth - 1) = 0, sum(0:depth - 1) = 0   !! temperature [K] and integral of u [J/K] at the end of revolution k,
-                                                               !! in element mod(k, depth)
+    real(dp) :: begin(0:depth - 1) = 0, sum(0:depth - 1) = 0   !! temperature [K] and integral of u [J/K] at the end of revolution
+                                                               !! k, in element mod(k, depth)
   end type film_t
 
   type :: temperature_jumps_t

@@ -121,8 +121,8 @@ contains
     call load_case(self%values, self%case, self%groups)
   end subroutine load
 
-  !> Replace numbers with units by numbers in the units of their keys, as the rows of the results have them, in values that `convert`
-  !> accepts.
+  !> Replace numbers with units by numbers in the units of their keys, as the rows of the results have them, in values that
+  !> `convert` accepts.
   subroutine take_units(self, texts)
     class(study_case_t), intent(in) :: self
     character(len=*), intent(inout) :: texts(:)   !! of the parameters

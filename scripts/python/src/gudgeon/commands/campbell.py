@@ -12,6 +12,7 @@ cancel each other. Writes NAME.campbell.png and
 
 import argparse
 
+from gudgeon import language
 from gudgeon.commands import Refused, add_output, add_results, number, save
 from gudgeon.plots import campbell
 from gudgeon.results import located
@@ -30,6 +31,7 @@ def run(options: argparse.Namespace) -> int:
     found = results[name]
     if "natural_frequency_1" not in found.summary:
         raise Refused(f"{name}: the run has no natural frequencies: give lists of stations in &crankshaft")
+    language.current.keep(name)
     shaft = campbell.Shaft.of(found)
     out = options.out if options.out and not options.out.suffix else results.directory
     out.mkdir(parents=True, exist_ok=True)
