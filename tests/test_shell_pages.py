@@ -20,6 +20,10 @@ import f90nml
 import jsonschema
 
 TOP = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(TOP / "scripts" / "python" / "src"))
+os.environ.setdefault("GUDGEON_LIBRARY", str(TOP / "build" / "library" / "libgudgeon.so"))
+import gudgeon
+
 passed = failed = 0
 
 #: Changes of simulation I that the schema refuses: group, key, value.
@@ -44,10 +48,14 @@ def output(*command: str) -> str:
 
 
 def as_json(path: Path) -> dict:
-    """A case as JSON; a group that stands there twice, for two places, is a list."""
+    """A case as JSON; a group that stands there twice, for two places, is a list. Numbers with units, and lists that are texts,
+    are converted by the package."""
     case: dict = {}
-    for name, group in json.loads(json.dumps(f90nml.read(path).todict())).items():
-        if repeated := re.fullmatch(r"_grp_(\w+)_\d+", name):
+    read = f90nml.read(path)
+    if re.search(r"=\s*[-+.\deE*]+ +[A-Za-z]|&supply", re.sub(r"!.*", "", path.read_text())):
+        read = f90nml.reads(gudgeon.read(path).to_nml())
+    for name, group in json.loads(json.dumps(read.todict())).items():
+        if repeated := re.fullmatch(r"_grp_(\w+)_\d+", name) or re.fullmatch(r"(cylinder|damper)_\d+", name):
             case.setdefault(repeated[1], []).append(group)
         elif name != "_start_index":
             case[name] = group

@@ -87,7 +87,7 @@ def path() -> Path:
     GUDGEON_LIBRARY names another."""
     own = Path(__file__).with_name("libgudgeon.so")
     built = Path(__file__).resolve().parents[4] / "build" / "library" / own.name  # by build_library.py
-    found = (place for place in (own, built, Path(sys.prefix) / "lib" / own.name) if place.exists())
+    found = (place for place in (built, own, Path(sys.prefix) / "lib" / own.name) if place.exists())
     return Path(os.environ.get("GUDGEON_LIBRARY") or next(found, own))
 
 
