@@ -26,7 +26,7 @@ contains
     call has_its_slopes(check)
   end subroutine run_test_crank_train
 
-  !> A shaft of equal stations has the frequencies 2 sqrt(k/J) sin(i pi/(2 n)) free, and 2 sqrt(k/J) sin((2 i - 1) pi/(4 n - 2)) with
+  !> A shaft of equal stations has the frequencies 2 sqrt(k/J) sin(i pi/(2 n)) free, 2 sqrt(k/J) sin((2 i - 1) pi/(4 n - 2)) with
   !> an end held.
   subroutine knows_uniform_shafts(check)
     class(checks_t), intent(inout) :: check

@@ -297,8 +297,7 @@ def resumes(run: Runner) -> None:
     a, b = bare(whole[0]).iloc[-1], bare(rest[0]).iloc[-1]
     check(abs(a["crank_speed"] - b["crank_speed"]) < 1e-8 and abs(a["time"] - b["time"]) < 1e-12, "a run goes on across a bound of two cylinders",
           f"{a['crank_speed']!r} {b['crank_speed']!r}")
-    state = None
-    part = run(CASES / "four_dry.nml", *FINE, "integrator.revolutions=0", "integrator.end_time=0.006")
+    run(CASES / "four_dry.nml", *FINE, "integrator.revolutions=0", "integrator.end_time=0.006")
     state = run.folder / str(run.number) / "four_dry.state.nml"
     rest = run(CASES / "four_dry.nml", *FINE, "integrator.revolutions=0", "integrator.end_time=0.012", f"initial.from={state}")
     whole = run(CASES / "four_dry.nml", *FINE, "integrator.revolutions=0", "integrator.end_time=0.012")

@@ -104,8 +104,8 @@ contains
     end do
   end function first_row
 
-  !> March the film over the last cycle, with the mean viscosity of the run there. `watch` receives its progress and may stop it. Errors (status_integration): the run has no
-  !> whole cycle; the film cannot be marched; `watch` stopped it.
+  !> March the film over the last cycle, with the mean viscosity of the run there. `watch` receives its progress and may stop it.
+  !> Errors (status_integration): the run has no whole cycle; the film cannot be marched; `watch` stopped it.
   subroutine march(self, watch, error)
     class(history_record_t), intent(inout) :: self
     class(table_watch_t), intent(inout) :: watch

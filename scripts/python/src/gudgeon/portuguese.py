@@ -336,7 +336,6 @@ TEXTS = {
     "pin, dots every 90° of the crank": "pino, pontos a cada 90° da manivela",
     "thinnest film": "filme mais fino",
     "{}: {}, thinnest film {} µm of {} µm, crank at {}°": "{}: {}, filme mais fino {} µm de {} µm, manivela a {}°",
-    "main bearing": "mancal principal",
     "bearing": "mancal",
     "crank on the main bearing": "manivela sobre o mancal principal",
     "cylinder volume": "volume do cilindro",

@@ -94,12 +94,11 @@ def variants_of(case: Case, template: dict[str, dict[str, Key]]) -> list[Variant
 def rungs(case: Case) -> list[Variant]:
     """The other steps from an ideal pin over a film that carries its load, one way, to a joint with clearance."""
     found = []
-    films = lambda name: name.replace("joint", "lubrication") in case or "lubrication" in case
     loose = loose_joints(case)
     for name in loose:
         own = [law for group in ("contact", "friction") for law in {group, name.replace("joint", group)} if law in case]
         shared = [law for law in own if "." not in law]
-        if films(name) and (len(loose) == 1 or not shared):
+        if (name.replace("joint", "lubrication") in case or "lubrication" in case) and (len(loose) == 1 or not shared):
             settings = (f"{name}.kind=quasi_static", *(f"{law}=none" for law in sorted(own)))
             found.append(Variant("taken out", f"quasi-static {pin_of(name)}", settings))
     for name in carried_joints(case):
