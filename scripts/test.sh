@@ -93,6 +93,7 @@ states and runs that go on from them|tests/test_state_file.py
 layers, linters|tests/test_layers.py
 failures of the machine|tests/test_faults.py --kills 10
 heat and work of the gas|.venv/bin/python tests/test_gas.py
+several cylinders|.venv/bin/python tests/test_cylinders.py
 heating of films|.venv/bin/python tests/test_film_heat.py
 statistics of columns|.venv/bin/python tests/test_column_statistics.py
 END

@@ -7,7 +7,7 @@ module test_asperities
   use bearing_size, only: bearing_t
   use checks, only: checks_t
   use asperities, only: asperities_t, pressure_integral
-  use mixed_film, only: mixed_forces, mixed_derivatives
+  use mixed_film, only: mixed_forces, mixed_derivatives, mixed_velocity
   use film_law, only: film_law_t, film_motion_t
   use laws, only: film_law_of
   implicit none
@@ -26,6 +26,7 @@ contains
     call smooth_where_far(check)
     call derivatives_by_steps(check)
     call rubs(check)
+    call carries_a_load(check)
   end subroutine run_test_asperities
 
   !> The exact integral (parabolic cylinder function, 25 digits) and its fit, with the mean gap and its slope.
@@ -176,6 +177,43 @@ contains
       call check%relative(abs(friction), 0.1_dp*pressing, 1e-6_dp, 'boundary friction at high sliding speed')
     end do
   end subroutine rubs
+
+  !> The velocity with which film and asperities carry a load: with it their forces are opposite to the load, from the centre to beyond
+  !> the clearance, at fast and slow sliding, where the friction has any value below its largest.
+  subroutine carries_a_load(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: ratios(6) = [0.0_dp, 1e-4_dp, 0.5_dp, 0.95_dp, 0.99_dp, 1.01_dp], speeds(4) = [50.0_dp, -50.0_dp, &
+      0.3_dp, 0.0_dp]
+    class(film_law_t), allocatable :: film
+    type(asperities_t) :: rough
+    type(film_motion_t) :: motion
+    real(dp) :: load(2), velocity(2), force(2), moment, pressing, friction, pressed, rubbed, n(2), worst
+    integer :: i, j, k, partial
+    call new_film(check, film)
+    rough = rough_bearing('exact', 0.4e-6_dp)
+    worst = 0
+    partial = 0
+    do i = 1, size(ratios)
+      do j = 1, size(speeds)
+        do k = 1, 12
+          n = [cos(0.7_dp), sin(0.7_dp)]
+          motion = motion_of(ratios(i)*c*n, [0.0_dp, 0.0_dp])
+          motion%pin_speed = speeds(j)
+          motion%turning_speed = speeds(j)
+          load = 3e3_dp*[cos(0.5_dp*k), sin(0.5_dp*k)]
+          call mixed_velocity(film, rough, 1e-2_dp, motion, load, velocity, pressing, friction)
+          motion%eccentricity_rate = velocity
+          call mixed_forces(film, rough, 1e-2_dp, motion, force, moment, pressed, rubbed)
+          if (.not. ratios(i) > 0) n = [1.0_dp, 0.0_dp]
+          worst = max(worst, norm2(force - pressed*n + rubbed*[-n(2), n(1)] + load)/norm2(load), &
+            abs(rubbed - friction)/max(pressing, 1.0_dp))
+          if (abs(friction) < 0.09_dp*pressing .and. pressing > 1) partial = partial + 1
+        end do
+      end do
+    end do
+    call check%close_to(worst, 0.0_dp, 1e-8_dp, 'film and asperities carry the load')
+    call check%that(partial > 10, 'some surfaces slide slowly')
+  end subroutine carries_a_load
 
   function rough_bearing(integral, roughness) result(rough)
     character(len=*), intent(in) :: integral

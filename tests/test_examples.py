@@ -7,7 +7,10 @@ Needs the packages of scripts/setup.sh --embedding, and the shared library: that
 build/library. Ends with `N passed, N failed`; the exit status is 0 if nothing failed.
 """
 
+import contextlib
 import importlib
+import io
+import json
 import os
 import sys
 import tempfile
@@ -58,6 +61,15 @@ def main() -> int:
         except Exception:
             check(False, f"the page on Python: {block}: {traceback.format_exc()}")
     check(shown["run"].status.startswith("interrupted") or shown["run"].status == "done", "the page on Python runs")
+    cells = json.loads((EXAMPLES / "first_steps.ipynb").read_text(encoding="utf-8"))["cells"]
+    for cell in cells:
+        if cell["cell_type"] == "code":
+            try:
+                with contextlib.redirect_stdout(io.StringIO()):
+                    exec(cell["source"], shown)
+            except Exception:
+                check(False, f"the notebook: {cell['source']}: {traceback.format_exc()}")
+    check(len(shown["table"]) == 16 and "<svg" in shown["run"]._repr_html_(), "the notebook")
     for name, holds in HOLDS.items():
         check(f"examples/{name}.py" in page and f"examples/{name}.png" in page, f"the page on Python has {name}")
         if name in LONG and "--all" not in sys.argv:

@@ -180,12 +180,21 @@ def described(program: Path) -> set[tuple[str, str]]:
     return set(re.findall(r"^\| `([^`]+)` \| ([^|]*?) +\|", text, re.MULTILINE)) | set(re.findall(r"^\| `([^`]+)` \| ( *)\|", text, re.MULTILINE))
 
 
+def names_of_engine(name: str) -> list[str]:
+    """Names by which a column or quantity of several cylinders may be described."""
+    column = re.sub(r"^(station|segment|damper|main_bearing)_\d+_", r"\1_1_", re.sub(r"^cylinder_\d+_", "cylinder_2_", name))
+    quantity = re.sub(r"^(natural_frequency|mode)_\d+", r"\1_N", re.sub(r"_order_[\d.]+$", "_order_H", name))
+    for body, letter in (("station", "J"), ("segment", "J"), ("damper", "R")):
+        quantity = re.sub(rf"{body}_\d+", f"{body}_{letter}", quantity)
+    return [column, quantity]
+
+
 def is_described(name: str, unit: str, known: set[tuple[str, str]]) -> bool:
     """Whether the reference has a column or quantity: by its name, without the prefix of a joint, or with capitals in place of a
     number or word."""
     whole, name = name, re.sub(r"^(crank_pin_|guide_\d_(?!gap|force|friction))", "", name)
     names = [whole, name, re.sub(r"^(rod_mode|rod_axial)_\d$", r"\1_2", name), re.sub(r"^steps_limited_by_\w+$", "steps_limited_by_NAME", name),
-             re.sub(r"^(steps_of)_(order_)?\d+", r"\1_\2N", name),
+             re.sub(r"^(steps_of)_(order_)?\d+", r"\1_\2N", name), *names_of_engine(name),
              re.sub(r"^\w+_time_fraction_with_\w+$", "PHASE_time_fraction_with_NAME", name)]
     if any((one, unit) in known for one in names):
         return True

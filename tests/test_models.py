@@ -60,6 +60,14 @@ def variants_of_made_cases(template: dict) -> None:
     check(found["crank held at its starting speed"] == ("drive.kind=constant_speed",), "the crank can be held at its starting speed")
     check(len([label for label in found if label.startswith("contact ") and "geometry" not in label]) == 9, "there are nine other contact laws")
     check(found["friction"][0] == "friction.law=ambrosio", "friction can be added")
+    film = dry | {"lubrication": {"law": "finite_bearing", "variant": "short"}}
+    check(settings_of(variants_of(film, template))["quasi-static piston pin"] == ("joint.kind=quasi_static", "contact=none"),
+          "a film can carry the pin of a joint, without its contact")
+    carried = {key: film[key] for key in ("mechanism", "drive", "lubrication")} | {"main_bearing.joint": joint | {"kind": "quasi_static"}}
+    found_carried = settings_of(variants_of(carried, template))
+    check(found_carried["ideal main bearing"] == ("main_bearing.joint.kind=ideal", "main_bearing.joint.clearance=0", "lubrication=none"),
+          "a carried bearing can be ideal", str(found_carried.get("ideal main bearing")))
+    check("quasi-static piston pin" not in found, "a dry joint cannot be carried")
     check("crank_pin.joint.clearance=1e-05" in found["clearance at the crank pin too"], "the other pin can have clearance")
     check(not any("film" in label or "gas" in label for label in found), "a dry case has no variants of film and gas")
     area = float(dict(one.split("=") for one in found["elastic rod"])["elastic_rod.section_area"])

@@ -240,6 +240,9 @@ def steps() -> None:
     error = np.abs(smooth.finish()["crank_speed"] - loose.finish()["crank_speed"]).max()
     apart = np.abs(smooth.finish()["crank_speed"] - cut.finish()["crank_speed"]).max()
     check(apart < 5 * max(error, 1e-9), f"500 cuts: {apart}, own error {error}")
+    alone = case_of("sim_I").set(drive={"kind": "free"}).begin(end=0.05).inputs
+    case_of("sim_V").run(end=0.01)
+    check(alone["drive.torque"] == 0, "inputs keep their run")
     held = case_of("sim_I").set(drive={"kind": "constant_speed"}).begin(end=0.05)
     check([*held.inputs] == ["drive.crank_speed"], f"a prescribed speed is an input: {held.inputs}")
     start = held.inputs["drive.crank_speed"]

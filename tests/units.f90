@@ -5,6 +5,7 @@ program units
   use test_checks, only: run_test_checks
   use test_banded_lu, only: run_test_banded_lu
   use test_small_lu, only: run_test_small_lu
+  use test_crank_train, only: run_test_crank_train
   use test_state_layout, only: run_test_state_layout
   use test_number_writer, only: run_test_number_writer
   use test_peak_search, only: run_test_peak_search
@@ -65,6 +66,7 @@ program units
   call all%run('error_growth', run_test_error_growth)
   call all%run('events', run_test_events)
   call all%run('chain', run_test_chain)
+  call all%run('crank_train', run_test_crank_train)
   call all%run('elastic_rod', run_test_elastic_rod)
   call all%run('loose_piston', run_test_loose_piston)
   call all%run('varying_drive', run_test_varying_drive)

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Builds the shared library and the program of the Python package: fpm compiles the sources, one line of gfortran links them.
 
-    scripts/python/build_library.py [FOLDER]     FOLDER/libgudgeon.so; FOLDER: build/library of the checkout
+    scripts/python/build_library.py [FOLDER]            FOLDER/libgudgeon.so; FOLDER: build/library of the checkout
+    scripts/python/build_library.py --install PREFIX    the library, gudgeon.h and the program with its pages into PREFIX/lib, include,
+                                                        bin and share
 
 fpm links a shared library without the flags that it needs; therefore it only compiles here, from a folder with a manifest of its
 own. OpenMP stays out of the library, so that a host may have its own; -frecursive keeps local arrays out of static memory.
@@ -18,6 +20,13 @@ COMPILE = (
     "-O3 -flto=auto -fno-ipa-modref -fno-tree-vectorize --param max-inline-insns-auto=150"
     " -fPIC -fno-semantic-interposition -frecursive"
 )
+#: What the program prints, and where man and the shells look for it.
+PAGES = {
+    ("--man",): "share/man/man1/gudgeon.1",
+    ("--completion", "bash"): "share/bash-completion/completions/gudgeon",
+    ("--completion", "zsh"): "share/zsh/site-functions/_gudgeon",
+    ("--completion", "fish"): "share/fish/vendor_completions.d/gudgeon.fish",
+}
 MANIFEST = """name = "gudgeon"
 [build]
 auto-executables = false
@@ -74,6 +83,23 @@ def build_program(folder: Path) -> Path:
     return program
 
 
+def install(prefix: Path) -> None:
+    """Build everything and put it where compilers, shells and man look for it."""
+    folder = HERE.parent.parent / "build" / "library"
+    files = {build(folder): "lib/libgudgeon.so", sources() / "api" / "gudgeon.h": "include/gudgeon.h", build_program(folder): "bin/gudgeon"}
+    for source, place in files.items():
+        (prefix / place).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(source, prefix / place)
+    for words, place in PAGES.items():
+        (prefix / place).parent.mkdir(parents=True, exist_ok=True)
+        (prefix / place).write_text(page(prefix / "bin" / "gudgeon", words))
+
+
+def page(program: Path, words: tuple[str, ...]) -> str:
+    """What the program prints with these words."""
+    return subprocess.run([program, *words], check=True, capture_output=True, text=True).stdout
+
+
 def found_objects(folder: Path) -> list[str]:
     """The objects of the last build."""
     newest = max((folder / "build").rglob("*.o"), key=os.path.getmtime).parent
@@ -88,6 +114,9 @@ def run(command: list[str], folder: Path) -> None:
 
 if __name__ == "__main__":
     try:
-        print(build(Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else HERE.parent.parent / "build" / "library"))
-    except RuntimeError as error:
+        if sys.argv[1:2] == ["--install"] and len(sys.argv) == 3:
+            install(Path(sys.argv[2]).resolve())
+        else:
+            print(build(Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else HERE.parent.parent / "build" / "library"))
+    except (RuntimeError, OSError) as error:
         sys.exit(f"build_library: {error}")

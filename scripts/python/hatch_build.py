@@ -1,5 +1,7 @@
-"""Build hook of hatchling: compiles the shared library and the program into the package."""
+"""Build hook of hatchling: compiles the shared library and the program into the package. With GUDGEON_PREFIX in the environment they are
+those that `build_library.py --install` has put there, and the package has none of its own."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -12,29 +14,31 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import build_library
 
-#: What the program prints, and where man and the shells look for it.
-PAGES = {
-    ("--man",): "share/man/man1/gudgeon.1",
-    ("--completion", "bash"): "share/bash-completion/completions/gudgeon.bash",
-    ("--completion", "zsh"): "share/zsh/site-functions/_gudgeon",
-    ("--completion", "fish"): "share/fish/vendor_completions.d/gudgeon.fish",
-}
-
 
 class Hook(BuildHookInterface):
     def initialize(self, version, build_data):
         package = Path(self.root) / "src" / "gudgeon"
-        top = Path(self.root).parent.parent
+        build_data["artifacts"] += ["src/gudgeon/_groups.pyi"]
+        if prefix := os.environ.get("GUDGEON_PREFIX"):
+            library = Path(prefix) / "lib" / "libgudgeon.so"
+        else:
+            library = self.compile(package, build_data)
+        subprocess.run([sys.executable, str(Path(self.root) / "make_stubs.py")], check=True, env={**os.environ, "GUDGEON_LIBRARY": str(library)})
+
+    def compile(self, package, build_data):
+        """Compile into the package; returns the path of the library."""
+        top, program = Path(self.root).parent.parent, package / "bin" / "gudgeon"
+        program.parent.mkdir(exist_ok=True)
         with tempfile.TemporaryDirectory() as temporary:
             folder = top / "build" / "library" if (top / "fpm.toml").is_file() else Path(temporary)
             shutil.copy(build_library.build(folder), package / "libgudgeon.so")
-            (package / "bin").mkdir(exist_ok=True)
-            shutil.copy(build_library.build_program(folder), package / "bin" / "gudgeon")
-        subprocess.run([sys.executable, str(Path(self.root) / "make_stubs.py")], check=True)
-        for words, place in PAGES.items():
-            page = package / "bin" / Path(place).name
-            page.write_text(subprocess.run([package / "bin" / "gudgeon", *words], check=True, capture_output=True, text=True).stdout)
-            build_data["shared_data"][str(page)] = place
+            shutil.copy(build_library.build_program(folder), program)
         build_data["pure_python"] = False
         build_data["tag"] = "py3-none-" + sysconfig.get_platform().replace("-", "_").replace(".", "_")
-        build_data["artifacts"] += ["src/gudgeon/libgudgeon.so", "src/gudgeon/bin/gudgeon", "src/gudgeon/_groups.pyi"]
+        build_data["artifacts"] += ["src/gudgeon/libgudgeon.so", "src/gudgeon/bin/gudgeon"]
+        build_data["shared_scripts"][str(Path(self.root) / "launcher")] = "gudgeon"
+        for words, place in build_library.PAGES.items():
+            page = package / "bin" / ("-".join(words) + ".page")
+            page.write_text(build_library.page(program, words))
+            build_data["shared_data"][str(page)] = place
+        return package / "libgudgeon.so"

@@ -130,6 +130,7 @@ contains
       if (allocated(error)) return
       given%reals(element) = value
       if (schema%kind == integer_kind) given%whole = nint(value)
+      if (schema%is_list) given%whole = max(given%whole, element)
       given%given(element) = .true.
       given%written(element) = short_text(value)
       self%values%is_present(find_group(self%values%groups, trim(schema%group))) = .true.

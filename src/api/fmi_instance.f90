@@ -1,7 +1,7 @@
 !> An instance of a functional mock-up unit, as FMI 2.0 and 3.0 see it. Its case is in the folder of its resources. Value
 !> references: outputs have the indices of the columns from 0 on (0 is the time), inputs 1000 and their index in `inputs` from 0 on,
-!> 5000 whether a step ends at a contact, parameters 10000 + 2 k + e for element e = 0, 1 of key k, from 0 on. The run is built when the first output is asked for, or at
-!> the end of the initialisation, and again if a parameter changes before that.
+!> 5000 whether a step ends at a contact, parameters 10000 + 2 k + e for element e = 0, 1 of key k, from 0 on. The run is built when
+!> the first output is asked for, or at the end of the initialisation, and again if a parameter changes before that.
 module fmi_instance
   use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_loc, c_f_pointer, c_associated
   use kinds, only: dp
@@ -265,8 +265,8 @@ contains
     call self%set_reals(references, real(values, dp), status)
   end subroutine set_integers
 
-  !> Go on from a time by a step, or until a contact begins or ends, where that is wanted and allowed. `status` is fmi_discard if the
-  !> run ends before, or cannot go on; `last` is the time reached.
+  !> Go on from a time by a step, or until a contact begins or ends, where that is wanted and allowed. `status` is fmi_discard if
+  !> the run ends before, or cannot go on; `last` is the time reached.
   subroutine step(self, from, by, status)
     class(fmi_instance_t), intent(inout) :: self
     real(dp), intent(in) :: from, by   !! [s]

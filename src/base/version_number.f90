@@ -4,5 +4,5 @@ module version_number
   private
   public :: program_version
 
-  character(len=*), parameter :: program_version = '0.2.0'   !! as in fpm.toml
+  character(len=*), parameter :: program_version = '0.3.0'   !! as in fpm.toml
 end module version_number

@@ -164,10 +164,12 @@ contains
           along = c*it%cos_shift - s*it%sin_shift
           train%sine(i) = across
           train%cosine(i) = along
-          if (it%station == self%full) cycle
-          call small_sine_cosine(train%twist(it%station), sine, cosine)
-          train%sine(i) = across*cosine + along*sine
-          train%cosine(i) = along*cosine - across*sine
+          if (it%station /= self%full) then
+            call small_sine_cosine(train%twist(it%station), sine, cosine)
+            train%sine(i) = across*cosine + along*sine
+            train%cosine(i) = along*cosine - across*sine
+          end if
+          call it%follow(i, train)
         end associate
       end do
     end associate
@@ -196,8 +198,7 @@ contains
       end do
       do i = 1, size(self%cylinders)
         j = self%cylinders(i)%station
-        call self%cylinders(i)%add_row(train%sine(i), train%cosine(i), train%speed(j), train%gas_force(i), rows%inertia(j), &
-          rows%torque(j))
+        call self%cylinders(i)%add_row(i, train, train%speed(j), rows%inertia(j), rows%torque(j))
       end do
     end associate
   end subroutine find_rows
@@ -348,8 +349,7 @@ contains
     associate (train => motion%train)
       do i = 1, size(self%cylinders)
         if (.not. abs(train%gas_force(i)) > 0) cycle
-        power = power - train%gas_force(i)*self%cylinders(i)%piston_rate(train%sine(i), train%cosine(i)) &
-          *train%speed(self%cylinders(i)%station)
+        power = power - train%gas_force(i)*self%cylinders(i)%piston_rate(i, train)*train%speed(self%cylinders(i)%station)
       end do
     end associate
   end function gas_power
@@ -363,8 +363,8 @@ contains
     inertia = self%inertia(self%full)
     torque = 0
     do i = 1, size(self%cylinders)
-      if (self%cylinders(i)%station == self%full) call self%cylinders(i)%add_row(motion%train%sine(i), motion%train%cosine(i), &
-        0.0_dp, 0.0_dp, inertia, torque)
+      if (self%cylinders(i)%station == self%full) &
+        call self%cylinders(i)%add_row(i, motion%train, 0.0_dp, inertia, torque)
     end do
   end function inertia_beside
 end module crank_train

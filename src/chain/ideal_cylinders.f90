@@ -8,6 +8,7 @@
 !> Its bodies, with the body of the crank of its throw, are in its own axes: x along its axis, gravity turned accordingly.
 module ideal_cylinders
   use kinds, only: dp
+  use train_motion, only: train_motion_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t
@@ -27,6 +28,7 @@ module ideal_cylinders
     real(dp) :: axial_position = 0       !! [m]
     type(bodies_t) :: bodies
   contains
+    procedure, non_overridable :: follow
     procedure, non_overridable :: add_row
     procedure, non_overridable :: piston_rate
     procedure :: inertia
@@ -43,18 +45,31 @@ module ideal_cylinders
 
 contains
 
-  !> Add inertia and torque at a crank angle with this sine and cosine, a speed [rad/s] and a force of the gas [N] to those of the
-  !> station.
-  pure subroutine add_row(self, sine, cosine, speed, gas_force, inertia, torque)
+  !> Set sine and cosine of the rod's angle, and 1/(L cos A), of element i of the motion, whose crank is known.
+  pure subroutine follow(self, i, train)
     class(ideal_cylinder_t), intent(in) :: self
-    real(dp), intent(in) :: sine, cosine, speed, gas_force
-    real(dp), intent(inout) :: inertia, torque
-    real(dp) :: sin_rod, cos_rod, gap, per_arm, k, k_slope, p, p_slope, along, across, m12, c
-    associate (b => self%bodies, r => self%bodies%crank%length, mass => self%bodies%piston%mass)
-      sin_rod = r*sine*b%per_rod_length
+    integer, intent(in) :: i
+    type(train_motion_t), intent(inout) :: train
+    real(dp) :: gap
+    associate (sin_rod => train%sin_rod(i))
+      sin_rod = self%bodies%crank%length*train%sine(i)*self%bodies%per_rod_length
       gap = (1 - sin_rod)*(1 + sin_rod)
-      cos_rod = sqrt(gap)
-      per_arm = b%per_rod_length/gap*cos_rod
+    end associate
+    train%cos_rod(i) = sqrt(gap)
+    train%per_arm(i) = self%bodies%per_rod_length/gap*train%cos_rod(i)
+  end subroutine follow
+
+  !> Add inertia and torque in the motion of element i, at a speed [rad/s] and with its force of the gas, to those of the station.
+  pure subroutine add_row(self, i, train, speed, inertia, torque)
+    class(ideal_cylinder_t), intent(in) :: self
+    integer, intent(in) :: i
+    type(train_motion_t), intent(in) :: train
+    real(dp), intent(in) :: speed
+    real(dp), intent(inout) :: inertia, torque
+    real(dp) :: k, k_slope, p, p_slope, along, across, m12, c
+    associate (b => self%bodies, r => self%bodies%crank%length, mass => self%bodies%piston%mass, sine => train%sine(i), &
+               cosine => train%cosine(i), sin_rod => train%sin_rod(i), cos_rod => train%cos_rod(i), per_arm => train%per_arm(i), &
+               gas_force => train%gas_force(i))
       k = r*cosine*per_arm
       k_slope = b%rod%length*sin_rod*per_arm*((k - 1)*(k + 1))
       p = -r*sine*(1 + k)
@@ -70,24 +85,29 @@ contains
     end associate
   end subroutine add_row
 
-  !> p = dx/dq of the piston [m].
-  pure real(dp) function piston_rate(self, sine, cosine) result(rate)
+  !> p = dx/dq of the piston in the motion of element i [m].
+  pure real(dp) function piston_rate(self, i, train) result(rate)
     class(ideal_cylinder_t), intent(in) :: self
-    real(dp), intent(in) :: sine, cosine
-    real(dp) :: sin_rod
-    sin_rod = self%bodies%crank%length*sine*self%bodies%per_rod_length
-    rate = -self%bodies%crank%length*sine*(1 + self%bodies%crank%length*cosine*self%bodies%per_rod_length &
-      /sqrt((1 - sin_rod)*(1 + sin_rod)))
+    integer, intent(in) :: i
+    type(train_motion_t), intent(in) :: train
+    associate (r => self%bodies%crank%length)
+      rate = -r*train%sine(i)*(1 + r*train%cosine(i)*train%per_arm(i))
+    end associate
   end function piston_rate
 
   !> Inertia at a crank angle [kg m^2].
   pure real(dp) function inertia(self, angle)
     class(ideal_cylinder_t), intent(in) :: self
     real(dp), intent(in) :: angle   !! [rad]
+    type(train_motion_t) :: train
     real(dp) :: torque
+    train%sine(1) = sin(angle)
+    train%cosine(1) = cos(angle)
+    train%gas_force(1) = 0
+    call self%follow(1, train)
     inertia = 0
     torque = 0
-    call self%add_row(sin(angle), cos(angle), 0.0_dp, 0.0_dp, inertia, torque)
+    call self%add_row(1, train, 0.0_dp, inertia, torque)
   end function inertia
 
   !> Kinetic and potential energy at a crank angle [rad] and a speed [rad/s] [J].

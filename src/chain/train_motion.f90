@@ -15,6 +15,8 @@ module train_motion
     real(dp) :: ring_speed(most_rings)      !! of each ring [rad/s]
     real(dp) :: angle(most_cylinders)       !! crank angle of each cylinder from its own axis [rad]
     real(dp) :: sine(most_cylinders), cosine(most_cylinders)   !! of that
+    real(dp) :: sin_rod(most_cylinders), cos_rod(most_cylinders)   !! of the angle of each rod from that axis
+    real(dp) :: per_arm(most_cylinders)     !! 1/(rod length . cos_rod) [1/m]
     real(dp) :: gas_force(most_cylinders)   !! on each piston, along its axis towards the shaft [N]
   end type train_motion_t
   !> Inertia [kg m^2] and torque [N m] of each station, without the mechanism and without the damping of the drive.

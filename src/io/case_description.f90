@@ -74,6 +74,8 @@ contains
       short_text(mm3_to_cm3*pi/4*bore**2*stroke, digits)//' cm3'
     if (allocated(case%elastic_rod)) text = text//', elastic rod'
     if (allocated(case%crankshaft)) text = text//', elastic crankshaft'
+    if (allocated(case%cylinders)) text = text//'; cylinders: '//integer_text(size(case%cylinders))
+    if (allocated(case%shaft)) text = text//'; crankshaft of '//integer_text(case%shaft%n_inertia)//' stations'
   end function machine_text
 
   !> The table of a bearing by itself, and what turns.

@@ -122,6 +122,9 @@ contains
       do k = 1, size(groups)
         if (values%is_present(find_group(values%groups, trim(groups(k))))) call values%refuse_group(trim(groups(k)), only)
       end do
+      do k = 1, size(values%groups)
+        if (values%groups(k)%number > 0 .and. values%is_present(k)) call values%refuse_group(trim(values%groups(k)%name), only)
+      end do
       do k = 2, n_places
         group = joint_group(in_order(k))
         if (values%is_present(find_group(values%groups, group))) call values%refuse_group(group, only)
@@ -251,6 +254,8 @@ contains
         'quasi_static needs the group lubrication: a film carries the load')
       call forbid(allocated(joint%friction), law_group('friction', place), 'law', &
         'is not for kind = ''quasi_static'': no contact law acts there; give the group the place of another joint')
+      call forbid(place == main_bearing .and. allocated(c%cylinders), joint_group(place), 'kind', &
+        'must be ideal with further cylinders: the load of a single bearing of the crankshaft is not known')
       if (.not. allocated(joint%film)) return
       call forbid(allocated(joint%contact) .and. .not. joint%elastic%is_wanted, law_group('contact', place), 'law', &
         'is not for kind = ''quasi_static'' unless elastic_film = .true.: the film carries all of the load')

@@ -32,6 +32,10 @@ contains
           text = text//'! (cannot be combined with &'//trim(it%instead_of)//', therefore commented out here)'//newline
           out = '! '
         end if
+        if (it%number > 0) then
+          text = text//'! (a group for each one, therefore commented out here)'//newline
+          out = '! '
+        end if
         text = text//out//'&'//name_in_file(it)//newline
         if (it%place /= '' .or. it%is_law) text = text//'  ! place = ''crank_pin''                   '// &
           'in a second group of this name: '//trim(merge('the joint of crank and rod', 'laws for that joint alone ', &

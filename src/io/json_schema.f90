@@ -71,8 +71,13 @@ contains
     select case (key%kind)
     case (real_kind)
       text = number_schema('number', key)
-      if (key%count > 1) text = '{"type": "array", "items": '//text//', "minItems": '// &
-        integer_text(merge(1, key%count, key%is_list))//', "maxItems": '//integer_text(key%count)//'}'
+      if (key%is_list) then   ! one value or several
+        text = '{"anyOf": ['//text//', {"type": "array", "items": '//text//', "minItems": 1, "maxItems": '// &
+          integer_text(key%count)//'}]}'
+      else if (key%count > 1) then
+        text = '{"type": "array", "items": '//text//', "minItems": '//integer_text(key%count)//', "maxItems": '// &
+          integer_text(key%count)//'}'
+      end if
     case (integer_kind)
       text = number_schema('integer', key)
     case (logical_kind)

@@ -22,14 +22,14 @@ module reference_pages
   !> A kind of scene: changes to the case of the template, separated by blanks.
   type :: scene_kind_t
     character(len=80) :: title = ''
-    character(len=260) :: changes = ''
+    character(len=320) :: changes = ''
   end type scene_kind_t
 
   character(len=*), parameter :: play = 'joint.kind=clearance ', contact = 'contact.law=hertz ', &
     film = 'lubrication.viscosity=0.0117 '
 
   !> Kinds of scenes that together have every column.
-  type(scene_kind_t), parameter :: kinds(16) = [ &
+  type(scene_kind_t), parameter :: kinds(17) = [ &
     scene_kind_t('Every scene', ''), &
     scene_kind_t('Joint with clearance (the last three columns only with `&contact`)', play//contact), &
     scene_kind_t('Contact with `geometry = ''conformal''`', play//contact//'contact.geometry=conformal'), &
@@ -53,7 +53,10 @@ module reference_pages
       'combustion.heat=165 combustion.wiebe_efficiency=5 combustion.wiebe_form=3 combustion.start_deg=340 '// &
       'combustion.duration_deg=40'), &
     scene_kind_t('Elastic rod', 'elastic_rod.section_area=3e-4 elastic_rod.section_inertia=1.5e-8'), &
-    scene_kind_t('Elastic crankshaft', 'crankshaft.flywheel_inertia=0.02 crankshaft.torsional_stiffness=2e4')]
+    scene_kind_t('Elastic crankshaft', 'crankshaft.flywheel_inertia=0.02 crankshaft.torsional_stiffness=2e4'), &
+    scene_kind_t('Several cylinders (the numbers are those of the case)', 'crankshaft.flywheel_inertia=0 '// &
+      'crankshaft.torsional_stiffness=0 crankshaft.inertia=0.1,0.2 crankshaft.stiffness=1e5 cylinder_1.full=T '// &
+      'cylinder_1.station=2 cylinder_2.station=1 damper_1.station=1 damper_1.inertia=0.1 damper_1.stiffness=1e4')]
 
 contains
 
@@ -152,8 +155,8 @@ contains
     type(column_list_t), intent(out) :: list
     type(error_t), allocatable, intent(out) :: error
     character(len=*), parameter :: rigid_and_dry = 'joint.kind=ideal contact=none friction=none lubrication=none guide=none '// &
-      'heat=none wear=none elastic_rod=none crankshaft=none combustion=none output.columns=standard output.ideal_twin=F '// &
-      'output.film_times='
+      'heat=none wear=none elastic_rod=none crankshaft=none combustion=none film_history=none output.columns=standard '// &
+      'output.ideal_twin=F output.film_times='
     character(len=:), allocatable :: changes
     character(len=60), allocatable :: overrides(:)
     type(case_t) :: case

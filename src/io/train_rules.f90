@@ -31,6 +31,7 @@ contains
     do i = 1, n_dampers
       call check_damper(i)
     end do
+    if (values%problems%concerns('crankshaft')) return
     if (n_cylinders > 0) call check_cylinders()
     if (values%problems%concerns('mechanism') .or. any([(values%problems%concerns(trim(cylinder(i))), i=1, n_cylinders)])) return
     if (allocated(c%shaft) .and. .not. values%problems%concerns('crankshaft')) call check_inertias()
@@ -147,6 +148,7 @@ contains
               integer_text(c%shaft%n_inertia)//', the number of stations')
           else
             call values%forbid(it%station > 0, group, 'station', 'needs the lists inertia and stiffness of &crankshaft')
+            if (it%station > 0) return
           end if
           j = findloc(throw(:k - 1), throw(k), 1)
           if (j > 0) call values%forbid(it%station /= c%cylinders(j)%station, group, 'throw', 'is that of cylinder_'// &

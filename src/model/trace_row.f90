@@ -56,7 +56,7 @@ contains
     type(column_list_t), intent(in) :: list
     integer :: i
     self%n = 0
-    self%wanted = .false.
+    self%wanted(:size(list%names)) = .false.
     do i = 1, size(list%id)
       self%wanted(list%id(i)) = .true.
     end do

@@ -94,8 +94,7 @@ contains
     integer :: i, n
     n = 0
     do i = 1, most_rings
-      call list%group('damper', 'Damper of torsional vibrations: a ring on a station of the crankshaft', .true., &
-        instead_of='crankshaft flywheel_inertia', number=i)
+      call list%group('damper', 'Damper of torsional vibrations: a ring on a station of the crankshaft', .true., number=i)
       call one%parameters(list)
       if (.not. (list%sets .and. list%is_present)) cycle
       n = n + 1

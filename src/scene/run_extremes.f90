@@ -152,7 +152,7 @@ contains
     end do
     call self%guide%search(method, scene, t, now, self%figures)
     call self%elastic%search(method, scene, t, now, self%figures%elastic)
-    call self%train%search(scene, t, now)
+    call self%train%search(scene, t, now, present(cycles))
     if (present(cycles)) call cycles%search_machine(method, scene, t, now)
   end subroutine search
 

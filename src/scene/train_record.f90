@@ -118,11 +118,12 @@ contains
   end subroutine change_rates
 
   !> Account for the interval between the last point and t, where the scene has been evaluated.
-  subroutine search(self, scene, t, now)
+  subroutine search(self, scene, t, now, has_cycles)
     class(train_record_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: has_cycles   !! results of revolutions are wanted
     type(point_t) :: next
     real(dp) :: h
     integer :: j
@@ -147,7 +148,7 @@ contains
         end do
         turn%duration = turn%duration + h
         turn%loss = turn%loss + 0.5_dp*h*(self%last%loss + next%loss)
-        if (train%is_chain) call add_orders(train, self%last, next, h, turn%order)
+        if (train%is_chain .and. has_cycles) call add_orders(train, self%last, next, h, turn%order)
       end if
     end associate
     self%last = next

@@ -104,7 +104,11 @@ contains
     real(dp), intent(in) :: number      !! whole where the key is
     associate (value => self%values%values(self%places(i)))
       value%reals(element) = number
-      value%whole = nint(number)
+      if (self%values%keys(self%places(i))%is_list) then
+        value%whole = max(value%whole, element)
+      else
+        value%whole = nint(number)
+      end if
       value%given(element) = .true.
       value%written(element) = short_text(number)
     end associate

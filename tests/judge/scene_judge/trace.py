@@ -105,6 +105,15 @@ def read_columns(path: Path) -> Columns:
     return {name: list(column) for name, column in zip(names, zip(*rows))} if rows else {name: [] for name in names}
 
 
+def without_carried(case: Values, columns: Columns) -> Columns:
+    """The columns without those of bearings of kind quasi_static, which the mechanism does not feel: their pins are ideal."""
+    own = ("eccentricity_", "film_", "phase", "asperity_", "friction_", "sliding_", "wall_", "bore_wear", "pin_wear", "max_film", "neglected_")
+    for place, prefix in (("", ""), ("crank_pin.", "crank_pin_"), ("main_bearing.", "main_bearing_")):
+        if case.get(f"{place}joint.kind") == ["quasi_static"]:
+            columns = {name: column for name, column in columns.items() if not name.startswith(tuple(prefix + what for what in own))}
+    return columns
+
+
 def read_run(folder: Path, name: str, status: int = 0, message: str = "") -> Run:
     """The results of the case NAME in a folder."""
     run = Run(status, message)
@@ -112,7 +121,7 @@ def read_run(folder: Path, name: str, status: int = 0, message: str = "") -> Run
         if not (folder / f"{name}{suffix}").exists():
             return run
     run.case = read_case((folder / f"{name}.resolved.nml").read_text())
-    run.columns = read_columns(folder / f"{name}.csv")
+    run.columns = without_carried(run.case, read_columns(folder / f"{name}.csv"))
     with (folder / f"{name}.summary.csv").open(newline="") as lines:
         run.summary = {row[0]: row[1] for row in csv.reader(lines)}
     for end, rows in ((".events.csv", run.events), (".wear.csv", run.worn)):

@@ -19,6 +19,7 @@ from xml.etree import ElementTree as xml
 from . import _library
 from ._keys import Key, keys
 from .case import Case, Column, read
+from .run import _Owner
 from .stepper import Inputs
 
 INPUTS, AT_CONTACTS, PARAMETERS = 1000, 5000, 10000  # first value references; see src/api/fmi_instance.f90
@@ -45,10 +46,10 @@ def fmu(case: Case, path: str | Path | None = None, fmi: int = 2, columns: Seque
         resources = folder / "resources"
         resources.mkdir()
         case.cache(resources)  # tables of films go with the unit
-        number = case._begin(False, None, True)
-        inputs = {name: (value, unit) for name, value, unit in _inputs(number)}
-        end = _library.library().run_end(number)
-        _library.library().run_free(number)
+        owner = _Owner(case._begin(False, None, True))
+        found = Inputs(owner)
+        inputs = {name: (found[name], found.units[name]) for name in found}
+        end = _library.library().run_end(owner.number)
         text = _with_its_files(case, resources)
         (resources / "case.nml").write_text(text)
         identity = "{" + hashlib.sha256(f"{fmi}{text}{_library.text_from(_library.library().version)}".encode()).hexdigest()[:32] + "}"
@@ -66,11 +67,6 @@ def fmu(case: Case, path: str | Path | None = None, fmi: int = 2, columns: Seque
                     file.write(source, source.relative_to(folder))
         part.replace(target)
     return target
-
-
-def _inputs(number: int) -> list[tuple[str, float, str]]:
-    found = Inputs(number)
-    return [(name, found[name], found.units[name]) for name in found]
 
 
 def _with_its_files(case: Case, resources: Path) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes as c
 import os
+import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -78,23 +79,28 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
 }
 
 
+_LONG = ("run_new", "run_advance", "run_certify", "run_save")
+
+
 def path() -> Path:
-    """The library of the package, or of the checkout in which the package is; the environment variable GUDGEON_LIBRARY names another."""
+    """The library of the package, of the checkout in which the package is, or of the prefix of Python; the environment variable
+    GUDGEON_LIBRARY names another."""
     own = Path(__file__).with_name("libgudgeon.so")
-    built = Path(__file__).resolve().parents[4] / "build" / "library" / own.name   # by build_library.py
-    return Path(os.environ.get("GUDGEON_LIBRARY") or (built if built.exists() and not own.exists() else own))
+    built = Path(__file__).resolve().parents[4] / "build" / "library" / own.name  # by build_library.py
+    found = (place for place in (own, built, Path(sys.prefix) / "lib" / own.name) if place.exists())
+    return Path(os.environ.get("GUDGEON_LIBRARY") or next(found, own))
 
 
 @cache
 def library() -> Any:
-    """The functions of the library."""
-    loaded = c.CDLL(str(path()))
+    """The functions of the library. Those that may take long leave other threads of Python free."""
+    free, held = c.CDLL(str(path())), c.PyDLL(str(path()))
 
     class Functions:
         """Functions by their names without gudgeon_."""
 
     for name, (result, arguments) in _FUNCTIONS.items():
-        function = getattr(loaded, f"gudgeon_{name}")
+        function = getattr(free if name in _LONG else held, f"gudgeon_{name}")
         function.restype, function.argtypes = result, arguments
         setattr(Functions, name, staticmethod(function))
     return Functions

@@ -128,6 +128,16 @@ def read_summary(path: Path) -> dict[str, tuple[str, str]]:
         return {row["quantity"]: (row["value"], row["unit"]) for row in csv.DictReader(file)}
 
 
+#: Groups that a case may have several times, by number.
+REPEATED = ("cylinder", "damper")
+
+
+def numbered(case: dict[str, dict[str, object]], name: str) -> list[dict[str, object]]:
+    """All groups of this name, in the order of their numbers."""
+    return [case[key] for key in sorted((key for key in case if key.startswith(name + "_") and key[len(name) + 1:].isdigit()),
+                                        key=lambda key: int(key[len(name) + 1:]))]
+
+
 def read_case(path: Path) -> dict[str, dict[str, object]]:
     """Reads a NAME.resolved.nml: see `parse_case`."""
     return parse_case(path.read_text(encoding="utf-8"))
@@ -136,12 +146,15 @@ def read_case(path: Path) -> dict[str, dict[str, object]]:
 def parse_case(text: str) -> dict[str, dict[str, object]]:
     """Reads a resolved case as the program writes it: group -> key -> number, list of numbers, logical or text.
 
-    A group that belongs to one joint has a prefix, as in crank_pin.joint; the first key of the group names the joint."""
+    A group that belongs to one joint has a prefix, as in crank_pin.joint; the first key of the group names the joint. Groups that may
+    be repeated have numbers, as in cylinder_3."""
     case: dict[str, dict[str, object]] = {}
     name = ""
     for line in text.splitlines():
         if line.startswith("&"):
             name = line[1:].strip()
+            if name in REPEATED:
+                name += f"_{sum(group.startswith(name + '_') for group in case) + 1}"
             case.setdefault(name, {})
         elif match := re.match(r"\s*(\w+)\s*=\s*(.*)$", line):
             key, value = match[1], _value(match[2])

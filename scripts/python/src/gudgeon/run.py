@@ -381,7 +381,7 @@ def advance(number: int, to: float, tell: Callable[[float], None] | None, timeou
     """Advance a run of the library in slices of about `SLICE`, between which Python looks for interruptions. Returns -1 at a pause, 0
     at its end, 4 if it cannot go on."""
     began = before = time.monotonic()
-    steps = 100
+    steps = 500
     while True:
         status = library().run_advance(number, to, steps)
         now, clock = library().run_time(number), time.monotonic()

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 class Inputs(MutableMapping[str, float]):
     """The inputs of a run. A new value acts from the next advance on; a prescribed speed changes linearly during it."""
 
-    def __init__(self, number: int) -> None:
-        self._number = number
+    def __init__(self, owner: _Owner) -> None:
+        self._owner, self._number = owner, owner.number
+        number = owner.number
         self.units: dict[str, str] = {}
         self._index: dict[str, int] = {}
         for i in range(library().inputs(number)):
@@ -78,7 +79,7 @@ class Stepper:
     def __init__(self, case: Case, end: float | None = None) -> None:
         self._owner = _Owner(case._begin(False, end))
         self._case = case.copy()
-        self.inputs = Inputs(self._number)
+        self.inputs = Inputs(self._owner)
         self._names = [column.name for column in _columns(library().columns(self._number), library().column, self._number)]
         self._values = (ctypes.c_double * len(self._names))()
 

@@ -5,7 +5,7 @@
     gudgeon-plot models cases/sim_III.nml --set integrator.revolutions=2
 
 Runs the case with models removed, exchanged, refined and added, one at a time: members (rigid, elastic), contact laws and
-geometries, film, friction, clearance at each joint, the ideal twin, gas, gravity, the drive. The possible models are found from the
+geometries, film, friction, clearance at each joint, a film that carries an ideal pin (kind quasi_static) between both, the ideal twin, gas, gravity, the drive. The possible models are found from the
 case itself and `gudgeon --template`. Each scene is certified (`gudgeon --certify`), and its cost is the shortest processor time of
 three runs. Ends with the cheapest scene whose quantities are within --within of those of the most complete scene, the case with all
 refinements and additions.

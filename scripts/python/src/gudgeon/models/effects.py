@@ -132,7 +132,7 @@ class Laboratory:
         resolved = read_case(base.with_name(f"{base.name}.resolved.nml"))
         outcome = Outcome(variant, evaluations=int(summary["rhs_evaluations"]), certificate=certificate_of(summary))
         joint = resolved["joint"]
-        outcome.clearance = float(joint["clearance"]) if joint.get("kind") == "clearance" else 0.0
+        outcome.clearance = float(joint["clearance"]) if joint.get("kind", "ideal") != "ideal" else 0.0
         for quantity in QUANTITIES.values():
             if quantity.name == "loss" and "cycle_revolutions" in summary:
                 outcome.values["loss"], outcome.uncertainty["loss"] = loss_of(summary)
@@ -149,8 +149,14 @@ def loss_of(summary: dict[str, str]) -> tuple[float, float]:
     """Energy that the joints take from the bodies in a revolution of the last whole cycle, and its uncertainty [J]."""
     parts = [name for name in summary if re.search(r"cycle_work_(contact|friction|film|asperities)$", name)]
     revolutions = float(summary["cycle_revolutions"])
+    duration = float(summary["cycle_duration"])
+    loss = -sum(float(summary[name]) for name in parts)
     uncertainty = sum(float(summary.get(f"{name}_difference", "nan")) for name in parts)
-    return -sum(float(summary[name]) for name in parts) / revolutions, uncertainty / revolutions
+    for name in summary:  # bearings of kind quasi_static do no work on the bodies
+        if (match := re.match(r"(.*)cycle_mean_(film|friction)_power$", name)) and f"{match[1]}cycle_work_film" not in summary:
+            loss += duration * float(summary[name])
+            uncertainty += duration * float(summary.get(f"{name}_difference", "nan"))
+    return loss / revolutions, uncertainty / revolutions
 
 
 def short(said: str) -> str:

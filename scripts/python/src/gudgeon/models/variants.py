@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-PLACES = ("", "crank_pin.")  # prefix of a group: none (piston pin or all joints), or crank pin only
+PLACES = ("", "crank_pin.", "main_bearing.")  # prefix of a group: none (piston pin or all joints), or one place only
 LAWS = ("friction", "asperities", "lubrication", "contact")
 OTHER_GROUPS = ("guide", "elastic_rod", "crankshaft", "combustion", "cylinder_pressure")
 WORDS = {
@@ -70,14 +70,45 @@ def loose_joints(case: Case) -> list[str]:
     return [name for name in groups_named(case, "joint") if case[name].get("kind") == "clearance"]
 
 
+def carried_joints(case: Case) -> list[str]:
+    return [name for name in groups_named(case, "joint") if case[name].get("kind") == "quasi_static"]
+
+
 def place_of(name: str) -> str:
-    """' at the crank pin' for a group that belongs to the crank pin alone, otherwise an empty text."""
-    return " at the crank pin" if name.startswith("crank_pin.") else ""
+    """' at the crank pin' for a group that belongs to one place alone, otherwise an empty text."""
+    return f" at the {pin_of(name)}" if name.startswith(PLACES[1:]) else ""
+
+
+def pin_of(name: str) -> str:
+    """The place of a joint in words."""
+    return next((place[:-1].replace("_", " ") for place in PLACES[1:] if name.startswith(place)), "piston pin")
 
 
 def variants_of(case: Case, template: dict[str, dict[str, Key]]) -> list[Variant]:
     """All variants of a case, given as its resolved file. Not all of them need be valid: the program refuses invalid ones."""
-    return [*taken_out(case), *exchanged(case, template), *refined(case), *added(case, template)]
+    if "bearing_load" in case:
+        return exchanged(case, template)
+    return [*taken_out(case), *rungs(case), *exchanged(case, template), *refined(case), *added(case, template)]
+
+
+def rungs(case: Case) -> list[Variant]:
+    """The other steps from an ideal pin over a film that carries its load, one way, to a joint with clearance."""
+    found = []
+    films = lambda name: name.replace("joint", "lubrication") in case or "lubrication" in case
+    loose = loose_joints(case)
+    for name in loose:
+        own = [law for group in ("contact", "friction") for law in {group, name.replace("joint", group)} if law in case]
+        shared = [law for law in own if "." not in law]
+        if films(name) and (len(loose) == 1 or not shared):
+            settings = (f"{name}.kind=quasi_static", *(f"{law}=none" for law in sorted(own)))
+            found.append(Variant("taken out", f"quasi-static {pin_of(name)}", settings))
+    for name in carried_joints(case):
+        others = any(other != name for other in (*loose, *carried_joints(case)))
+        laws = () if others else tuple(f"{law}=none" for group in (*LAWS, "wear") for law in groups_named(case, group))
+        found.append(Variant("taken out", f"ideal {pin_of(name)}", (f"{name}.kind=ideal", f"{name}.clearance=0", *laws)))
+        if not name.startswith("main_bearing."):
+            found.append(Variant("added", f"motion of the {pin_of(name)} in its clearance", (f"{name}.kind=clearance",), fuller=True))
+    return found
 
 
 def taken_out(case: Case) -> list[Variant]:
@@ -95,8 +126,7 @@ def taken_out(case: Case) -> list[Variant]:
     rigid = tuple(f"{name}=none" for name in ("elastic_rod", "crankshaft") if name in case)
     for name in loose:
         settings = ideal_joints(case, [name])
-        label = "ideal crank pin" if name.startswith("crank_pin.") else "ideal piston pin"
-        found.append(Variant("taken out", label, settings))
+        found.append(Variant("taken out", f"ideal {pin_of(name)}", settings))
     bore = ("guide=none",) if case.get("guide", {}).get("kind") == "clearance" else ()
     if len(loose) > 1 or (loose and (rigid or bore)):
         found.append(Variant("taken out", "ideal twin: no clearance, rigid members", ideal_joints(case, loose) + rigid + bore))

@@ -2,6 +2,7 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
+from gudgeon import language
 from gudgeon.plots.style import BLACK, BLUE, GREY, ORANGE, VERMILION, WIDTH
 from gudgeon.results import Run
 from matplotlib.axes import Axes
@@ -11,7 +12,7 @@ from matplotlib.figure import Figure as Drawing
 PLACES = {"piston_pin": "", "crank_pin": "crank_pin_", "main_bearing": "main_bearing_"}
 
 #: The largest load in the picture, over the radius of the clearance circle.
-LOAD_RADIUS = 1.6
+LOAD_RADIUS = 1.25
 
 
 def has_film(run: Run, place: str) -> bool:
@@ -41,20 +42,23 @@ def orbit(run: Run, place: str, name: str) -> Drawing:
     place_in_circle = (x + 1j * y) / clearance
     turned = place_in_circle * np.exp(-1j * np.angle(load))
     angle = np.degrees(run["crank_angle"][rows])
-    drawing, (left, right) = plt.subplots(1, 2, figsize=(WIDTH, 0.62 * WIDTH))
+    drawing, (left, right) = plt.subplots(1, 2, figsize=(WIDTH, 0.58 * WIDTH))
     scale = LOAD_RADIUS / np.abs(load).max()
     left.plot(scale * load.imag, scale * load.real, color=ORANGE, linewidth=0.6, label=f"load, up to {1e-3 * np.abs(load).max():.3g} kN")
     thinnest = int(np.argmin(thickness))
     ends = scale * load[thinnest]
     left.annotate("", (ends.imag, ends.real), (0, 0), arrowprops={"arrowstyle": "->", "color": ORANGE, "linewidth": 0.8})
-    right.annotate("load", (0, LOAD_RADIUS), (0, 0), ha="center", va="bottom", color=ORANGE,
-                   arrowprops={"arrowstyle": "<-", "color": ORANGE, "linewidth": 0.8})
+    right.annotate("", (0, LOAD_RADIUS), (0, 0), arrowprops={"arrowstyle": "->", "color": ORANGE, "linewidth": 0.8})
     for axes, track, title in ((left, place_in_circle, "fixed axes"), (right, turned, "axes of the load")):
         draw_orbit(axes, track, angle, thinnest)
         axes.set_title(title, loc="left")
-    left.legend(*left.get_legend_handles_labels(), loc="lower left", bbox_to_anchor=(0, -0.12))
+    right.plot([], [], color=BLUE, label="pin, dots every 90° of the crank")
+    right.plot([], [], "o", color=VERMILION, markersize=4, label="thinnest film")
+    for axes in (left, right):
+        axes.legend(loc="upper left", bbox_to_anchor=(0, 0.0), ncols=2)
+    where = "bearing" if "bearing_load" in run.case else place.replace("_", " ")
     words = f"thinnest film {1e6 * thickness[thinnest]:.3g} µm of {1e6 * clearance:.4g} µm, crank at {angle[thinnest] % np.degrees(run_cycle(run)):.1f}°"
-    drawing.suptitle(f"{name}: {place.replace('_', ' ')}, {words}")
+    drawing.suptitle(f"{language.current.keep(name)}: {where}, {words}")
     return drawing
 
 
@@ -75,11 +79,11 @@ def draw_orbit(axes: Axes, track: np.ndarray, angle: np.ndarray, thinnest: int) 
         row = int(np.argmin(np.abs(angle - quarter)))
         axes.plot(track[row].imag, track[row].real, "o", color=BLUE, markersize=2)
         axes.annotate(f"{(quarter - quarters[0]) % 5760:.0f}", (track[row].imag, track[row].real), (2, 2), textcoords="offset points",
-                      fontsize=5, color=BLUE)
+                      fontsize=6, color=BLUE)
     axes.plot(track[thinnest].imag, track[thinnest].real, "o", color=VERMILION, markersize=4)
     axes.plot([0, track[thinnest].imag / abs(track[thinnest])], [0, track[thinnest].real / abs(track[thinnest])], color=VERMILION,
               linewidth=0.6, linestyle="--")
     axes.set_aspect("equal")
-    axes.set_xlim(-1.75, 1.75)
-    axes.set_ylim(-1.75, 1.75)
+    axes.set_xlim(-1.3, 1.3)
+    axes.set_ylim(-1.3, 1.3)
     axes.axis("off")

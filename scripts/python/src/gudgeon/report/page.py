@@ -20,7 +20,7 @@ from gudgeon.plots import wear as wear_pictures
 from gudgeon.plots.style import BLACK, BLUE, GREEN, PURPLE, VERMILION
 from gudgeon.report import answers
 from gudgeon.report import cycles as report_cycles
-from gudgeon.results import Run
+from gudgeon.results import Run, numbered
 from plotly.offline import get_plotlyjs
 
 PAGE = Path(__file__).parent / "assets"
@@ -80,6 +80,8 @@ OVER_TIME = (
     ("rod_strain_energy", "Rod: strain energy", "mJ", 1e3),
     ("crankshaft_twist", "Crankshaft: twist", "mrad", 1e3),
     ("crank_moment", "Crank moment", "N m", 1.0),
+    ("engine_moment_z", "Roll moment on the engine", "N m", 1.0),
+    ("engine_force_x", "Force on the engine along the cylinder", "kN", 1e-3),
     ("guide_force", "Guide force", "kN", 1e-3),
     ("guide_friction_force", "Friction of the piston on its guide", "N", 1.0),
     ("piston_offset", "Piston across its bore", "µm", 1e6),
@@ -350,6 +352,27 @@ def largest_deflection(columns: dict[str, np.ndarray]) -> float:
     return float(np.abs(np.array([columns[name] for name in modes]).T @ shapes).max())
 
 
+def engine_of(run: Run, columns: dict[str, np.ndarray]) -> dict | None:
+    """Several cylinders on one crankshaft, as the page's script draws them: for each cylinder its station (from 0) and the angle from
+    the full cylinder's crank to its own [rad]; for each station the column of its twist, or None for the full cylinder's; and the
+    largest twist [rad]. None for a run of one cylinder without stations."""
+    cylinders = numbered(run.case, "cylinder")
+    inertias = run.case.get("crankshaft", {}).get("inertia", [])
+    stations = len(inertias) if isinstance(inertias, list) else 0
+    if len(cylinders) < 2 and stations < 2:
+        return None
+    cylinders = cylinders or [{}]
+    full = next((i for i, one in enumerate(cylinders) if one.get("full")), 0)
+    angles = [np.radians(float(one.get("phase_deg", 0.0)) - float(one.get("bank_deg", 0.0))) for one in cylinders]
+    twists = [name if (name := f"station_{i + 1}_twist") in columns else None for i in range(stations)]
+    return {
+        "cylinders": [[max(int(one.get("station", 1)), 1) - 1, float(angle - angles[full])] for one, angle in zip(cylinders, angles)],
+        "full": full,
+        "twists": twists,
+        "largest": max([float(np.abs(columns[name]).max()) for name in twists if name], default=0.0),
+    }
+
+
 def page(
     run: Run,
     ideal: Run | None = None,
@@ -377,6 +400,8 @@ def page(
             used += [curve[axis] for axis in ("x", "y") if curve[axis] not in used]
         if plot.get("phase") in columns and plot["phase"] not in used:
             used.append(plot["phase"])
+    engine = engine_of(run, columns)
+    used += [name for name in (engine or {}).get("twists", []) if name and name not in used]
     rows = chosen_rows([columns[name] for name in used])
     film = film_columns(run, rows, fields)
     oil = oil_of(run, rows, fields)
@@ -407,6 +432,7 @@ def page(
         "bearing": drawn_bearing_radius(run),
         "bore": bore,
         "crank_pin": crank_pin_of(run, columns),
+        "engine": engine,
         "speed": float(run.parameter("initial", "crank_speed")),
         "modes": sum(name.startswith("rod_mode_") for name in used),
         "peak": {

@@ -32,6 +32,7 @@
   document.body.classList.toggle("ideal", !joint);
   document.body.classList.toggle("boreless", !bore);
   document.body.classList.toggle("tight-crank-pin", !crankPin);
+  document.body.classList.toggle("single", !scene.engine);
   document.body.classList.toggle("contactless", scene.contacts.length === 0);
   document.body.classList.toggle("filmless", !scene.angles);
   document.body.classList.toggle("unsigned", !scene.signed);
@@ -288,6 +289,41 @@
   }
 
   // ---- the time line: film thickness, or the pin's force, over the whole run, with the contacts below
+  // Twist of a station [rad]; 0 of the full cylinder's, and on a rigid shaft.
+  const twistOf = (station) => (scene.engine.twists[station] ? at(scene.engine.twists[station]) : 0);
+
+  // All cylinders side by side along the shaft, each in its own plane seen from the side, and below them the twist of the shaft: the
+  // largest is drawn as the height of its band.
+  function drawEngine() {
+    const { g, width, height } = prepare("engine");
+    const { cylinders, full, twists, largest } = scene.engine, { crank, rod } = scene;
+    const places = Math.max(cylinders.length, twists.length), band = twists.length ? 0.24 * height : 0;
+    const scale = (height - band) / (2.6 * crank + rod + 1.2 * crank), base = height - band - 1.3 * crank * scale;
+    const half = Math.min(0.32 * width / places, 0.6 * crank * scale);
+    const X = (station, i) => width * ((twists.length ? station : i) + 0.5) / places;
+    g.strokeStyle = COLOUR.grey; g.lineWidth = 2;
+    g.beginPath(); g.moveTo(0.02 * width, base); g.lineTo(0.98 * width, base); g.stroke();
+    cylinders.forEach(([station, angle], i) => {
+      const theta = at("crank_angle") + angle + twistOf(station), x = X(station, i);
+      const pin = base - scale * crank * Math.cos(theta);
+      const piston = base - scale * (crank * Math.cos(theta) + Math.sqrt(rod * rod - (crank * Math.sin(theta)) ** 2));
+      bar(g, x, pin, x, piston, 0.16 * half);
+      g.fillStyle = i === full ? COLOUR.blue : COLOUR.light; g.strokeStyle = COLOUR.ink; g.lineWidth = 1.2;
+      g.beginPath(); g.rect(x - half, piston - 0.45 * crank * scale, 2 * half, 0.8 * crank * scale); g.fill(); g.stroke();
+      g.beginPath(); g.rect(x - 0.7 * half, Math.min(pin, base), 1.4 * half, Math.abs(pin - base)); g.fillStyle = COLOUR.steel; g.fill(); g.stroke();
+      circle(g, x, pin, 0.22 * half, "#fff", COLOUR.ink, 1);
+    });
+    if (!(largest > 0)) return;
+    const Y = (twist) => height - 0.5 * band - 0.45 * band * twist / largest;
+    g.strokeStyle = COLOUR.grey; g.lineWidth = 0.7;
+    g.beginPath(); g.moveTo(0, Y(0)); g.lineTo(width, Y(0)); g.stroke();
+    g.strokeStyle = COLOUR.vermilion; g.lineWidth = 2;
+    g.beginPath();
+    twists.forEach((_, station) => g.lineTo(X(station, 0), Y(twistOf(station))));
+    g.stroke();
+    twists.forEach((_, station) => circle(g, X(station, 0), Y(twistOf(station)), 4, COLOUR.vermilion, COLOUR.ink, 1));
+  }
+
   function drawTimeline() {
     const { g, width, height } = prepare("timeline");
     const curve = scene.line, values = column[curve.column], strip = scene.contacts.length ? 26 : 0, [low, high] = curve.range;
@@ -340,6 +376,7 @@
       for (let k = 1; k <= scene.modes; k += 2) w += at(`rod_mode_${k}`) * (k % 4 === 1 ? 1 : -1);
       parts.push(`${W("rod bent")} ${(1e6 * w).toFixed(1)} µm ${W("half way")} (${W("drawn")} × ${bending.toPrecision(2)})`);
     }
+    if (scene.engine && scene.engine.largest > 0) parts.push(`${W("front end twisted")} ${(1e3 * (twistOf(0) - twistOf(scene.engine.twists.length - 1))).toFixed(2)} mrad`);
     const inside = scene.contacts.find((c) => now >= c.begin && now <= c.end);
     if (inside) {
       parts.push(`${W("this contact:")} ${(1e3 * (inside.end - inside.begin)).toPrecision(3)} ms, ${(inside.force / 1e3).toPrecision(3)} kN,`
@@ -353,6 +390,7 @@
     if (joint) { drawJoint(); drawOrbit("orbit", "", scene.clearance, scene.peak.eccentricity_ratio); }
     if (crankPin) drawOrbit("crank-pin-orbit", "crank_pin_", crankPin.clearance, crankPin.peak_ratio);
     if (bore) drawBore();
+    if (scene.engine) drawEngine();
     drawTimeline();
     drawState();
     byId("scrub").value = (now - begin) / (end - begin);

@@ -1,0 +1,313 @@
+#!/usr/bin/env python3
+"""Several cylinders on one crankshaft: whole runs against motions, frequencies and amplitudes computed by other programs
+(data/cylinders), equalities between cases, the energy of cases that no reference has, and what the program refuses.
+
+    .venv/bin/python tests/test_cylinders.py [--program PATH]        (after scripts/setup.sh --python)
+
+Ends with the line "N passed, N failed".
+"""
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(TOP / "scripts" / "bench"))
+sys.path.insert(0, str(TOP / "tests"))
+
+from measured import use_virtual_environment
+
+use_virtual_environment()
+
+import numpy as np
+import pandas as pd
+from assertions import Assertions
+from gudgeon.program import release_program
+
+assertions = Assertions()
+check = assertions.check
+CASES = TOP / "cases" / "cylinders"
+DATA = TOP / "data" / "cylinders"
+FINE = ("output.digits=17", "integrator.relative_tolerance=1e-11")
+STATES = ("crank_angle", "rod_angle", "piston_position", "crank_speed", "rod_speed", "piston_velocity", "twist", "station", "damper_1_speed")
+
+
+class Runner:
+    """Runs cases of the program in a folder of its own."""
+
+    def __init__(self, program: str, folder: Path) -> None:
+        self.program, self.folder, self.number = program, folder, 0
+
+    def __call__(self, case: str | Path, *changes: str) -> tuple[pd.DataFrame, dict[str, str]]:
+        self.number += 1
+        out = self.folder / str(self.number)
+        options = [part for change in changes for part in ("--set", change)]
+        done = subprocess.run([self.program, "-q", "-o", out, *options, str(self.file(case))], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        name = self.file(case).stem
+        summary = pd.read_csv(out / f"{name}.summary.csv", dtype=str).set_index("quantity")["value"].to_dict()
+        return pd.read_csv(out / f"{name}.csv"), summary
+
+    def file(self, case: str | Path) -> Path:
+        """The file of a case, or of the text of one."""
+        if isinstance(case, Path):
+            return case
+        path = self.folder / f"case_{abs(hash(case))}.nml"
+        path.write_text(case)
+        return path
+
+    def refused(self, case: str | Path, *changes: str) -> str:
+        """The message of a case that is wrong; empty if it is not."""
+        options = [part for change in changes for part in ("--set", change)]
+        done = subprocess.run([self.program, "--check", *options, str(self.file(case))], capture_output=True, text=True, check=False)
+        return done.stderr if done.returncode == 3 else ""
+
+
+def bare(frame: pd.DataFrame) -> pd.DataFrame:
+    return frame.rename(columns=lambda name: name.partition("[")[0])
+
+
+def order(values: np.ndarray, h: float, cycles: int = 1) -> float:
+    """Amplitude at order h of values at equal angles of `cycles` cycles of 720 degrees, the end left out."""
+    return 2 * abs(np.fft.rfft(values)[round(2 * h) * cycles]) / len(values)
+
+
+# references
+
+def compare(run: Runner, name: str, interval: float, states: float, others: float, *changes: str) -> None:
+    """All columns of a reference, relative to their largest value; rows at jumps of the gas are left out."""
+    reference = pd.read_csv(DATA / f"{name}.csv")
+    wanted = ", ".join(column.partition("[")[0] for column in reference.columns)
+    found, summary = run(CASES / f"{name}.nml", *FINE, f"output.interval={interval!r}", f"output.columns=standard, {wanted}",
+                         "output.window=all", "output.sampling=time", "run.until=end", *changes)
+    check(float(summary["max_energy_residual_relative"]) < 1e-11, f"{name}: no energy is lost", summary["max_energy_residual_relative"])
+    rows = min(len(found), len(reference))
+    check(rows >= len(reference) - 1, f"{name}: every row of the reference is there", f"{rows} of {len(reference)}")
+    for column in reference.columns:
+        a, b = found[column].to_numpy()[:rows], reference[column].to_numpy()[:rows]
+        off = np.sort(np.abs(a - b) / max(np.abs(b).max(), 1e-9))
+        jumps = 4 if name == "inline_four" else 0   # rows at the instants at which its cylinders open
+        limit = states if any(part in column for part in STATES) else others
+        check(off[-1 - jumps] < limit, f"{name}: {column} is that of the reference", f"{off[-1 - jumps]:.2g}")
+
+
+def references(run: Runner) -> None:
+    """Tolerances are a tenth of what the references ask for."""
+    compare(run, "inline_four", 6 * 5.8177641733144315e-05, 1e-9, 1e-9, "integrator.revolutions=0", "integrator.end_time=0.041887902047863905")
+    compare(run, "six_mwm", 6 * 8.333333333333333e-05, 1e-7, 1e-7, "integrator.end_time=0.06")
+    compare(run, "four_dry", 4 * 2e-5, 1e-7, 1e-6, "integrator.revolutions=0", "integrator.end_time=0.012")
+
+
+def facts(run: Runner) -> None:
+    table = pd.read_csv(DATA / "facts.csv").set_index(["case", "quantity"])
+
+    def fact(case: str, quantity: str, value: float) -> None:
+        row = table.loc[(case, quantity)]
+        check(abs(value - row["value"]) <= row["tolerance"], f"{case}: {quantity} is that of other programs", f"{value!r} for {row['value']!r}")
+
+    free = run(CASES / "six_mwm.nml", *FINE, "drive.kind=free", "output.window=all", "run.until=end", "integrator.end_time=1e-4")[1]
+    for i in range(1, 9):
+        fact("six_mwm", f"natural_frequency_{i}[Hz]", float(free[f"natural_frequency_{i}"]))
+    for i in range(1, 10):
+        fact("six_mwm", f"mode_1_station_{i}", float(free[f"mode_1_station_{i}"]))
+    dry = run(CASES / "four_dry.nml", *FINE, "integrator.revolutions=0", "integrator.end_time=1e-4")[1]
+    for i in range(1, 6):
+        fact("four_dry", f"natural_frequency_{i}[Hz]", float(dry[f"natural_frequency_{i}"]))
+
+    rows, settled = run(CASES / "six_mwm.nml", "output.digits=17", "integrator.relative_tolerance=1e-9",
+                        "run.until=end", "integrator.end_time=0.72", "output.start_time=0.66", "output.sampling=time",
+                        "output.window=all", f"output.interval={0.06 / 1440!r}")
+    rows = bare(rows)
+    last = rows.iloc[-1441:-1]
+    check(settled["firing_order"] == "1-5-3-6-2-4", "six_mwm: the firing order is 1-5-3-6-2-4", settled["firing_order"])
+    fact("six_mwm", "natural_frequency_1_held[Hz]", float(settled["natural_frequency_1"]))
+    swing = (last["station_1_twist"] - last["station_9_twist"]).to_numpy()
+    for h in (6, 3, 1.5, 4.5, 5.5, 6.5):
+        fact("six_mwm", f"station_1_order_{h}[rad]", order(swing, h))
+    for h in (6, 3, 6.5):
+        fact("six_mwm", f"segment_8_order_{h}[N.m]", order(last["segment_8_torque"].to_numpy(), h))
+    fact("six_mwm", "station_1_peak_to_peak[rad]", swing.max() - swing.min())
+    fact("six_mwm", "mean_crank_moment[N.m]", last["crank_moment"].mean())
+    for h in (6, 3, 1.5):
+        summed = float(settled[f"cycle_front_twist_order_{h}"])
+        check(abs(summed - order(swing, h)) < 1e-7 * swing.max(), f"six_mwm: the summary has the amplitude of order {h}", f"{summed!r}")
+    work = float(settled["cycle_work_gas"])
+    check(abs(work / 6 - table.loc[("six_mwm", "indicated_work_per_cylinder[J]"), "value"]) < 1e-6 * work,
+          "six_mwm: all cylinders do the same work", f"{work / 6!r}")
+
+    rows = bare(run(CASES / "inline_four.nml", *FINE, "combustion=none", "mechanism.gravity=0", "integrator.revolutions=2",
+                    "output.sampling=crank_angle", "output.samples_per_revolution=720")[0]).iloc[:1440]
+    for column in ("engine_force_x", "engine_force_y", "crank_moment", "engine_moment_y", "engine_moment_z"):
+        for h in (1, 2, 4, 6):
+            unit = "N" if "force" in column else "N.m"
+            if ("inline_four_motored", f"{column}_order_{h}[{unit}]") in table.index:
+                fact("inline_four_motored", f"{column}_order_{h}[{unit}]", order(rows[column].to_numpy(), h))
+
+
+# equalities
+
+def another_cylinder(run: Runner) -> None:
+    """With ideal joints any cylinder may be the full one."""
+    def with_full(k: int) -> tuple[pd.DataFrame, dict[str, str]]:
+        full = [f"cylinder_{i}.full={'T' if i == k else 'F'}" for i in range(1, 5)]
+        phase = {1: 0, 2: -540, 3: -180, 4: -360}[k]
+        return run(CASES / "four_dry.nml", *FINE, "joint=none", "contact=none", "friction=none", *full, "integrator.revolutions=0",
+                   f"initial.crank_angle_deg={200 + phase + 540}", "integrator.end_time=0.02", "output.interval=1e-4")
+    first, one = with_full(2)
+    second, other = with_full(4)
+    for column in [c for c in first if c in second.columns and c.startswith(("engine", "segment", "damper", "crank_moment", "energy["))]:
+        a, b = first[column].to_numpy(), second[column].to_numpy()
+        off = np.abs(a - b).max() / np.abs(a).max()
+        check(off < 1e-8, f"another cylinder as the full one: {column} is the same", f"{off:.2g}")
+    check(one["natural_frequency_1"][:14] == other["natural_frequency_1"][:14], "another cylinder as the full one: the same frequencies")
+
+
+BODIES = """&mechanism crank_length = 0.04, crank_mass = 1.2, crank_inertia = 0.0018, crank_com = -0.004, 0.0
+  rod_length = 0.135, rod_mass = 0.55, rod_inertia = 0.0019, rod_com = 0.04, 0.0, piston_mass = 0.42, gravity = {gravity} /
+&drive kind = '{kind}' /
+&initial crank_speed = 300.0 /
+{cylinders}
+&integrator revolutions = 2.0, relative_tolerance = 1.0e-11 /
+&output sampling = 'crank_angle', samples_per_revolution = 360, digits = 17 /
+"""
+
+
+def engine(cylinders: str, kind: str = "constant_speed", gravity: float = 0.0) -> str:
+    return BODIES.format(cylinders=cylinders, kind=kind, gravity=gravity)
+
+
+def equalities(run: Runner) -> None:
+    boxer = bare(run(engine("&cylinder / \n&cylinder phase_deg = -180.0, bank_deg = -180.0 /"))[0])
+    one = bare(run(engine(""))[0])
+    scale = one["frame_force_x"].abs().max()
+    check(boxer[["engine_force_x", "engine_force_y"]].abs().max().max() < 1e-9 * scale, "a boxer has no force on its frame")
+
+    pair = bare(run(engine("&cylinder / \n&cylinder /", "free", 9.80665))[0])
+    half = bare(run(engine("", "free", 9.80665))[0])
+    check((pair["crank_speed"] - half["crank_speed"]).abs().max() < 1e-8, "two cylinders in step move as one of double inertia and weight")
+    check((pair["engine_force_x"] - 2 * half["frame_force_x"]).abs().max() < 1e-7 * scale, "two in step have twice the force of one")
+
+    rotating, swinging = 0.55 * (1 - 0.04 / 0.135), 0.42 + 0.55 * 0.04 / 0.135
+    weight = -(2 * rotating + swinging) * 0.04 / 1.2
+    vee = bare(run(engine("&cylinder throw = 1 /\n&cylinder throw = 1, bank_deg = 90.0 /"), f"mechanism.crank_com={weight!r},0")[0]).iloc[:720]
+    for column in ("engine_force_x", "engine_force_y"):
+        found = order(vee[column].to_numpy(), 1)
+        check(found < 1e-7 * scale, f"a balanced V of 90 degrees: no first order of {column}", f"{found:.2g}")
+    check(order(vee["engine_force_x"].to_numpy(), 2) > 0.01 * scale, "a balanced V of 90 degrees has a second order")
+
+    alone = run(engine("&cylinder /", "free", 9.80665))[0]
+    none = run(engine("", "free", 9.80665))[0]
+    check(alone.equals(none), "one cylinder alone is no group at all")
+    taken = run(engine("&cylinder / \n&cylinder phase_deg = 90.0 /", "free", 9.80665), "cylinder=none")[0]
+    check(taken.equals(none), "--set cylinder=none takes all of them out")
+
+    rows = bare(run(CASES / "inline_four.nml", *FINE)[0])
+    off = (rows["crank_moment"] + rows["engine_moment_z"]).abs().max() / rows["crank_moment"].abs().max()
+    check(off < 1e-9, "at constant speed the drive takes the roll moment of the engine", f"{off:.2g}")
+
+    text = engine("&cylinder station = 1 /\n&cylinder station = 2, phase_deg = 180.0 /\n"
+                  "&crankshaft inertia = 0.01, 0.01, 0.2, stiffness = 1.0e5 /", "free", 9.80665)
+    rows, summary = run(text)
+    energy = bare(rows)["energy"]
+    check((energy - energy.iloc[0]).abs().max() < 1e-9 * energy.iloc[0], "without gas and damping a free shaft keeps its energy")
+
+
+def limits(run: Runner) -> None:
+    """A stiffer shaft is off the rigid one by as much less, a ring by as much less as its oil is thicker."""
+    cylinders = "&cylinder {0} /\n&cylinder {1} phase_deg = 180.0 /"
+    rigid = bare(run(engine(cylinders.format("", ""), "free"), "drive.flywheel_inertia=0.22")[0])
+    shaft = "\n&crankshaft inertia = 0.01, 0.01, 0.2, stiffness = {0!r} /"
+    off = []
+    for k in (1e5, 1e7, 1e9):
+        rows = bare(run(engine(cylinders.format("station = 1,", "station = 2,") + shaft.format(k), "free"))[0])
+        n = min(len(rows), len(rigid)) - 1
+        off.append(np.abs(rows["time"].iloc[:n] - rigid["time"].iloc[:n]).max())
+    check(off[0] > 30 * off[1] > 900 * off[2] or off[2] < 1e-9, "a shaft 100 times as stiff is 100 times nearer to the rigid one", str(off))
+
+
+def energies(run: Runner) -> None:
+    """Combinations that no reference has: no energy is lost."""
+    base = ("integrator.relative_tolerance=1e-9", "integrator.revolutions=0", "integrator.end_time=0.006")
+    rod = ("elastic_rod.youngs_modulus=2.07e11", "elastic_rod.section_area=2e-4", "elastic_rod.section_inertia=4e-9")
+    bore = ("guide.kind=clearance", "guide.bore_clearance=1e-4", "guide.skirt_top=0.02", "guide.skirt_bottom=0.02",
+            "guide.piston_radius=0.04", "guide.piston_inertia=4e-4", "guide.stiffness=1e8", "guide.coefficient=0.05")
+    pin = ("crank_pin.joint.kind=clearance", "crank_pin.joint.clearance=4e-5", "crank_pin.joint.bearing_radius=0.02", "crank_pin.contact.law=hertz")
+    for what, changes in {"an elastic rod": rod, "slap": bore, "a loose crank pin": pin,
+                          "a ramp": ("drive.kind=constant_speed", "drive.torque=0", "drive.ramp_time=0.004", "drive.ramp_from=150"),
+                          "a held station": ("drive.kind=constant_speed", "drive.torque=0", "crankshaft.drive_station=3"),
+                          "the speed held at the front": ("drive.kind=constant_speed", "drive.torque=0", "crankshaft.drive_station=1"),
+                          "sticking": ("friction.law=coulomb", "friction.static_coefficient=0.1"),
+                          "a rubber damper": ("damper_1.kind=rubber", "damper_1.stiffness=4e4"),
+                          "a compressor": ("combustion.cycle=compressor", "combustion.dead_space=0.05", "combustion.suction_pressure=1e5",
+                                           "combustion.discharge_pressure=4e5", "combustion.polytropic_exponent=1.3")}.items():
+        lost = float(run(CASES / "four_dry.nml", *base, *changes)[1]["max_energy_residual_relative"])
+        check(lost < 1e-7, f"{what} beside other cylinders: no energy is lost", f"{lost:.2g}")
+    rows, summary = run(CASES / "four_dry.nml", *base, "drive.kind=constant_speed", "drive.torque=0", "crankshaft.drive_station=3")
+    check(np.ptp(bare(rows)["crank_speed"]) < 1e-12, "a held station of the full cylinder has a constant speed")
+
+
+def refusals(run: Runner) -> None:
+    six, dry, four = CASES / "six_mwm.nml", CASES / "four_dry.nml", CASES / "inline_four.nml"
+    for case, changes, says in [
+        (six, ["crankshaft.stiffness=1e6,2e6"], "must have 8 values or one, not 2"),
+        (six, ["crankshaft.inertia=0.1"], "must have 2 to 16 values"),
+        (six, ["cylinder_2.station=12"], "must be <= 9"),
+        (six, ["cylinder_2.station=0"], "must be > 0"),
+        (six, ["cylinder_2.phase_deg=2000"], ">= -1440 and <= 1440"),
+        (six, ["crankshaft.flywheel_inertia=0.1"], "must not be given together with the list inertia"),
+        (six, ["crankshaft=none"], "needs the lists inertia and stiffness"),
+        (six, ["crankshaft.inertia=0,0,0.04,0.03,0.04,0.04,0.03,0.04,2"], "must be > 0 for a station on which no cylinder"),
+        (six, ["crankshaft.drive_station=10"], "must be <= 9"),
+        (six, ["crankshaft.loss_frequency=0"], "must be > 0 (rad/s)"),
+        (dry, ["cylinder_1.full=T"], "must be .true. in one cylinder alone"),
+        (dry, ["damper_1.stiffness=1e4"], "is for kind = 'rubber' alone"),
+        (dry, ["damper_1.station=7"], "must be <= 6"),
+        (dry, ["cylinder_2.piston_mass=1"], "must be that of &mechanism"),
+        (dry, ["cylinder_1.throw=3"], "without a gap"),
+        (dry, ["cylinder_3.throw=2"], "both must have one station"),
+        (four, ["cylinder_2.station=2"], "needs the lists inertia and stiffness"),
+        (four, ["cylinder_2.throw=1", "cylinder_2.crank_mass=1"], "another cylinder has the crank of this throw"),
+        (four, ["damper_1.station=1", "damper_1.inertia=0.01", "damper_1.stiffness=1e4"], "needs the lists inertia and stiffness"),
+        (four, ["cylinder_7.phase_deg=10"], "there is no cylinder_5 before it"),
+        (four, ["crankshaft.flywheel_inertia=1", "crankshaft.torsional_stiffness=1e5"], "needs one cylinder"),
+        (engine("&cylinder /\n" * 17), [], "at most 16 of these groups"),
+    ]:
+        message = run.refused(case, *changes)
+        check(says in message and message.count("\n") == 1, f"refused with one line: {' '.join(changes)[:60]}", message[:300])
+
+
+def resumes(run: Runner) -> None:
+    """A run that goes on from a state at a bound of two cylinders ends as the whole run."""
+    whole = run(CASES / "inline_four.nml", *FINE, "integrator.revolutions=3", "drive.kind=free", "drive.flywheel_inertia=0.5")
+    run(CASES / "inline_four.nml", *FINE, "integrator.revolutions=1.5", "drive.kind=free", "drive.flywheel_inertia=0.5")
+    state = run.folder / str(run.number) / "inline_four.state.nml"
+    rest = run(CASES / "inline_four.nml", *FINE, "integrator.revolutions=3", "drive.kind=free", "drive.flywheel_inertia=0.5", f"initial.from={state}")
+    a, b = bare(whole[0]).iloc[-1], bare(rest[0]).iloc[-1]
+    check(abs(a["crank_speed"] - b["crank_speed"]) < 1e-8 and abs(a["time"] - b["time"]) < 1e-12, "a run goes on across a bound of two cylinders",
+          f"{a['crank_speed']!r} {b['crank_speed']!r}")
+    state = None
+    part = run(CASES / "four_dry.nml", *FINE, "integrator.revolutions=0", "integrator.end_time=0.006")
+    state = run.folder / str(run.number) / "four_dry.state.nml"
+    rest = run(CASES / "four_dry.nml", *FINE, "integrator.revolutions=0", "integrator.end_time=0.012", f"initial.from={state}")
+    whole = run(CASES / "four_dry.nml", *FINE, "integrator.revolutions=0", "integrator.end_time=0.012")
+    a, b = bare(whole[0]).iloc[-1], bare(rest[0]).iloc[-1]
+    for column in ("segment_1_torque", "damper_1_speed", "station_6_twist", "eccentricity_y"):
+        check(abs(a[column] - b[column]) < 1e-6 * max(abs(a[column]), 1e-9), f"a run goes on with its shaft: {column}", f"{a[column]!r} {b[column]!r}")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--program", default=None)
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        run = Runner(options.program or str(release_program()), Path(folder))
+        for part in (references, facts, another_cylinder, equalities, limits, energies, refusals, resumes):
+            part(run)
+    return assertions.report()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
