@@ -31,7 +31,7 @@ contains
     if (list%is_absent()) deallocate (joint%wear)
     call visit_history(joint%history, place, list)
     call list%group('heat', 'Heating of the film by its losses. Without this group the temperature is that of &lubrication', &
-      .true., place)
+      .true., place, instead_of='lubrication viscosity')   ! a key: the viscosity is that of an oil
     call heat%parameters(list)
     if (list%sets) joint%heat = heat
     if (list%is_absent()) deallocate (joint%heat)
