@@ -201,9 +201,9 @@ contains
           motion%pin_speed = speeds(j)
           motion%turning_speed = speeds(j)
           load = 3e3_dp*[cos(0.5_dp*k), sin(0.5_dp*k)]
-          call mixed_velocity(film, rough, 1e-2_dp, motion, load, velocity, pressing, friction)
+          call mixed_velocity(film, rough, 1e-2_dp, motion, 1.0_dp, load, velocity, pressing, friction)
           motion%eccentricity_rate = velocity
-          call mixed_forces(film, rough, 1e-2_dp, motion, force, moment, pressed, rubbed)
+          call mixed_forces(film, rough, 1e-2_dp, motion, 1.0_dp, force, moment, pressed, rubbed)
           if (.not. ratios(i) > 0) n = [1.0_dp, 0.0_dp]
           worst = max(worst, norm2(force - pressed*n + rubbed*[-n(2), n(1)] + load)/norm2(load), &
             abs(rubbed - friction)/max(pressing, 1.0_dp))

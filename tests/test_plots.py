@@ -1095,6 +1095,7 @@ class Reading(unittest.TestCase):
         own = SimpleNamespace(
             name="own", to_pandas=lambda: columns, units={"time": "s", "film_thickness": "m"}, summary=Quantities(contacts=1),
             events=pd.DataFrame({"joint": ["crank_pin", "piston_pin"], "time": [0.1, 0.2]}),
+            _resolved=None,
             case=SimpleNamespace(to_nml=lambda complete: "&joint\n  kind = 'clearance'\n  clearance = 2e-5   ! m\n/\n"),
         )
         made = drawable(own)

@@ -14,7 +14,7 @@ module case_schema
 
   !> A group. The group of an optional model may be missing in a case; its model is then absent from the scene.
   type :: group_definition_t
-    character(len=24) :: name = ''        !! with its place as a prefix unless it is the first place: crank_pin.contact
+    character(len=32) :: name = ''        !! with its place as a prefix unless it is the first place: crank_pin.contact
     character(len=12) :: place = ''       !! place of the joint to which it belongs
     logical :: is_law = .false.           !! group of a law, valid for every joint that has no such group of its own
     logical :: is_model = .false.

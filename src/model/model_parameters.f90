@@ -15,7 +15,7 @@ module model_parameters
   !> The properties of a parameter. Ranges and words are texts, which are shown to the user unchanged. A default is allowed even
   !> outside its range, and then means "not given".
   type :: key_t
-    character(len=24) :: group = ''          !! group of the case file, with its place as a prefix: crank_pin.contact
+    character(len=32) :: group = ''          !! group of the case file, with its place as a prefix: crank_pin.contact
     character(len=32) :: name = ''
     integer :: kind = real_kind
     integer :: count = 1                     !! number of values

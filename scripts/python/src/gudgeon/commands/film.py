@@ -36,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
         results.make({f"sim_{number}{ending}" for number in pictures.SIMULATIONS for ending, _, _ in pictures.FILMS})
         save(pictures.simulations(results), options, results.directory, "films")
         return 0
-    if not options.at:
+    if not (options.at or options.source.endswith(".film.csv")):
         results, name = located(options.source, options.results, not options.no_run)
         path = results.directory / f"{name}.film_history.csv"
         if path.exists():
