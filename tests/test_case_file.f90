@@ -446,7 +446,8 @@ contains
     call refused(check, '&drive place=''crank_pin'' /', 'x.nml:1: &drive place: unknown key (allowed: kind, torque, damping, '// &
       'flywheel_inertia, torque_table, torque_table_digest, ramp_time, ramp_from)')
     call refused(check, whole//'&contact place=''crank_pin'' /', 'x.nml: &joint of crank_pin kind: must be clearance '// &
-                 '(or quasi_static) with contact, friction or lubrication: an ideal joint has no clearance; remove these groups, for '// &
+                 '(or quasi_static) with contact, friction or lubrication: an ideal joint has no clearance; remove these '// &
+                 'groups, for '// &
                  'example with --set contact=none')
     call refused(check, whole//'&joint place=''crank_pin'' kind=''clearance'' clearance=1e-4 /', &
                  'x.nml: &joint of crank_pin bearing_radius: required with kind = ''clearance'' (m)')
