@@ -775,7 +775,7 @@ contains
     call refused_with(check, 'drive.kind=constantspeed', 'x.nml: --set drive.kind=constantspeed: &drive kind = constantspeed: '// &
       'must be one of free, constant_speed; did you mean constant_speed?')
     call refused(check, whole//'&joint place=''crankpin'' /', 'x.nml:8: &joint place = crankpin: must be one of piston_pin, '// &
-      'crank_pin; did you mean crank_pin?')
+      'crank_pin, main_bearing; did you mean crank_pin?')
     call refused(check, whole//'&output tolerance=1 /', 'x.nml:8: &output tolerance: unknown key (allowed: sampling, '// &
       'samples_per_revolution, angle_origin_deg, interval, start_time, columns, digits, film_times, every_step, '// &
       'answers, ideal_twin, window)')

@@ -205,11 +205,11 @@ contains
       call scene%evaluate(1e-3_dp, y, now, in_domain)
       call scene%evaluate(1e-3_dp + dt, y + dt*f, ahead, in_domain)
       call scene%evaluate(1e-3_dp - dt, y - dt*f, behind, in_domain)
-      worst = maxval(abs(ahead%joint%sliding_speed - behind%joint%sliding_speed))/(2*dt)
-      call check%that(minval(abs(now%joint%friction_force)) > 1, 'both sticking pins have friction forces')
+      worst = maxval(abs(ahead%joint(:2)%sliding_speed - behind%joint(:2)%sliding_speed))/(2*dt)
+      call check%that(minval(abs(now%joint(:2)%friction_force)) > 1, 'both sticking pins have friction forces')
       call check%close_to(worst, 0.0_dp, 1e-2_dp, 'both pins stick: change of the sliding speeds [m/s2]')
       call check%relative(f(scene%work_at), now%power, 1e-14_dp, 'the power is that of the evaluation')
-      call check%relative(now%power, sum(now%joint%power) + now%crank_moment*now%motion%crank_speed, 1e-12_dp, &
+      call check%relative(now%power, sum(now%joint(:2)%power) + now%crank_moment*now%motion%crank_speed, 1e-12_dp, &
         'power of sticking pins and of the drive')
       deallocate (f)
     end do
