@@ -321,7 +321,7 @@ contains
     call refused_with(check, 'cylinder_pressure.table=', 'x.nml: &cylinder_pressure table = : must be the name of a file', &
       '&cylinder_pressure bore=0.1 /')
     call refused_on(check, whole//fire, [character(len=40) :: 'run.until=periodic', 'run.period_revolutions=1'], &
-      'x.nml: &run period_revolutions = 1: must be >= 2, what the gas takes to repeat')
+      'x.nml: &run period_revolutions = 1: must be >= 2, what the gas or the load takes to repeat')
     call accepted(check, whole//fire, 'a two-stroke engine repeats after one revolution', [character(len=40) :: &
       'run.until=periodic', 'run.period_revolutions=1', 'combustion.cycle=two_stroke', 'combustion.port_opens_deg=100'])
     call accepted(check, whole//fire, 'a compressor repeats after one revolution', [character(len=40) :: &
@@ -354,8 +354,8 @@ contains
 
   subroutine test_joint(check)
     class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: no_play = 'must be clearance with contact, friction or lubrication: an ideal joint has '// &
-      'no clearance; remove these groups, for example with --set contact=none'
+    character(len=*), parameter :: no_play = 'must be clearance (or quasi_static) with contact, friction or lubrication: an '// &
+      'ideal joint has no clearance; remove these groups, for example with --set contact=none'
     call refused_with(check, 'joint.kind=ideal', 'x.nml: &joint kind = ideal: '//no_play)
     call refused(check, bodies//run//contact, 'x.nml: &joint kind: '//no_play)
     call refused(check, bodies//run//'&lubrication viscosity=1 /', 'x.nml: &joint kind: '//no_play)
@@ -440,7 +440,8 @@ contains
       'a case with clearance at the crank pin only')
     call refused(check, whole//second//second, 'x.nml:9: &joint of crank_pin: this group is given twice')
     call refused(check, whole//'&joint place=''piston_pin'' kind=''ideal'' /', 'x.nml:8: &joint: this group is given twice')
-    call refused(check, '&joint place=''wrist'' /', 'x.nml:1: &joint place = wrist: must be one of piston_pin, crank_pin')
+    call refused(check, '&joint place=''wrist'' /', &
+      'x.nml:1: &joint place = wrist: must be one of piston_pin, crank_pin, main_bearing')
     call refused(check, '&joint place=''crank_pin'' place=''crank_pin'' /', 'x.nml:1: &joint place = crank_pin: given twice')
     call refused(check, '&drive place=''crank_pin'' /', 'x.nml:1: &drive place: unknown key (allowed: kind, torque, damping, '// &
       'flywheel_inertia, torque_table, torque_table_digest, ramp_time, ramp_from)')
@@ -663,8 +664,8 @@ contains
                                            'lubrication=none'], c, error)
     call check%that(.not. allocated(error), 'a case without a joint group is read')
     call check%equal_text(trim(c%joints(piston_pin)%kind), 'ideal', 'a case without a joint group has an ideal joint')
-    call refused_with(check, 'joint=none', 'x.nml: &joint kind: must be clearance with contact, friction or lubrication: an '// &
-                      'ideal joint has no clearance; remove these groups, for example with --set contact=none')
+    call refused_with(check, 'joint=none', 'x.nml: &joint kind: must be clearance (or quasi_static) with contact, friction or '// &
+                      'lubrication: an ideal joint has no clearance; remove these groups, for example with --set contact=none')
     call refused_with(check, 'contact=none', 'x.nml: &joint kind = clearance: needs contact or lubrication: without '// &
                       'them no force would act on the pin')
     call refused_on(check, whole//film, [character(len=40) :: long, 'friction.coefficient=0.1', 'friction=none', &

@@ -160,7 +160,7 @@ contains
       'm', '> 0', default='0.0', example='0.015', usual='5e-4 to 1')
     call list%add('load_share', self%load_share, &
       'part of the load that this bearing carries, of main_bearing alone: 0.5 for two equal main bearings', &
-      range='> 0 and <= 1', default='1.0')
+      range='> 0 and <= 1', default='1.0', usual='0.05 to 1')
   end subroutine joint_parameters
 
   subroutine wall_parameters(self, list)

@@ -179,7 +179,7 @@ contains
     allocate (sums%sum(n), sums%square(n), source=0.0_dp)
   end subroutine clear
 
-  !> Account for the time since the last call up to t, inside the last step of the method.
+  !> Account for the time since the last call up to t, inside the last step of the method; for statistics that are on.
   subroutine record(self, method, scene, t, initial_energy, evaluations)
     class(column_statistics_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method

@@ -234,11 +234,13 @@ contains
       do k = 1, self%crank%n
         call evaluate_scene(self, scene, self%crank%t(k), self%crank%y(:, k), now, in_domain)
         if (in_domain) call self%extremes%search(method, scene, self%crank%t(k), now, .false., self%cycles)
-        call self%cycles%columns%record(method, scene, self%crank%t(k), self%initial_energy, self%extremes%figures%evaluations)
+        if (self%cycles%columns%is_on()) call self%cycles%columns%record(method, scene, self%crank%t(k), self%initial_energy, &
+          self%extremes%figures%evaluations)
         call end_revolution(self, scene, self%crank%t(k), self%crank%y(:, k), now)
       end do
       call self%cycles%record_strobes(method, scene, t, y)
-      call self%cycles%columns%record(method, scene, t, self%initial_energy, self%extremes%figures%evaluations)
+      if (self%cycles%columns%is_on()) call self%cycles%columns%record(method, scene, t, self%initial_energy, &
+        self%extremes%figures%evaluations)
     end if
     call evaluate_scene(self, scene, t, y, now, in_domain)
     if (in_domain) call self%extremes%search(method, scene, t, now, .true., self%cycles)
