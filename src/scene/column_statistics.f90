@@ -186,17 +186,6 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, initial_energy   !! [s], [J]
     integer, intent(inout) :: evaluations       !! of the scene
-    if (.not. self%is_on()) return
-    if (t > self%t) call add_interval(self, method, scene, t, initial_energy, evaluations)
-  end subroutine record
-
-  !> Account for an interval with at least one column.
-  subroutine add_interval(self, method, scene, t, initial_energy, evaluations)
-    type(column_statistics_t), intent(inout) :: self
-    class(ode_method_t), intent(inout) :: method
-    type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t, initial_energy
-    integer, intent(inout) :: evaluations
     integer, parameter :: n = 5                 !! points in an interval: its ends and those of Gauss
     real(dp), parameter :: outer = sqrt(0.15_dp), place(n) = [0.0_dp, 0.5_dp - outer, 0.5_dp, 0.5_dp + outer, 1.0_dp], &
       weight(n) = [0, 5, 8, 5, 0]/18.0_dp
@@ -204,6 +193,7 @@ contains
     logical :: is_good(n)
     integer :: i, k
     span = t - self%t
+    if (.not. span > 0) return
     do i = 1, n
       call evaluate(self%t + place(i)*span, values(:, i), is_good(i))
       if (.not. is_good(i)) cycle
@@ -287,7 +277,7 @@ contains
       end do
       most = max(most, f(1), f(2))
     end subroutine search
-  end subroutine add_interval
+  end subroutine record
 
   !> End the present revolution.
   subroutine end_revolution(self)
