@@ -445,8 +445,9 @@ contains
     call refused(check, '&joint place=''crank_pin'' place=''crank_pin'' /', 'x.nml:1: &joint place = crank_pin: given twice')
     call refused(check, '&drive place=''crank_pin'' /', 'x.nml:1: &drive place: unknown key (allowed: kind, torque, damping, '// &
       'flywheel_inertia, torque_table, torque_table_digest, ramp_time, ramp_from)')
-    call refused(check, whole//'&contact place=''crank_pin'' /', 'x.nml: &joint of crank_pin kind: must be clearance with '// &
-                 'contact, friction or lubrication: an ideal joint has no clearance; remove these groups, for '// &
+    call refused(check, whole//'&contact place=''crank_pin'' /', 'x.nml: &joint of crank_pin kind: must be clearance '// &
+                 '(or quasi_static) with contact, friction or lubrication: an ideal joint has no clearance; remove these '// &
+                 'groups, for '// &
                  'example with --set contact=none')
     call refused(check, whole//'&joint place=''crank_pin'' kind=''clearance'' clearance=1e-4 /', &
                  'x.nml: &joint of crank_pin bearing_radius: required with kind = ''clearance'' (m)')
@@ -734,7 +735,8 @@ contains
       'x.nml: &mechanism rod_mass = -1: must be >= 0 (kg)'//n// &
       'x.nml:3: &initial crank_sped: unknown key; did you mean crank_speed? (allowed: crank_angle_deg, crank_speed, '// &
       'eccentricity, '// &
-      'eccentricity_rate, crank_pin_eccentricity, crank_pin_eccentricity_rate, piston_offset, piston_offset_rate, piston_tilt, '// &
+      'eccentricity_rate, crank_pin_eccentricity, crank_pin_eccentricity_rate, main_bearing_eccentricity, piston_offset, '// &
+      'piston_offset_rate, piston_tilt, '// &
       'piston_tilt_rate, from, goes_on)'//n//'x.nml:4: &friction coefficient = abc: must be a number'//n// &
       'x.nml: &friction v1: required with law = ''ambrosio'' (m/s)'//n// &
       'x.nml: --set joint.clearance=twenty: &joint clearance = twenty: must be a number (m)'//n// &

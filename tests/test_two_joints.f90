@@ -56,6 +56,7 @@ contains
       scene%chain%is_loose(places(i)) = .true.
     end do
     call move_alloc(joints, scene%joints)
+    scene%n_joints = size(places)
     scene%layout = layout_t()
     call scene%claim()
     call scene%prepare_start()

@@ -195,7 +195,7 @@ contains
     if (place > 0) return
     if (find_group(self%groups, group) == 0) then
       names = [character(len=name_length) :: (name_in_file(self%groups(i)), i=1, size(self%groups))]
-      near = nearest_word(group, names)
+      near = nearest_word(group, self%groups%name)
       if (near /= '') near = '; did you mean '//near//'?'
       call fail(error, at//'&'//printable(group, 40)//': unknown group'//near// &
         allowed(pack(names, [(is_first_of_name(self%groups(i)), i=1, size(names))])), status_case_file)
