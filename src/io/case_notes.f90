@@ -238,6 +238,7 @@ contains
     !> Mean speed of the piston.
     subroutine note_speed()
       real(dp) :: most   !! [m/s]
+      if (.not. stroke > 0) return   ! a bearing by itself
       most = 40
       if (allocated(c%combustion)) most = c%combustion%fastest_piston()
       call expect('initial', 'crank_speed', c%initial%crank_speed, pi/stroke, 0.0_dp, most, 'is a mean piston speed of # m/s', &

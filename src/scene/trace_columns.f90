@@ -183,7 +183,8 @@ contains
     call row%add('pin_force_x[N]', now%loads%force(1, piston_pin), &
       'force of the joint on the piston pin (on the rod), along x; the piston takes the opposite force')
     call row%add('pin_force_y[N]', now%loads%force(2, piston_pin), 'the same along y')
-    if (row%wants(7) .or. allocated(scene%chain%train)) reaction = scene%chain%reactions(now%motion, now%accelerations, now%loads)
+    if (row%wants(7) .or. allocated(scene%chain%train) .and. .not. row%is_naming) &
+      reaction = scene%chain%reactions(now%motion, now%accelerations, now%loads)
     call row%add('crankpin_force_x[N]', reaction%crankpin(1), 'force of the crank on the rod at the crank pin, along x (F3)')
     call row%add('crankpin_force_y[N]', reaction%crankpin(2), 'the same along y (F4)')
     call row%add('crank_bearing_force_x[N]', reaction%crank_bearing(1), &
