@@ -1,7 +1,7 @@
 !> Results of a run: the time spent with each method, and peaks between steps.
 module test_run_figures
   use kinds, only: dp
-  use joint_places, only: crank_pin, piston_pin, n_places, name_prefix
+  use joint_places, only: piston_pin, n_places, name_prefix
   use checks, only: checks_t
   use case_definition, only: case_t
   use case_file, only: read_case
@@ -136,8 +136,8 @@ contains
         call check%that(plain%report%statistics%evaluations == rows%report%statistics%evaluations, name//': the same steps')
         associate (figures => plain%report%figures)
           do pin = 1, n_places
-            if (pin == crank_pin .and. column(rows, 'crank_pin_phase[-]') == 0) cycle
             prefix = name_prefix(pin)
+            if (pin /= piston_pin .and. column(rows, prefix//'phase[-]') == 0) cycle
             call is_peak_of(check, figures%pin(pin)%max_force, force_in_rows(rows, pin), rounding, &
               name//prefix//': force on the pin')
             if (column(rows, prefix//'film_thickness[m]') > 0) call is_peak_of(check, -figures%pin(pin)%min_film_thickness, &
@@ -221,8 +221,8 @@ contains
       if (case%joints(piston_pin)%kind == 'ideal') rounding = 1e-6_dp   ! the statistics of an ideal joint change its steps
       do k = 1, watch%statistics%cycles
         do pin = 1, n_places
-          if (pin == crank_pin .and. column(rows, 'crank_pin_phase[-]') == 0) cycle
           prefix = name_prefix(pin)
+          if (pin /= piston_pin .and. column(rows, prefix//'phase[-]') == 0) cycle
           associate (c => watch%cycles(k)%pin(pin))
             call is_peak_of(check, c%max_force, pack(force_in_rows(rows, pin), turned >= k - 1 .and. turned <= k), rounding, &
               trim(files(i))//prefix//': force on the pin in a revolution')
