@@ -118,9 +118,9 @@ contains
     call refused(check, ['-x'], '-x: unknown option'//hint)
     call refused(check, [''], 'an empty argument is no case file'//hint)
     call refused(check, ['--out'], '--out: a value is missing'//hint)
-    call refused(check, ['--template=dryy'], '--template dryy: must be one of dry, film, engine, supply, compressor, slap, '// &
+    call refused(check, ['--template=dryy'], '--template dryy: must be one of dry, film, engine, compressor, slap, '// &
       'elastic, wear; did you mean dry?'//hint)
-    call refused(check, ['--template='], '--template : must be one of dry, film, engine, supply, compressor, slap, elastic, '// &
+    call refused(check, ['--template='], '--template : must be one of dry, film, engine, compressor, slap, elastic, '// &
       'wear'//hint)
     call refused(check, [character(len=16) :: 'sweep', '--template=dry'], 'gudgeon sweep --template has no kinds'//hint)
     call refused(check, ['--reference=joints'], &

@@ -135,8 +135,9 @@ check "a film that has not settled" grep -q 'not settled: the film thickness sti
 run -o "$work/first" -s integrator.revolutions=20 cases/gas/compressor.nml
 check "a film that has settled" [ "$status" = 0 -a "$(grep -c settled "$work/out")" = 0 ]
 
-# no shipped case has values or results that are noted
+# no shipped case has values or results that are noted, but for the grids of films with memory, which a user may afford to refine
 run -o "$work/shipped" -s output.ideal_twin=F $(find cases -name '*.nml' -not -path '*/studies/*' -not -name worn_bore.nml -not -path '*/wear/*')
+sed -i '/note: film_history: /d' "$work/out"
 check "no note on a shipped case: $(grep note: "$work/out" "$work/err")" [ "$status" = 0 -a "$(grep -c 'note: ' "$work/out")" = 0 -a ! -s "$work/err" ]
 
 # the dissertation's integration of its own cases

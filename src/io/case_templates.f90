@@ -5,7 +5,7 @@ module case_templates
   public :: short_template, template_kinds
 
   !> The kinds of short templates.
-  character(len=*), parameter :: template_kinds = 'dry, film, engine, supply, compressor, slap, elastic, wear'
+  character(len=*), parameter :: template_kinds = 'dry, film, engine, compressor, slap, elastic, wear'
 
   character, parameter :: n = achar(10)
   character(len=*), parameter :: si = ' Values without a unit are in SI units.'//n
@@ -72,23 +72,6 @@ module case_templates
     "/"//n// &
     "&integrator revolutions = 8.0 /"//n
 
-  character(len=*), parameter :: supply_case = &
-    "! The film at the piston pin of a four-stroke engine, and after the run the one that grooves must feed."//si// &
-    engine// &
-    "&joint"//n// &
-    "  kind = 'clearance', clearance = 8 um, bearing_radius = 0.009, bearing_length = 0.020   ! radial clearance"//n// &
-    "/"//n// &
-    "&lubrication"//n// &
-    "  law = 'finite_bearing', cavitation = 'mass_conserving', oil = 'SAE 30', temperature = 120 degC"//n// &
-    "/"//n// &
-    "&film_history around = 96, along = 8 /   ! cells round the bearing and along half of it"//n// &
-    "&supply"//n// &
-    "  kind = 'grooves', position_deg = 90.0, 270.0, width_deg = 30.0, length = 0.012, pressure = 1 bar"//n// &
-    "/"//n// &
-    "&bore outer_radius = 0.016, youngs_modulus = 70 GPa, poissons_ratio = 0.33 /   ! aluminium; without this group rigid"//n// &
-    "&integrator revolutions = 6.0 /"//n// &
-    "&output sampling = 'crank_angle', samples_per_revolution = 360 /"//n
-
   character(len=*), parameter :: compressor_case = &
     "! An air compressor, 1 to 8 bar at 2850 rpm, with an oil film at its piston pin."//si// &
     "&mechanism"//n// &
@@ -152,8 +135,6 @@ contains
       text = film_case
     case ('engine')
       text = engine_case
-    case ('supply')
-      text = supply_case
     case ('compressor')
       text = compressor_case
     case ('slap')

@@ -470,7 +470,8 @@
     const degrees = radians * 180 / Math.PI;
     if (!cycleAlone()) return degrees;
     const from = scene.cycle.angle * 180 / Math.PI, length = scene.cycle.degrees;
-    return degrees - from + (((from % length) + length) % length) % length;
+    const start = ((from % length) + length) % length;   // just before a whole cycle: its end, but for rounding
+    return degrees - from + (length - start < 1e-3 * length ? start - length : start);
   };
   const abscissae = () => {
     const [first, last] = shownRows();
