@@ -21,6 +21,7 @@ TOP = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TOP / "tests"))
 
 from assertions import Assertions
+from program_runs import run, summary_of
 
 assertions = Assertions()
 check = assertions.check
@@ -44,23 +45,11 @@ AFTER_RUN_REFUSED = (
     (("lubrication.law=finite_bearing",), "cavitation"), (("lubrication.law=finite_bearing", "lubrication.cavitation=none"), "cavitation"))
 
 
-def run(program: Path, case: Path, folder: Path, *settings: str) -> subprocess.CompletedProcess:
-    """Run a case with settings; results are in the folder."""
-    command = [program, case, "--out", folder, *(word for setting in settings for word in ("--set", setting))]
-    return subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
-
-
 def columns_of(path: Path) -> dict[str, list[float]]:
     """The columns of a table of numbers by their names."""
     with path.open(newline="") as file:
         rows = list(csv.DictReader(file))
     return {name: [float(row[name]) for row in rows] for name in rows[0] if name != "joint"}
-
-
-def summary_of(path: Path) -> dict[str, str]:
-    """The values of a summary by their quantities."""
-    with path.open(newline="") as file:
-        return {row["quantity"]: row["value"] for row in csv.DictReader(file)}
 
 
 def scale_of(columns: dict[str, list[float]], name: str) -> float:

@@ -14,15 +14,19 @@ import math
 import subprocess
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TOP / "tests"))
 
 from assertions import Assertions
+from program_runs import run as run_and_tell
+from program_runs import summary_of
 
 assertions = Assertions()
 check = assertions.check
+run = partial(run_and_tell, quiet=True)
 CASES = TOP / "cases" / "bearings"
 DATA = TOP / "data" / "bearing"
 EXACT = ("integrator.relative_tolerance=1e-12", "output.digits=17")
@@ -44,20 +48,9 @@ TURNING = {"steady load, journal turns": (300.0, "crank", "fixed", "fixed"),
            "squeeze from the centre, load at half the speed of the journal": (150.0, "crank", "crank", "crank")}
 
 
-def run(program: Path, case: Path, folder: Path, *settings: str) -> subprocess.CompletedProcess:
-    """Run a case with settings; results are in the folder."""
-    command = [program, "--quiet", case, "--out", folder, *(word for setting in settings for word in ("--set", setting))]
-    return subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
-
-
 def rows_of(path: Path) -> list[dict[str, float]]:
     with path.open(newline="") as file:
         return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
-
-
-def summary_of(path: Path) -> dict[str, str]:
-    with path.open(newline="") as file:
-        return {row["quantity"]: row["value"] for row in csv.DictReader(file)}
 
 
 def good(done: subprocess.CompletedProcess, name: str) -> bool:

@@ -75,8 +75,8 @@ module film_history
 
 contains
 
-  !> March the film through the duty. `rows` has the last cycle, or after an error (a wrong supply, no convergence, no steady state,
-  !> stopped by `watch`, to which each row is told) the rows of the present cycle until then.
+  !> March the film through the duty. `rows` has the last cycle, or after an error (a wrong supply, no convergence, no steady state)
+  !> the rows of the present cycle until then. `watch` is told when a row is done, and may end the march with an error.
   subroutine march(self, duty, error, watch)
     class(film_history_t), intent(inout) :: self
     type(film_duty_t), intent(in) :: duty

@@ -63,7 +63,7 @@ module film_law
     procedure, non_overridable :: shear_moment_slopes
     procedure :: is_quasi_static
     procedure, nopass :: gives_pressure => no
-    procedure :: is_without_memory
+    procedure :: conserves_oil
     procedure, nopass :: gives_side_flow => no
     procedure, non_overridable :: drag_moment
     procedure, non_overridable :: neglects_shear
@@ -229,11 +229,11 @@ contains
     is_quasi_static = self%gives_pressure()
   end function is_quasi_static
 
-  !> Whether the film that is marched after a run is to have no memory: Reynolds' condition, for comparison.
-  pure logical function is_without_memory(self)
+  !> Whether the film that is marched after a run balances its oil, or else ruptures by Reynolds' condition, for comparison.
+  pure logical function conserves_oil(self)
     class(film_law_t), intent(in) :: self
-    is_without_memory = .false.
-  end function is_without_memory
+    conserves_oil = .true.
+  end function conserves_oil
 
   !> Properties of a law: whether it gives a pressure relative to that at the ends of the film, and a side flow. The default is
   !> `no`.

@@ -38,7 +38,7 @@ module finite_bearing
     procedure :: peak_and_flow
     procedure :: reduced_peak_and_flow
     procedure :: pressure_field
-    procedure :: is_without_memory
+    procedure :: conserves_oil
     procedure :: table_key
     procedure :: make_table
     procedure :: table_numbers
@@ -112,7 +112,7 @@ contains
     class(finite_bearing_t), intent(in) :: self
     real(dp), intent(in) :: tolerance
     integer, intent(out) :: table_points, film_points
-    table_points = merge(65, 97, self%cavitation == 'reynolds' .or. self%cavitation == 'mass_conserving')
+    table_points = merge(65, 97, condition_of_run(self) == 'reynolds')
     if (tolerance > 3e-5_dp) table_points = 33
     if (self%table_points > 0) table_points = self%table_points
     film_points = 128
@@ -121,10 +121,18 @@ contains
     if (self%film_points > 0) film_points = self%film_points
   end subroutine choose_points
 
-  pure logical function is_without_memory(self)
+  pure logical function conserves_oil(self)
     class(finite_bearing_t), intent(in) :: self
-    is_without_memory = self%cavitation /= 'mass_conserving'
-  end function is_without_memory
+    conserves_oil = self%cavitation == 'mass_conserving'
+  end function conserves_oil
+
+  !> The condition of cavitation in the run: one that conserves the oil is for the film that is marched afterwards.
+  pure function condition_of_run(self) result(condition)
+    class(finite_bearing_t), intent(in) :: self
+    character(len=:), allocatable :: condition
+    condition = self%cavitation
+    if (self%conserves_oil()) condition = 'reynolds'
+  end function condition_of_run
 
   !> Identifies the contents of a table: laws with the same key have the same table. Empty if the variant needs none.
   function table_key(self, bearing, tolerance) result(key)
@@ -133,15 +141,12 @@ contains
     real(dp), intent(in) :: tolerance
     character(len=:), allocatable :: key
     character(len=len(self%table_of)) :: text
-    character(len=:), allocatable :: condition
     integer :: table_points, film_points
     key = ''
     if (self%variant /= 'table') return
     call choose_points(self, tolerance, table_points, film_points)
-    condition = self%cavitation
-    if (condition == 'mass_conserving') condition = 'reynolds'   ! the film of the run
-    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 6 '//condition//' ', 0.5_dp*bearing%length/bearing%pin_radius(), &
-      ' ', table_points, ' ', film_points
+    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 6 '//condition_of_run(self)//' ', &
+      0.5_dp*bearing%length/bearing%pin_radius(), ' ', table_points, ' ', film_points
     key = trim(text)
   end function table_key
 

@@ -16,7 +16,7 @@ module history_files
   use result_file, only: write_text
   use result_table, only: result_table_t
   use simulation, only: run_report_t
-  use constants, only: degree, two_pi
+  use constants, only: degree
   implicit none
   private
   public :: march_histories, write_histories, write_history, add_history, add_histories
@@ -168,17 +168,13 @@ contains
         call add_history(table, record%history, record%duty, prefix)
         if (size(record%history%rows) == 0) cycle
         k = minloc(record%history%rows%min_thickness, 1)
-        call table%add('film_history_min_film_thickness_angle', modulo(record%angle(k), two_pi*ceiling((record%angle( &
-          size(record%angle)) - record%angle(1))/two_pi))/degree, prefix)
+        call table%add('film_history_min_film_thickness_angle', modulo(record%angle(k), record%cycle)/degree, prefix)
         call table%add('film_history_quick_min_film_thickness', minval(record%quick_thickness), prefix)
         call table%add('film_history_quick_max_film_pressure', maxval(record%quick_pressure), prefix)
-        k = maxloc(abs(log(record%history%rows%min_thickness/max(record%quick_thickness(:size(record%history%rows)), &
-          tiny(1.0_dp)))), 1)
-        if (all(record%quick_thickness > 0)) then
-          call table%add('film_history_thickness_ratio', record%history%rows(k)%min_thickness/record%quick_thickness(k), &
-            prefix)
-          call table%add('film_history_thickness_ratio_time', record%history%rows(k)%time, prefix)
-        end if
+        if (.not. all(record%quick_thickness > 0)) cycle   ! the surfaces touch in the run
+        k = maxloc(abs(log(record%history%rows%min_thickness/record%quick_thickness(:size(record%history%rows)))), 1)
+        call table%add('film_history_thickness_ratio', record%history%rows(k)%min_thickness/record%quick_thickness(k), prefix)
+        call table%add('film_history_thickness_ratio_time', record%history%rows(k)%time, prefix)
       end associate
     end do
   end subroutine add_histories

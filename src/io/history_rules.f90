@@ -4,7 +4,7 @@ module history_rules
   use history_case, only: history_case_t, most_positions
   use case_values, only: case_values_t
   use number_text, only: short_text
-  use value_reader, only: read_real
+  use value_reader, only: read_numbers
   implicit none
   private
   public :: check_history, read_positions
@@ -55,22 +55,10 @@ contains
   subroutine read_positions(history)
     type(history_case_t), intent(inout) :: history
     real(dp) :: found(most_positions)
-    character(len=:), allocatable :: wanted
-    integer :: n, first, length
+    logical :: all_read
+    integer :: n
     if (.not. allocated(history%supply)) return
-    associate (supply => history%supply, text => history%supply%position_deg)
-      n = 0
-      first = 1
-      supply%positions = [real(dp) ::]
-      do while (first <= len(text) + 1)
-        length = index(text(first:)//',', ',') - 1
-        if (n == most_positions) return
-        n = n + 1
-        call read_real(trim(adjustl(text(first:first + length - 1))), found(n), wanted)
-        if (allocated(wanted)) return
-        first = first + length + 1
-      end do
-      supply%positions = found(:n)
-    end associate
+    call read_numbers(history%supply%position_deg, ',', found, n, all_read)
+    history%supply%positions = found(:merge(n, 0, all_read))
   end subroutine read_positions
 end module history_rules

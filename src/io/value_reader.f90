@@ -11,7 +11,7 @@ module value_reader
   implicit none
   private
   public :: value_t, n_values, set_to_default, convert, convert_list, find_decimal_comma, is_default, unit_of, has_unit, most_reals
-  public :: read_real, read_times, read_integer, is_within, read_bounds
+  public :: read_real, read_numbers, read_times, read_integer, is_within, read_bounds
 
   integer, parameter :: most_reals = 16  !! longest list of reals in the schema
   integer, parameter :: longest_text = 4000

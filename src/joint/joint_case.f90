@@ -116,7 +116,7 @@ contains
     class(film_law_t), allocatable :: film
     call self%make_film(film)
     call self%history%make(self%bearing(rod_length=0.0_dp), film%viscosity, self%elastic%pressure_viscosity, &
-      self%ambient_over_cavitation, .not. film%is_without_memory(), history)
+      self%ambient_over_cavitation, film%conserves_oil(), history)
   end subroutine make_history
 
   !> Whether the pin has clearance in its bearing and its position is one of the mechanism's.

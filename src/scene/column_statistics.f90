@@ -3,11 +3,12 @@
 module column_statistics
   use kinds, only: dp
   use error_handling, only: error_t, fail, status_case_file
-  use text_tools, only: nearest_word, allowed
+  use text_tools, only: nearest_word, allowed, replaced
   use ode_method, only: ode_method_t
   use case_definition, only: case_t
   use scene_problem, only: scene_t, evaluation_t
   use inside_step, only: evaluate_inside
+  use peak_search, only: sample_t, peak_search_t
   use trace_columns, only: column_list_t, choose_columns, row_values
   use run_length, only: longest_period
   implicit none
@@ -88,7 +89,7 @@ contains
         return
       end if
       one%column = list%names(i)
-      one%name = trim(bare(list%names(i)))//'_'//underscored(word)//list%names(i)(scan(list%names(i), '['):)
+      one%name = trim(bare(list%names(i)))//'_'//replaced(word, ' ', '_')//list%names(i)(scan(list%names(i), '['):)
       if (any(wanted%name == one%name)) then
         call fail(error, ''''//part//''': is given twice', status_case_file)
         return
@@ -127,16 +128,6 @@ contains
     end do
     squeezed = trim(squeezed)
   end function squeezed
-
-  !> A text with underscores for blanks.
-  pure function underscored(text)
-    character(len=*), intent(in) :: text
-    character(len=len(text)) :: underscored
-    integer :: i
-    do i = 1, len(text)
-      underscored(i:i) = merge('_', text(i:i), text(i:i) == ' ')
-    end do
-  end function underscored
 
   !> Whether any statistic is wanted.
   pure logical function is_on(self)
@@ -234,48 +225,35 @@ contains
       integer, intent(in) :: k
       real(dp), intent(in) :: sense
       real(dp), intent(inout) :: most
-      real(dp), parameter :: golden = 0.61803398874989485_dp, close = 0.02_dp
-      integer, parameter :: most_trials = 40
-      real(dp) :: v(n), a, b, x(2), f(2), row(size(self%list%id))
-      logical :: in_domain
-      integer :: best, before, after, trial
+      real(dp), parameter :: close = 0.02_dp
+      type(peak_search_t) :: peak
+      real(dp) :: v(n), times(n), row(size(self%list%id)), time
+      logical :: in_domain, is_done
+      integer :: best, before, after
       v = sense*values(k, :)
+      times = self%t + place*span
       best = maxloc(v, 1)
       before = max(best - 1, 1)
       after = min(best + 1, n)
       if (.not. v(best) + max(v(best) - v(before), v(best) - v(after)) > most .or. .not. max(v(best) - v(before), &
         v(best) - v(after)) > 0) return
-      a = place(before)
-      b = place(after)
+      call peak%begin(sample_t(times(before), v(before), 0.0_dp), sample_t(times(after), v(after), 0.0_dp))
       if (before == best .or. after == best) then
-        call evaluate(self%t + (place(best) + merge(close, -close, best == 1)*(b - a))*span, row, in_domain)
+        time = times(best) + close*(times(after + before - best) - times(best))
+        call evaluate(time, row, in_domain)
         if (.not. in_domain .or. .not. sense*row(k) > v(best)) return
+        call peak%add_value(time, sense*row(k))
+      else
+        call peak%add_value(times(best), v(best))
       end if
-      x = [b - golden*(b - a), a + golden*(b - a)]
-      do trial = 1, 2
-        call evaluate(self%t + x(trial)*span, row, in_domain)
-        f(trial) = sense*row(k)
-      end do
-      do trial = 1, most_trials
-        if (abs(f(1) - f(2)) <= 1e-14_dp*abs(f(1))) exit
-        if (f(1) > f(2)) then
-          b = x(2)
-          x(2) = x(1)
-          f(2) = f(1)
-          x(1) = b - golden*(b - a)
-          call evaluate(self%t + x(1)*span, row, in_domain)
-          f(1) = sense*row(k)
-        else
-          a = x(1)
-          x(1) = x(2)
-          f(1) = f(2)
-          x(2) = a + golden*(b - a)
-          call evaluate(self%t + x(2)*span, row, in_domain)
-          f(2) = sense*row(k)
-        end if
+      do
+        call peak%next_time(time, is_done)
+        if (is_done) exit
+        call evaluate(time, row, in_domain)
         if (.not. in_domain) return
+        call peak%add_value(time, sense*row(k))
       end do
-      most = max(most, f(1), f(2))
+      most = max(most, peak%value(1))
     end subroutine search
   end subroutine record
 

@@ -26,7 +26,7 @@ module history_record
     real(dp), allocatable :: angle(:)          !! result: crank angles of its rows, those of the duty but the first [rad]
     real(dp), allocatable :: quick_thickness(:), quick_pressure(:)   !! result: of the film of the run there [m], [Pa]
     logical, private :: has_load = .true.
-    real(dp), private :: cycle = 0             !! crank angle [rad]
+    real(dp) :: cycle = 0                      !! crank angle of the cycle [rad]
     type(measured_curve_t), private :: feed    !! supply pressure over the crank angle
     real(dp), allocatable, private :: kept(:, :)   !! (quantity, row)
     integer, private :: n = 0                  !! rows kept

@@ -429,8 +429,7 @@ contains
     type(run_t), intent(in) :: run
     type(train_result_t), allocatable :: list(:)
     integer :: revolutions, ended, followed
-    revolutions = 1
-    if (allocated(run%scene%gas)) revolutions = run%scene%gas%revolutions
+    revolutions = run%scene%forced_revolutions()
     if (run%recorder%periods%period > 0) revolutions = run%recorder%periods%period
     ended = 0
     followed = 0

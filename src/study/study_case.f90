@@ -31,7 +31,7 @@ module study_case
     procedure :: set_values
     procedure :: set_number
     procedure :: load
-    procedure :: take_units
+    procedure :: remove_units
     procedure :: convert
     procedure :: check
   end type study_case_t
@@ -123,7 +123,7 @@ contains
 
   !> Replace numbers with units by numbers in the units of their keys, as the rows of the results have them, in values that
   !> `convert` accepts.
-  subroutine take_units(self, texts)
+  subroutine remove_units(self, texts)
     class(study_case_t), intent(in) :: self
     character(len=*), intent(inout) :: texts(:)   !! of the parameters
     character(len=:), allocatable :: text, wanted
@@ -134,7 +134,7 @@ contains
       call convert_list(text, self%values%keys(self%places(i)), wanted)
       texts(i) = text
     end do
-  end subroutine take_units
+  end subroutine remove_units
 
   !> Convert the value of parameter i, which `set_values` sets in the case. Error: a text that is not a value of its key; the
   !> message does not name the key.

@@ -88,7 +88,7 @@ contains
     self%was_interrupted = .false.
     has_begun = .false.
     call design%get_values(number, self%values)
-    call self%base%take_units(self%values)
+    call self%base%remove_units(self%values)
     call self%base%set_values(self%values, error)
     if (.not. allocated(error)) call self%base%check(error)
     if (.not. allocated(error)) then
