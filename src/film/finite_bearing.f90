@@ -129,7 +129,7 @@ contains
   !> The condition of cavitation in the run: one that conserves the oil is for the film that is marched afterwards.
   pure function condition_of_run(self) result(condition)
     class(finite_bearing_t), intent(in) :: self
-    character(len=:), allocatable :: condition
+    character(len=len('mass_conserving')) :: condition
     condition = self%cavitation
     if (self%conserves_oil()) condition = 'reynolds'
   end function condition_of_run
@@ -145,7 +145,7 @@ contains
     key = ''
     if (self%variant /= 'table') return
     call choose_points(self, tolerance, table_points, film_points)
-    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 6 '//condition_of_run(self)//' ', &
+    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 6 '//trim(condition_of_run(self))//' ', &
       0.5_dp*bearing%length/bearing%pin_radius(), ' ', table_points, ' ', film_points
     key = trim(text)
   end function table_key
