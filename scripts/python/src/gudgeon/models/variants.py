@@ -5,7 +5,9 @@ import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-PLACES = ("", "crank_pin.", "main_bearing.")  # prefix of a group: none (piston pin or all joints), or one place only
+from gudgeon.names import PLACES
+
+PREFIXES = ("", *(f"{place}." for place in PLACES))  # of a group: none (piston pin or all joints), or one place only
 LAWS = ("friction", "asperities", "lubrication", "contact")
 OTHER_GROUPS = ("guide", "elastic_rod", "crankshaft", "combustion", "cylinder_pressure")
 WORDS = {
@@ -63,7 +65,7 @@ def read_template(text: str) -> dict[str, dict[str, Key]]:
 
 def groups_named(case: Case, group: str) -> list[str]:
     """The groups of the case with that name, with their prefixes."""
-    return [place + group for place in PLACES if place + group in case]
+    return [place + group for place in PREFIXES if place + group in case]
 
 
 def loose_joints(case: Case) -> list[str]:
