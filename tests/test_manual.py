@@ -175,6 +175,16 @@ def check_built(program: Path) -> None:
             check((page.parent / unquote(link.partition("#")[0])).exists(), f"manual, {page.name}: the link {link} leads to an existing file")
 
 
+def check_drawings() -> None:
+    """The drawings of the manual are those that their script draws."""
+    kept = ROOT / "data/manual/drawings"
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([sys.executable, ROOT / "scripts/manual/drawings.py", folder], capture_output=True, text=True)
+        check(done.returncode == 0, "the drawings are drawn", done.stderr[-300:])
+        drawn = {path.name: path.read_bytes() for path in Path(folder).glob("*.svg")}
+    check(drawn == {path.name: path.read_bytes() for path in kept.glob("*.svg")}, "the drawings are those of scripts/manual/drawings.py")
+
+
 #: Types a word into the search of a page.
 SEARCH = """const q = document.querySelector('.md-search__input'); q.focus(); q.value = arguments[0];
 q.dispatchEvent(new Event('input', {bubbles: true})); q.dispatchEvent(new Event('keyup'));"""
@@ -332,6 +342,7 @@ def main() -> int:
     check_tables()
     check_page_of_cases()
     check_lists()
+    check_drawings()
     program = (options.program or program_built()).resolve()
     check_reference(program)
     check_study(program)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import html
 import importlib.util
+import itertools
 import logging
 import re
 import shutil
@@ -18,15 +19,23 @@ EQUATION = re.compile(r'<(span|div) class="arithmatex">\\[(\[](.*?)\\[)\]]</\1>'
 printed: dict[str, str] = {}   # content of each page, in the order of the build
 
 
+def bold(letter: str) -> str:
+    return chr((0x1D468 if letter.isupper() else 0x1D482) + ord(letter.lower()) - ord("a"))
+
+
 def on_page_content(text: str, page, **_) -> str:
     """Write the page's equations as MathML."""
 
     def math(match: re.Match[str]) -> str:
         source = html.unescape(match[2]).strip()
-        done = latex2mathml.converter.convert(source, display="inline" if match[1] == "span" else "block")
-        if "\\" in done:
+        done = latex2mathml.converter.convert(source.replace("{aligned}", "{align*}"), display="inline" if match[1] == "span" else "block")
+        if "\\" in done or "<mi>&</mi>" in done:
             log.warning("%s: not an equation: %s", page.file.src_path, source)
-        return done
+        done = re.sub(r"<mi>(sin|cos|tanh|ln|exp)</mi>", r'<mspace width="0.17em"/><mi>\1</mi><mspace width="0.1em"/>', done)
+        sides = itertools.cycle(("prefix", "postfix"))   # of absolute values
+        done = re.sub("<mo>&#x0007C;</mo>", lambda _: f'<mo form="{next(sides)}" stretchy="false">|</mo>', done)
+        done = re.sub(r'mtd columnalign="(\w+)"', r'mtd style="text-align: \1; padding: 0.2em 0"', done)   # browsers know no other alignment
+        return re.sub(r'<mi mathvariant="bold-italic">(\w)</mi>', lambda letter: f"<mi>{bold(letter[1])}</mi>", done)
 
     text = EQUATION.sub(math, text)
     printed[page.file.name] = text
