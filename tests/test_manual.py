@@ -19,6 +19,7 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from test_faults import ROOT, assertions, check, program_built
+from test_report import Browser  # restarts in .venv
 
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 PATH = re.compile(r"`((?:src|tests|data|cases|scripts)/[\w./*-]+)`")
@@ -142,9 +143,6 @@ def check_lists() -> None:
     there = {path.stem for path in (ROOT / "data").glob("*.csv") if (ROOT / "data" / f"{path.stem}.events.csv").exists()}
     there |= {f"film/models/{path.stem}" for path in (ROOT / "data/film/models").glob("*.nml")}
     check(listed == there, "data/references.csv lists every reference", str(listed ^ there))
-    index = (ROOT / "data/manual/index.md").read_text(encoding="utf-8")
-    for page in re.findall(r"^ordered_subpage: (.+)$", index, re.MULTILINE):
-        check(index.count(f"{page})") == 1, f"data/manual/index.md: the table has {page}")
 
 
 def table_with(page: Path, first: str) -> list[list[str]]:
@@ -159,19 +157,64 @@ def first_column(path: Path) -> set[str]:
 
 
 def check_built(program: Path) -> None:
-    """The manual is built without a warning, and the links of its pages lead to existing files."""
-    done = subprocess.run(["scripts/manual.sh", program], cwd=ROOT, capture_output=True, text=True)
+    """The manual is built without a warning, loads nothing from a network, and the links of its pages lead to existing files."""
+    done = subprocess.run(["scripts/manual.sh", "--pdf", program], cwd=ROOT, capture_output=True, text=True)
     check(done.returncode == 0 and not done.stderr, "the manual is built without a warning", done.stderr[-500:])
     built = ROOT / "build/manual"
-    for page in [built / "index.html", *sorted((built / "page").glob("*.html"))]:
+    check((built / "gudgeon.pdf").exists() and (built / "gudgeon.pdf").read_bytes()[:5] == b"%PDF-", "the manual is printed")
+    for page in [built / "index.html", *sorted(built.glob("*.html")), *sorted(built.glob("api/*.html")), *sorted(built.glob("api/module/*.html"))[:5]]:
         if not page.exists():
             check(False, f"{page.name} is built")
             continue
         text = page.read_text(encoding="utf-8")
+        loaded = re.findall(r'<(?:script|link|img|iframe)\b[^>]*(?:src|href)="((?:https?:)?//[^"]+)"', text)
+        check(not loaded, f"manual, {page.name}: loads nothing from a network", str(loaded))
         for link in HREF.findall(text):
-            if "://" in link or link.startswith(("#", "mailto:", "data:", "//")):
+            if "://" in link or link.startswith(("#", "mailto:", "data:", "//", "/")) or link == ".":
                 continue
             check((page.parent / unquote(link.partition("#")[0])).exists(), f"manual, {page.name}: the link {link} leads to an existing file")
+
+
+def check_drawings() -> None:
+    """The drawings of the manual are those that their script draws."""
+    kept = ROOT / "data/manual/drawings"
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([sys.executable, ROOT / "scripts/manual/drawings.py", folder], capture_output=True, text=True)
+        check(done.returncode == 0, "the drawings are drawn", done.stderr[-300:])
+        drawn = {path.name: path.read_bytes() for path in Path(folder).glob("*.svg")}
+    check(drawn == {path.name: path.read_bytes() for path in kept.glob("*.svg")}, "the drawings are those of scripts/manual/drawings.py")
+
+
+#: Types a word into the search of a page.
+SEARCH = """const q = document.querySelector('.md-search__input'); q.focus(); q.value = arguments[0];
+q.dispatchEvent(new Event('input', {bubbles: true})); q.dispatchEvent(new Event('keyup'));"""
+
+
+def check_read() -> None:
+    """A browser that reaches no network opens the manual from the file system: style, equations, drawings, search, and no message."""
+    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    check(chromium and driver, "Chromium is there: scripts/setup.sh --browser")
+    if not (chromium and driver):
+        return
+    with tempfile.TemporaryDirectory() as profile:
+        browser = Browser(chromium, driver, profile, "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1")
+        try:
+            for page in ("index", "theory", "case_file"):
+                browser.open(ROOT / f"build/manual/{page}.html")
+                wide = browser.run("return getComputedStyle(document.querySelector('.md-header')).position === 'sticky'")
+                check(wide, f"manual, {page}: is styled")
+                broken = browser.run("return [...document.images].filter(i => !i.naturalWidth).map(i => i.src)")
+                check(not broken, f"manual, {page}: every picture is shown", str(broken))
+                flat = browser.run("return [...document.querySelectorAll('math')].filter(m => m.getBoundingClientRect().height < 4).length")
+                check(flat == 0, f"manual, {page}: equations are drawn", str(flat))
+                browser.run(SEARCH, "asperities")
+                check(browser.wait("document.querySelectorAll('.md-search-result__item').length > 1", 20), f"manual, {page}: the search finds")
+                check(not (said := browser.messages()), f"manual, {page}: console", str(said))
+            browser.open(ROOT / "build/manual/api/index.html")
+            check(browser.run("return getComputedStyle(document.querySelector('.navbar')).display") == "flex", "manual, api: is styled")
+            check(not (said := browser.messages()), "manual, api: console", str(said))
+        finally:
+            browser.close()
 
 
 def described(program: Path) -> set[tuple[str, str]]:
@@ -299,10 +342,12 @@ def main() -> int:
     check_tables()
     check_page_of_cases()
     check_lists()
+    check_drawings()
     program = (options.program or program_built()).resolve()
     check_reference(program)
     check_study(program)
     check_built(program)
+    check_read()
     check_law()
     return assertions.report()
 
