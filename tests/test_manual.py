@@ -18,6 +18,9 @@ import tempfile
 from pathlib import Path
 from urllib.parse import unquote
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts/manual"))
+
+import tutorial
 from test_faults import ROOT, assertions, check, program_built
 from test_report import Browser  # restarts in .venv
 
@@ -80,7 +83,8 @@ def value_in(case: Path, group: str, key: str) -> float | None:
 
 
 MEASURED = re.compile(r"\d\.\d|\de-?\d")
-NOT_MEASURED = {"cases/README.md": "simulation case figures", "tests/README.md": "what is judged"}   # first cells of tables of parameters and limits
+NOT_MEASURED = {"cases/README.md": "simulation case figures", "tests/README.md": "what is judged",
+                "data/manual/typical_values.md": "typical of", "data/manual/messages.md": "message"}   # first cells of tables of parameters and limits
 
 
 def check_tables() -> None:
@@ -173,6 +177,24 @@ def check_built(program: Path) -> None:
             if "://" in link or link.startswith(("#", "mailto:", "data:", "//", "/")) or link == ".":
                 continue
             check((page.parent / unquote(link.partition("#")[0])).exists(), f"manual, {page.name}: the link {link} leads to an existing file")
+
+
+def check_tutorials(program: Path) -> None:
+    """The commands of the tutorials print what the pages show; the Portuguese pages have the same files, commands and outputs."""
+    for name in ("tutorial_engine", "tutorial_compressor"):
+        page = ROOT / f"data/manual/{name}.md"
+        wrong = tutorial.run(page, program)
+        check(not wrong, f"data/manual/{name}.md shows what its commands print", "\n".join(wrong))
+        ours, theirs = ([body for _, body, _ in tutorial.blocks(one.read_text(encoding="utf-8"))] for one in (page, page.with_name(f"{name}_pt.md")))
+        check(len(ours) > 8 and ours == theirs, f"data/manual/{name}_pt.md has the same commands")
+
+
+def check_messages() -> None:
+    """Each message with a cure is one that the source has, and the list of all is not empty."""
+    done = subprocess.run([sys.executable, ROOT / "scripts/manual/messages.py"], capture_output=True, text=True)
+    check(done.stdout.count("\n- ") > 250, "the messages of the program are found in its source", done.stderr[-300:])
+    for row in table_with(ROOT / "data/manual/messages.md", "message"):
+        check(row[0].strip("`") in done.stdout, "a message with a cure is in the source", row[0])
 
 
 def check_drawings() -> None:
@@ -343,7 +365,9 @@ def main() -> int:
     check_page_of_cases()
     check_lists()
     check_drawings()
+    check_messages()
     program = (options.program or program_built()).resolve()
+    check_tutorials(program)
     check_reference(program)
     check_study(program)
     check_built(program)

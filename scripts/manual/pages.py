@@ -14,6 +14,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import messages
+
 TOP = Path(__file__).resolve().parents[2]
 SOURCE = TOP / "data/manual"
 MEASURED = TOP / "data/measured"
@@ -79,6 +81,8 @@ def collect(program: str) -> None:
             text = relinked(path.read_text(encoding="utf-8"), path, page, wanted)
             if path.parent == SOURCE and path.stem in REFERENCE:
                 text += reference(program, REFERENCE[path.stem])
+            if path == SOURCE / "messages.md":
+                text += messages.page()
             if path == SOURCE / "measured.md":
                 text += "".join(f"- [{title_of(table)}](measured_{table.name})\n" for table in sorted(MEASURED.glob("*.md")))
             page.write_text(text, encoding="utf-8")
