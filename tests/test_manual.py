@@ -249,11 +249,31 @@ def check_pictures() -> None:
 def check_tutorials(program: Path) -> None:
     """The commands of README and the tutorials print what the pages show; the Portuguese pages have the same files, commands and outputs."""
     for name, other in (("README.md", "README.pt.md"), ("data/manual/tutorial_engine.md", "data/manual/tutorial_engine_pt.md"),
-                        ("data/manual/tutorial_compressor.md", "data/manual/tutorial_compressor_pt.md")):
+                        ("data/manual/tutorial_compressor.md", "data/manual/tutorial_compressor_pt.md"), ("data/manual/tutorial_laws.md", "")):
         wrong = tutorial.run(ROOT / name, program)
         check(not wrong, f"{name} shows what its commands print", "\n".join(wrong))
+        if not other:
+            continue
         ours, theirs = ([body for _, body, _ in tutorial.blocks((ROOT / one).read_text(encoding="utf-8"))] for one in (name, other))
         check(len(ours) > 2 and ours == theirs, f"{other} has the same commands")
+
+
+def check_symbols() -> None:
+    """The table of symbols gives each letter one meaning."""
+    letters = [letter for row in table_with(ROOT / "data/manual/symbols.md", "symbol") for letter in re.findall(r"\$([^$]+)\$", row[0])]
+    check(len(letters) > 60 and len(set(letters)) == len(letters), "data/manual/symbols.md: each symbol once", str({one for one in letters if letters.count(one) > 1}))
+
+
+def check_results_in_python(program: Path) -> None:
+    """The ten lines of Python of the page "Results" find the largest force of the summary."""
+    code = code_after((ROOT / "data/manual/results.md").read_text(encoding="utf-8"), "**In ten lines of Python**")
+    with tempfile.TemporaryDirectory() as folder:
+        case = Path(folder) / "engine.nml"
+        case.write_text(subprocess.run([program, "--template=engine"], capture_output=True, text=True).stdout, encoding="utf-8")
+        subprocess.run([program, "-q", case.name], cwd=folder, check=True)
+        done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True)
+        found = re.findall(r"[\d.]+(?:E[+-]\d+)?", done.stdout)
+        check(done.returncode == 0 and abs(float(found[0]) / float(found[2]) - 1) < 0.01, "results in ten lines of Python", done.stdout + done.stderr)
 
 
 def check_messages() -> None:
@@ -433,10 +453,12 @@ def main() -> int:
     check_lists()
     check_drawings()
     check_messages()
+    check_symbols()
     check_pictures()
     program = (options.program or program_built()).resolve()
     check_commands(program)
     check_tutorials(program)
+    check_results_in_python(program)
     check_reference(program)
     check_study(program)
     check_built(program)
