@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import os
 import re
 import shutil
 import subprocess
@@ -139,10 +140,10 @@ def check_lists() -> None:
     text = (ROOT / "tests/README.md").read_text(encoding="utf-8")
     for test in sorted([*(ROOT / "tests").glob("test_*.py"), *(ROOT / "tests").glob("test_*.sh")]):
         check(f"`{test.name}`" in text, f"tests/README.md names {test.name}")
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     for folder in [*(ROOT / "src").iterdir(), *(ROOT / name for name in ("cases", "data", "scripts", "src", "tests"))]:
         if folder.is_dir():
-            check(f"`{folder.name}/`" in text, f"README.md: the map has {folder.relative_to(ROOT)}")
+            check(f"`{folder.name}/`" in text, f"CONTRIBUTING.md: the map has {folder.relative_to(ROOT)}")
     listed = first_column(ROOT / "data/references.csv")
     there = {path.stem for path in (ROOT / "data").glob("*.csv") if (ROOT / "data" / f"{path.stem}.events.csv").exists()}
     there |= {f"film/models/{path.stem}" for path in (ROOT / "data/film/models").glob("*.nml")}
@@ -179,14 +180,100 @@ def check_built(program: Path) -> None:
             check((page.parent / unquote(link.partition("#")[0])).exists(), f"manual, {page.name}: the link {link} leads to an existing file")
 
 
+def commands_of(page: Path) -> list[str]:
+    """The commands in the blocks of code of a page, without their comments."""
+    lines = re.findall(r"^    ((?:gudgeon|fpm|pip|gcc|\. scripts|scripts/|tests/|\.venv/bin/).*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return [re.sub(r"\s+#.*", "", line).strip() for line in lines]
+
+
+def check_commands(program: Path) -> None:
+    """Every command in a page is run here, page by page in its order, or tests/commands_not_run.csv says why not; the options and words of commands inside
+    sentences are there."""
+    with (ROOT / "tests/commands_not_run.csv").open(encoding="utf-8", newline="") as lines:
+        excused = {row["command"]: row["why"] for row in csv.DictReader(lines)}
+    check(all(excused.values()), "each command that is not run has its reason")
+    met: set[str] = set()
+    for page in pages():
+        name = str(page.relative_to(ROOT))
+        todo = [] if name.startswith("data/measured/") or page.name.startswith("tutorial_") else commands_of(page)
+        met |= {command for command in todo if command in excused}
+        todo = [command for command in todo if command not in excused]
+        if not todo:
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            work = Path(folder, "work")
+            work.mkdir()
+            for link in ("cases", "data", "scripts"):
+                (work / link).symlink_to(ROOT / link)
+            (work / "sim_I.nml").symlink_to(ROOT / "cases/sim_I.nml")
+            for case in ("engine", "CASE"):   # names that pages use for a case of the reader
+                (work / f"{case}.nml").write_text(subprocess.run([program, "--template=engine"], capture_output=True, text=True).stdout)
+            (Path(folder) / "gudgeon").symlink_to(program)
+            for command in todo:
+                done = subprocess.run(command, shell=True, cwd=work, capture_output=True, text=True, timeout=300,
+                                      env={**os.environ, "PATH": f"{folder}:{ROOT / '.venv/bin'}:{os.environ['PATH']}"})
+                check(done.returncode == 0, f"{name}: runs {command}", done.stderr[-300:])
+    check(met == set(excused), "tests/commands_not_run.csv has no other commands", str(set(excused) - met))
+    check_words(program)
+
+
+def check_words(program: Path) -> None:
+    """Options of gudgeon, and words and options of gudgeon-plot, in all pages."""
+    options = subprocess.run([program, "--help"], capture_output=True, text=True).stdout
+    source = ROOT / "scripts/python/src/gudgeon"
+    words = {path.stem: path.read_text(encoding="utf-8") for path in (source / "commands").glob("*.py")}
+    common = "".join(path.read_text(encoding="utf-8") for path in source.glob("*.py"))
+    for page in pages():
+        text = page.read_text(encoding="utf-8")
+        for code in [*re.findall(r"`([^`\n]+)`", text), *re.findall(r"^    (.+)$", text, re.MULTILINE)]:
+            code = code.removeprefix("$ ").split("#")[0].split(" > ")[0]
+            found = re.match(r"gudgeon-plot ([a-z]+)\b", code)
+            if not found and not code.startswith("gudgeon "):
+                continue
+            check(not found or found[1] in words, f"{page.name}: {code}: is there")
+            for option in re.findall(r"(?<!\S)(--[a-z-]+)", code):
+                check(option in (words.get(found[1], "") + common if found else options), f"{page.name}: {code}: has the option {option}")
+
+
+def check_pictures() -> None:
+    """Each picture is made by a command that data/pictures.csv names and that is there."""
+    with (ROOT / "data/pictures.csv").open(encoding="utf-8", newline="") as lines:
+        listed = {row["picture"]: row["command"] for row in csv.DictReader(lines)}
+    there = {str(path.relative_to(ROOT)) for folder in ("cases", "data", "scripts") for path in (ROOT / folder).rglob("*") if path.suffix in (".png", ".svg")}
+    there = {path for path in there if "/build/" not in path}
+    check(there == set(listed), "data/pictures.csv has every picture", str(there ^ set(listed)))
+    for picture, command in listed.items():
+        check(command.startswith("gudgeon-plot ") or (ROOT / command.split()[0]).is_file(), f"{picture}: its command is there", command)
+
+
 def check_tutorials(program: Path) -> None:
-    """The commands of the tutorials print what the pages show; the Portuguese pages have the same files, commands and outputs."""
-    for name in ("tutorial_engine", "tutorial_compressor"):
-        page = ROOT / f"data/manual/{name}.md"
-        wrong = tutorial.run(page, program)
-        check(not wrong, f"data/manual/{name}.md shows what its commands print", "\n".join(wrong))
-        ours, theirs = ([body for _, body, _ in tutorial.blocks(one.read_text(encoding="utf-8"))] for one in (page, page.with_name(f"{name}_pt.md")))
-        check(len(ours) > 8 and ours == theirs, f"data/manual/{name}_pt.md has the same commands")
+    """The commands of README and the tutorials print what the pages show; the Portuguese pages have the same files, commands and outputs."""
+    for name, other in (("README.md", "README.pt.md"), ("data/manual/tutorial_engine.md", "data/manual/tutorial_engine_pt.md"),
+                        ("data/manual/tutorial_compressor.md", "data/manual/tutorial_compressor_pt.md"), ("data/manual/tutorial_laws.md", "")):
+        wrong = tutorial.run(ROOT / name, program)
+        check(not wrong, f"{name} shows what its commands print", "\n".join(wrong))
+        if not other:
+            continue
+        ours, theirs = ([body for _, body, _ in tutorial.blocks((ROOT / one).read_text(encoding="utf-8"))] for one in (name, other))
+        check(len(ours) > 2 and ours == theirs, f"{other} has the same commands")
+
+
+def check_symbols() -> None:
+    """The table of symbols gives each letter one meaning."""
+    letters = [letter for row in table_with(ROOT / "data/manual/symbols.md", "symbol") for letter in re.findall(r"\$([^$]+)\$", row[0])]
+    check(len(letters) > 60 and len(set(letters)) == len(letters), "data/manual/symbols.md: each symbol once", str({one for one in letters if letters.count(one) > 1}))
+
+
+def check_results_in_python(program: Path) -> None:
+    """The ten lines of Python of the page "Results" find the largest force of the summary."""
+    code = code_after((ROOT / "data/manual/results.md").read_text(encoding="utf-8"), "**In ten lines of Python**")
+    with tempfile.TemporaryDirectory() as folder:
+        case = Path(folder) / "engine.nml"
+        case.write_text(subprocess.run([program, "--template=engine"], capture_output=True, text=True).stdout, encoding="utf-8")
+        subprocess.run([program, "-q", case.name], cwd=folder, check=True)
+        done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True)
+        found = re.findall(r"[\d.]+(?:E[+-]\d+)?", done.stdout)
+        check(done.returncode == 0 and abs(float(found[0]) / float(found[2]) - 1) < 0.01, "results in ten lines of Python", done.stdout + done.stderr)
 
 
 def check_messages() -> None:
@@ -366,8 +453,12 @@ def main() -> int:
     check_lists()
     check_drawings()
     check_messages()
+    check_symbols()
+    check_pictures()
     program = (options.program or program_built()).resolve()
+    check_commands(program)
     check_tutorials(program)
+    check_results_in_python(program)
     check_reference(program)
     check_study(program)
     check_built(program)

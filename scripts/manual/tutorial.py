@@ -4,7 +4,7 @@
     scripts/manual/tutorial.py PAGE [--program PROGRAM] [--write]     --write: puts what they print into the page
 
 A block after a line that ends with "`NAME`:" is a file. In a block that begins with "$ " each such line is a command, run in the folder of the files, and the lines behind it are its output; `...` stands for anything, and numbers may be off by
-2e-3 of their value.
+2e-3 of their value, with ~ before them by a third.
 """
 from __future__ import annotations
 
@@ -41,7 +41,8 @@ def alike(shown: str, printed: str) -> bool:
         return False
     if "..." in shown:
         return True
-    return all(abs(float(a) - float(b)) <= 2e-3 * max(abs(float(a)), abs(float(b))) for a, b in zip(NUMBER.findall(shown), NUMBER.findall(printed)))
+    pairs = zip(NUMBER.finditer(shown), NUMBER.findall(printed))
+    return all(abs(float(a[0]) - float(b)) <= (0.33 if shown[: a.start()].endswith("~") else 2e-3) * max(abs(float(a[0])), abs(float(b))) for a, b in pairs)
 
 
 def run(page: Path, program: Path, write: bool = False) -> list[str]:
@@ -64,8 +65,9 @@ def run(page: Path, program: Path, write: bool = False) -> list[str]:
             for command, shown in re.findall(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", body, re.MULTILINE):
                 done = subprocess.run(command, shell=True, cwd=work, capture_output=True, text=True, env={**os.environ, "PATH": path})
                 printed = re.sub(r"(evaluations, )[\d.e-]+ s", r"\1... s", done.stdout.rstrip("\n"))
-                now += "".join(f"    {line}\n" for line in [f"$ {command}", *printed.splitlines()])
                 lines = shown.rstrip("\n").splitlines()
+                fresh = [line if line in lines or i >= len(lines) or not alike(lines[i], line) else lines[i] for i, line in enumerate(printed.splitlines())]
+                now += "".join(f"    {line}\n" for line in [f"$ {command}", *fresh])
                 if done.returncode:
                     wrong.append(f"{command}: exit status {done.returncode}: {done.stderr[-300:]}")
                 elif len(lines) != len(printed.splitlines()) or not all(map(alike, lines, printed.splitlines())):
