@@ -248,7 +248,7 @@ def check_pictures() -> None:
 
 def check_tutorials(program: Path) -> None:
     """The commands of README and the tutorials print what the pages show; the Portuguese pages have the same files, commands and outputs."""
-    for name, other in (("README.md", "README.pt.md"), ("data/manual/tutorial_engine.md", "data/manual/tutorial_engine_pt.md"),
+    for name, other in (("README.md", "data/manual/readme_pt.md"), ("data/manual/tutorial_engine.md", "data/manual/tutorial_engine_pt.md"),
                         ("data/manual/tutorial_compressor.md", "data/manual/tutorial_compressor_pt.md"), ("data/manual/tutorial_laws.md", "")):
         wrong = tutorial.run(ROOT / name, program)
         check(not wrong, f"{name} shows what its commands print", "\n".join(wrong))

@@ -344,7 +344,7 @@ def floating_pin() -> str:
 
 
 def crank_train() -> str:
-    d = Drawing(760, 380, (60, 250))
+    d = Drawing(800, 380, (60, 250))
     stations, apart = 4, 130.0
     for i in range(stations):
         y = i * apart
@@ -365,7 +365,7 @@ def crank_train() -> str:
     d.text((150, 0), "ring of a damper", size=14)
     d.text((-98, 0), "front", GREY, size=14)
     d.text((-98, 3 * apart), "rear", GREY, size=14)
-    c = (50.0, 540.0)
+    c = (50.0, 550.0)
     d.circle(c, 66, LIGHT, GREY)
     d.arrow(c, (c[0] + 92, c[1]), GREY)
     d.text((c[0] + 92, c[1]), "$x$", GREY, dx=12)
@@ -375,11 +375,12 @@ def crank_train() -> str:
     d.turn(c, 84, 0, bank, BLUE)
     d.text((c[0] + 84 * cos(bank / 2), c[1] + 84 * sin(bank / 2)), "bank_deg", BLUE, size=14, anchor="start", dx=2, dy=-12)
     mark = radians(-62)
+    d.lines((c[0] + 66 * cos(mark + phase) - 4, c[1] + 66 * sin(mark + phase) + 4), (c[0] + 26, c[1] + 60), stroke=GREY, width=0.7)
     for angle, name in ((mark, "mark"), (mark + phase, "throw i")):
         p = (c[0] + 66 * cos(angle), c[1] + 66 * sin(angle))
         d.lines(c, p, width=3 if name != "mark" else 1)
         d.circle(p, 5, "#ffffff")
-    d.text((c[0] + 66 * cos(mark + phase), c[1] + 66 * sin(mark + phase)), "throw $i$", size=14, dx=6, dy=24, anchor="start")
+    d.text((c[0] + 66 * cos(mark + phase), c[1] + 66 * sin(mark + phase)), "throw $i$", size=14, dx=30, dy=34, anchor="start")
     d.text((c[0] + 66 * cos(mark), c[1] + 66 * sin(mark)), "mark", size=14, dx=-24)
     d.turn(c, 40, mark, mark + phase, BLUE)
     d.text((c[0] + 40 * cos(mark + phase / 2), c[1] + 40 * sin(mark + phase / 2)), "phase_deg", BLUE, size=14, anchor="end", dx=-2, dy=-6)

@@ -30,6 +30,8 @@ LINK = re.compile(r"(\]\()([^)#\s]+)(#[^)\s]*)?(\))")
 
 def place_in_manual(path: Path) -> Path:
     """Place of a file of the repository below PAGES: pages side by side, other files as they are in files/."""
+    if path == TOP / "README.md":   # the manual begins with a page of its own
+        return PAGES / "index.md"
     if path.parent in (SOURCE, BESIDE):
         return PAGES / path.name
     if path.suffix != ".md":
@@ -51,7 +53,8 @@ def relinked(text: str, origin: Path, page: Path, wanted: set[Path]) -> str:
             target = target / "README.md"
         if not target.exists():
             return match[0]
-        wanted.add(target)
+        if target != TOP / "README.md":
+            wanted.add(target)
         return f"{match[1]}{os.path.relpath(place_in_manual(target), page.parent)}{match[3] or ''}{match[4]}"
 
     return LINK.sub(new, text)
