@@ -152,28 +152,29 @@ contains
   pure subroutine load_stations(self, motion)
     class(crank_train_t), intent(in) :: self
     type(motion_t), intent(inout) :: motion
-    real(dp) :: moment, before
+    real(dp) :: moment, before, drag, power
     integer :: i, j
     associate (train => motion%train)
-      train%damping_power = 0
+      power = 0
       before = 0
       do j = 1, self%n
+        drag = self%drag(j)*(train%speed(j) - self%drag_speed)
+        power = power - drag*train%speed(j)
         moment = 0
         if (j < self%n) then
           moment = self%segment_torque(motion, j)
-          train%damping_power = train%damping_power - self%damping(j)*(train%speed(j + 1) - train%speed(j))**2
+          power = power - self%damping(j)*(train%speed(j + 1) - train%speed(j))**2
         end if
         train%inertia(j) = self%inertia(j)
-        train%torque(j) = -self%drag(j)*(train%speed(j) - self%drag_speed)
-        train%damping_power = train%damping_power + train%torque(j)*train%speed(j)
-        train%torque(j) = train%torque(j) + (moment - before)
+        train%torque(j) = moment - before - drag
         before = moment
       end do
       do i = 1, size(self%rings)
         j = self%rings(i)%station
         train%torque(j) = train%torque(j) + self%ring_torque(motion, i)
-        train%damping_power = train%damping_power - self%rings(i)%damping*(train%ring_speed(i) - train%speed(j))**2
+        power = power - self%rings(i)%damping*(train%ring_speed(i) - train%speed(j))**2
       end do
+      train%damping_power = power
     end associate
     call load_by_cylinders(self, motion)
   end subroutine load_stations
@@ -182,26 +183,27 @@ contains
   pure subroutine load_by_cylinders(train, motion)
     type(crank_train_t), intent(in) :: train
     type(motion_t), intent(inout) :: motion
-    real(dp) :: sine, cosine, along, across, inertia, half_slope, weight, rate
+    real(dp) :: sine, cosine, of_twist(2), at_shaft(2), inertia, half_slope, weight, rate, power
     integer :: i
+    power = 0
     associate (at => motion%train)
-      at%gas_power = 0
       do i = 1, size(train%cylinders)
         associate (it => train%cylinders(i), j => train%cylinders(i)%station)
-          sine = motion%sin_crank*it%cos_shift + motion%cos_crank*it%sin_shift
-          cosine = motion%cos_crank*it%cos_shift - motion%sin_crank*it%sin_shift
+          at_shaft = [motion%sin_crank, motion%cos_crank]
           if (j /= train%full) then
-            call small_sine_cosine(at%twist(j), across, along)
-            weight = sine
-            sine = sine*along + cosine*across
-            cosine = cosine*along - weight*across
+            call small_sine_cosine(at%twist(j), of_twist(1), of_twist(2))
+            at_shaft = [motion%sin_crank*of_twist(2) + motion%cos_crank*of_twist(1), &
+              motion%cos_crank*of_twist(2) - motion%sin_crank*of_twist(1)]
           end if
+          sine = at_shaft(1)*it%cos_shift + at_shaft(2)*it%sin_shift
+          cosine = at_shaft(2)*it%cos_shift - at_shaft(1)*it%sin_shift
           call it%find_terms(sine, cosine, inertia, half_slope, weight, rate)
           at%inertia(j) = at%inertia(j) + inertia
           at%torque(j) = at%torque(j) + (weight - at%gas_force(i)*rate - half_slope*at%speed(j)**2)
-          at%gas_power = at%gas_power - at%gas_force(i)*rate*at%speed(j)
+          power = power - at%gas_force(i)*rate*at%speed(j)
         end associate
       end do
+      at%gas_power = power
     end associate
   end subroutine load_by_cylinders
 
