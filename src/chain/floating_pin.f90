@@ -2,9 +2,9 @@
 !>
 !>     m_g P'' = F_b + F_s + m_g g,    I_g phi'' = M_b + M_s,    e_b = P - C,    e_s = P - S
 !>
-!> P is its centre, C that of the bearing in the piston, S that of the bearing in the rod. Since the forces of both joints follow from
-!> the state, rod and piston do not feel its inertia: they move as those of a chain without it, on whose rod the force -F_s acts and
-!> on whose piston the force -F_b. That chain has one force for both, so that F_b + F_s acts on its piston from outside.
+!> P is its centre, C that of the bearing in the piston, S that of the bearing in the rod. Since the forces of both joints follow
+!> from the state, rod and piston do not feel its inertia: they move as those of a chain without it, on whose rod the force -F_s
+!> acts and on whose piston the force -F_b. That chain has one force for both, so that F_b + F_s acts on its piston from outside.
 module floating_pin
   use kinds, only: dp
   use state_layout, only: layout_t, coordinates_t

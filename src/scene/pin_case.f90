@@ -23,10 +23,10 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%word('kind', self%kind, pin_of_rod//', '//pin_of_piston//', '//pin_floating, pin_of_rod, &
       'body that holds the pin; floating: it turns in both. The bearing is in the other: place = ''piston_pin'' for rod, '// &
-      '''small_end'' for piston, both for floating', example=pin_floating)
+      '''small_end'' for piston, both for floating')
     call list%add('mass', self%mass, 'mass of a floating pin, not part of rod_mass or piston_mass', 'kg', '> 0', default='0.0', &
-      example='0.15', usual='1e-5 to 1e3')
+      usual='1e-5 to 1e3')
     call list%add('inertia', self%inertia, 'moment of inertia of a floating pin about its axis; hollow: mass (r_o^2 + r_i^2)/2', &
-      'kg m^2', '> 0', default='0.0', example='7.5e-6', usual='1e-11 to 1e2')
+      'kg m^2', '> 0', default='0.0', usual='1e-11 to 1e2')
   end subroutine parameters
 end module pin_case

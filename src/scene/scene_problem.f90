@@ -136,6 +136,7 @@ module scene_problem
     procedure :: energy_scale
     procedure :: speed_scale
     procedure :: twist_frequency
+    procedure :: compared_states
   end type scene_t
 
   interface
@@ -631,6 +632,18 @@ contains
     if (allocated(self%chain%floating)) call self%chain%floating%set_start(y)
     if (allocated(self%guide)) call self%guide%set_start(y)
   end function initial_state
+
+  !> Indices of the states by which motions are compared: all except quadratures, the crank angle, and the angle of a floating pin,
+  !> on which nothing depends and which drifts.
+  pure function compared_states(self) result(at)
+    class(scene_t), intent(in) :: self
+    integer, allocatable :: at(:)
+    integer :: i, angle
+    angle = 0
+    if (allocated(self%chain%floating)) angle = self%chain%floating%turn%position
+    at = [(i, i=1, self%n - self%n_quadratures)]
+    at = pack(at, at /= self%crank%position .and. at /= angle)
+  end function compared_states
 
   !> Whether the force of a film has no bound near this state.
   pure logical function is_singular(self, y)

@@ -76,8 +76,8 @@ contains
     end if
   end procedure jacobian
 
-  !> Make the slopes of a joint whose pin belongs to the piston those of the chain's pin: of the load on the rod, which takes what the
-  !> bearing takes, with respect to the opposite of the eccentricity and to the angular speed of the rod.
+  !> Make the slopes of a joint whose pin belongs to the piston those of the chain's pin: of the load on the rod, which takes what
+  !> the bearing takes, with respect to the opposite of the eccentricity and to the angular speed of the rod.
   pure subroutine turn_round(joint, of_loads, of_rates)
     type(joint_evaluation_t), intent(in) :: joint
     real(dp), intent(inout) :: of_loads(3, n_joint_slopes), of_rates(most_joint_states, n_joint_slopes)
