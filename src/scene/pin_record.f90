@@ -4,7 +4,7 @@ module pin_record
   use ode_method, only: ode_method_t
   use run_state, only: run_state_t
   use chain_motion, only: body_pin
-  use joint_places, only: places, name_prefix
+  use joint_places, only: name_prefix
   use machine_record, only: turning_point
   use scene_problem, only: scene_t, evaluation_t, phase_film, phase_contact, event_contact_begins
   use joint_events, only: may_touch
@@ -78,9 +78,11 @@ contains
     call figures%pin(self%pin)%declare(name_prefix(self%pin), list, self%joint > 0, touches, self%reports_film)
     if (touches) call self%contact%declare(list)
     if (self%floats) then
-      associate (f => figures%pin(self%pin), pre => trim(places(self%pin)%prefix))
-        call list%add(pre//'turning', f%turning, 'rad', 'angle that the pin has turned through in this bearing')
-        if (touches) call list%add(pre//'max_impact_speed', f%max_impact_speed, 'm/s', 'largest speed at which a contact began')
+      associate (f => figures%pin(self%pin))
+        call list%add(name_prefix(self%pin)//'turning', f%turning, 'rad', &
+          'angle that the pin has turned through in this bearing')
+        if (touches) call list%add(name_prefix(self%pin)//'max_impact_speed', f%max_impact_speed, 'm/s', &
+          'largest speed at which a contact began')
       end associate
     end if
     if (allocated(self%wear)) call self%wear%declare(name_prefix(self%pin), list, scene%joints(self%joint))
