@@ -115,6 +115,7 @@ module clearance_joint
     procedure :: work_rates
     procedure :: rubs
     procedure :: sliding_load
+    procedure :: holding_ratio
   end type clearance_joint_t
 
 contains
@@ -753,6 +754,12 @@ contains
     rubs = .false.
     if (self%acting(self%phase) > 0) rubs = self%slots(self%acting(self%phase))%element%rubs
   end function rubs
+
+  !> Largest friction over normal force of surfaces in contact that stick [-].
+  pure real(dp) function holding_ratio(self)
+    class(clearance_joint_t), intent(in) :: self
+    holding_ratio = self%slots(self%acting(phase_contact))%element%holding_ratio
+  end function holding_ratio
 
   !> Int p R L dtheta |v|: the force that presses on the surfaces, summed without regard to its direction, times the sliding speed
   !> [W]. Times the wear rate of a surface it is the volume that wears in a second. On a wide arc it is larger than the normal force
