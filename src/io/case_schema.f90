@@ -68,7 +68,7 @@ contains
   !> Initialise the visitor.
   subroutine begin(self)
     class(schema_t), intent(inout) :: self
-    allocate (self%groups(80), self%keys(900))
+    allocate (self%groups(100), self%keys(1400))
     self%law_name = ''
     self%difference = ''
   end subroutine begin

@@ -11,6 +11,7 @@ submodule (case_definition) case_groups
 contains
 
   module procedure visit_case
+    type(pin_case_t) :: pin
     type(elastic_rod_t) :: rod
     type(elastic_crankshaft_t) :: crankshaft
     type(shaft_case_t) :: shaft
@@ -33,6 +34,10 @@ contains
     call list%group('initial', &
       'Initial state. Velocities are those of the mechanism with ideal joints, plus the rates given here', .false.)
     call case%initial%parameters(list)
+    call list%group('pin', 'The piston pin. Without this group it is fixed in the rod', .true.)
+    call pin%parameters(list)
+    if (list%sets) case%pin = pin
+    if (list%is_absent()) deallocate (case%pin)
     do i = 1, n_places
       call visit_joint(case%joints(in_order(i)), trim(places(in_order(i))%name), &
         any(case%joints(in_order(:i - 1))%has_bearing()), list)

@@ -52,6 +52,7 @@ contains
       in_domain = self%guide%admits(now%motion%tilting)
       if (in_domain) call place_piston(self%chain%bodies%piston, now%motion)
     end if
+    if (allocated(self%chain%floating)) call self%chain%floating%read_state(y, now%motion)
     if (allocated(self%chain%elastic)) call self%chain%elastic%read_state(t, y, now%motion)
     if (allocated(self%chain%train)) call self%chain%train%read_state(t, y, now%motion)
   end subroutine place_more_bodies
