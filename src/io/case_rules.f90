@@ -48,6 +48,7 @@ contains
     do i = 1, n_places
       call check_friction(c%joints(in_order(i)), in_order(i))
     end do
+    call check_shared_laws()
     call check_start()
     if (.not. allocated(c%load)) then
       call check_guide(c, values)
@@ -461,6 +462,21 @@ contains
         'more than the static friction at touch-down from '//short_text(limit)//' m/s on, and this joint slides with '// &
         short_text(speed)//' m/s: must be > 0')
     end subroutine check_friction
+
+    !> Check that a law for all joints acts in one of them, where joints have laws of their own.
+    subroutine check_shared_laws()
+      logical :: lacks_own(n_places)
+      integer :: k, i
+      if (.not. any(c%joints%has_bearing())) return
+      do k = 1, size(values%groups)
+        if (.not. (values%groups(k)%is_law .and. values%is_present(k))) cycle
+        do i = 1, n_places
+          lacks_own(i) = c%joints(i)%has_bearing() .and. law_group(trim(values%groups(k)%name), i) == values%groups(k)%name
+        end do
+        if (.not. any(lacks_own)) call values%refuse_group(trim(values%groups(k)%name), &
+          'acts nowhere, since every joint has a group of its own (place = ...): set that one')
+      end do
+    end subroutine check_shared_laws
 
     !> Whether the case has a law for the joint at this place alone.
     logical function has_own_law(place)
