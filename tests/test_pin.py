@@ -310,8 +310,12 @@ def elements(run: Runner) -> None:
 def random_scenes(run: Runner, scenes: int = 60, seed: int = 7) -> None:
     """Scenes at random, also far from usual ones: each run ends and keeps its energy."""
     random = np.random.default_rng(seed)
-    pick = lambda *words: str(random.choice(words))
-    size = lambda low, high: float(np.exp(random.uniform(np.log(low), np.log(high))))
+
+    def pick(*words: str) -> str:
+        return str(random.choice(words))
+
+    def size(low: float, high: float) -> float:
+        return float(np.exp(random.uniform(np.log(low), np.log(high))))
 
     def laws() -> str:
         kind = pick("dry", "film", "both", "rough", "smooth")
