@@ -95,6 +95,7 @@ failures of the machine|tests/test_faults.py --kills 10
 heat and work of the gas|.venv/bin/python tests/test_gas.py
 several cylinders|.venv/bin/python tests/test_cylinders.py
 heating of films|.venv/bin/python tests/test_film_heat.py
+floating piston pin|.venv/bin/python tests/test_pin.py
 statistics of columns|.venv/bin/python tests/test_column_statistics.py
 END
   $all && cat <<'END'

@@ -175,7 +175,7 @@ def identities(run: Runner) -> None:
         across = 0.05 * np.sin(q) - 0.12 * np.sin(angle) - (rows["eccentricity_y"] - rows[PREFIX + "eccentricity_y"])
         check(max(np.abs(along).max(), np.abs(across).max()) < 1e-15, f"{what}: e_b - e_s is the distance of the bearings", f"{np.abs(along).max():.2g}")
         turn = rows["joint_moment"] + rows[PREFIX + "joint_moment"] - 2.6e-6 * rows["pin_acceleration"]
-        check(np.abs(turn).max() <= 1e-12 * np.abs(rows["joint_moment"]).max(), f"{what}: both moments turn the pin")
+        check(np.abs(turn).max() <= 1e-12 * np.abs(rows[PREFIX + "joint_moment"]).max(), f"{what}: both moments turn the pin", f"{np.abs(turn).max():.2g}")
         check(off(rows["guide_force"], -rows["pin_force_y"]) < 1e-10, f"{what}: the chain's reactions are the forces of the joint in the piston",
               f"{off(rows['guide_force'], -rows['pin_force_y']):.2g}")
         piston = -rows["pin_force_x"] - 0.14 * (rows["piston_acceleration"] + 9.80665)
@@ -192,6 +192,7 @@ def nothing_turns_it(run: Runner) -> None:
 
 def limits(run: Runner) -> None:
     """A film of thick oil in one bearing fixes the pin there: first order in 1/viscosity."""
+    rod_speed = float(0.05 * np.cos(np.pi / 6) * 250 / np.sqrt(0.12**2 - 0.025**2))
     time = ("integrator.end_time=0.005", "mechanism.rod_com=0.06,0")
     m, inertia = 0.05, 2.6e-6
     total = 0.21 + m
@@ -201,7 +202,9 @@ def limits(run: Runner) -> None:
                  f"mechanism.rod_inertia={about!r}")[0]
     in_piston = run(single("&pin kind = 'piston' /", "small_end", LONG, "free"), *time, f"mechanism.piston_mass={0.14 + m!r}", "small_end.joint.clearance=3e-5")[0]
     for what, fixed, place in (("rod", in_rod, "small_end"), ("piston", in_piston, "piston_pin")):
-        errors = [off(run(floating(OCVIRK, LONG), *time, f"{place}.lubrication.viscosity={mu}")[0]["rod_speed"], fixed["rod_speed"]) for mu in (4, 16, 64)]
+        start = f"initial.pin_speed={-rod_speed if what == 'rod' else 0.0!r}"
+        errors = [off(run(floating(OCVIRK, LONG), *time, start, f"{place}.lubrication.viscosity={mu}")[0]["rod_speed"], fixed["rod_speed"])
+                  for mu in (4, 16, 64)]
         check(3 < errors[0] / errors[1] < 5 and 3.5 < errors[1] / errors[2] < 4.5 and errors[2] < 1e-3,
               f"thick oil fixes the pin in the {what}", str(errors))
 
@@ -258,7 +261,7 @@ def coulomb(run: Runner) -> None:
     check(sticks.any(), "a rough small end makes the pin stick")
     spin = np.abs(rows["pin_speed"] + rows["rod_speed"])[sticks]
     rolls = np.hypot(rows[PREFIX + "eccentricity_rate_x"], rows[PREFIX + "eccentricity_rate_y"])[sticks] / 0.01
-    check((spin <= rolls + np.abs(rows["rod_speed"][sticks]) * 2e-3 + 1e-6).all(), "a pin that sticks in the rod turns with it, but for its rolling in the clearance",
+    check((spin <= 1.01 * rolls + np.abs(rows["rod_speed"][sticks]) * 2e-3 + 1e-6).all(), "a pin that sticks in the rod turns with it, but for its rolling in the clearance",
           f"{spin.max():.3g}")
 
 
@@ -277,33 +280,79 @@ def energies(run: Runner) -> None:
                                 "a ramp": ("drive.kind=constant_speed", "drive.ramp_time=0.004", "drive.ramp_from=150"),
                                 "an elastic crankshaft": ("crankshaft.flywheel_inertia=0.02", "crankshaft.torsional_stiffness=2e4"),
                                 "gas": ("combustion.bore=0.05", "combustion.compression_ratio=9", "combustion.heat_capacity_ratio=1.35", "combustion.heat=100",
-                                        "combustion.wiebe_efficiency=5", "combustion.wiebe_form=3", "combustion.start_deg=20", "combustion.duration_deg=50"),
+                                        "combustion.wiebe_efficiency=5", "combustion.wiebe_form=3", "combustion.start_deg=345", "combustion.duration_deg=50"),
                                 "cylinders": ("cylinder_1.full=T", "cylinder_2.phase_deg=180")}.items():
             summary = run(text, "integrator.relative_tolerance=1e-9", "integrator.end_time=0.006", *changes)[1]
             lost = float(summary["max_energy_residual_relative"])
             check(lost < 1e-7, f"{what} with {beside}: no energy is lost", f"{lost:.2g}")
 
 
-def rough_and_warm(run: Runner) -> None:
+def elements(run: Runner) -> None:
     """Further load elements in either bearing."""
-    asperities = "&asperities standard_deviation = 0.4e-6, load_factor = 3e-4, asperity_radius = 1e-4, density = 1e11, coefficient = 0.1 /\n"
-    lugre = DRY + "&friction law = 'lugre', coefficient = 0.08, static_coefficient = 0.12, stribeck_speed = 0.02, bristle_stiffness = 2e4, bristle_damping = 0.4, damping_speed = 0.1 /\n"
-    del asperities
-    for what, text in {"bristles": floating(lugre, lugre), "bristles and a film": floating(lugre, OCVIRK),
-                       "a film of finite length": floating(OCVIRK.replace("'short'", "'finite'"), OCVIRK)}.items():
-        try:
-            summary = run(text, "integrator.relative_tolerance=1e-9", "integrator.end_time=0.006")[1]
-        except AssertionError as error:
-            check(False, f"{what}: runs", str(error))
-            continue
+    lugre = DRY + ("&friction law = 'lugre', coefficient = 0.08, static_coefficient = 0.12, stribeck_speed = 0.02, bristle_stiffness = 2e4, "
+                   "bristle_damping = 0.4, damping_speed = 0.1 /\n")
+    rough = OCVIRK + ("&asperities roughness = 0.4e-6, density_product = 0.05, sharpness = 1.0e-2, youngs_modulus = 2*207.0e9, poissons_ratio = 2*0.3, "
+                      "coefficient = 0.1, transition_speed = 0.01 /\n")
+    warm = OCVIRK.replace("viscosity = 0.04", "oil = 'SAE 30', temperature = 90 degC") + (
+        "&heat heat_capacity = 60.0, inlet_temperature = 90 degC, conductance = 4.0, housing_temperature = 80 degC /\n")
+    elastic = "&contact law = 'hertz', geometry = 'conformal' /\n" + OCVIRK.replace("film_moment", "elastic_film = .true., film_moment")
+    for what, first, second in (("bristles", lugre, lugre), ("bristles and a film", lugre, OCVIRK), ("rough surfaces", rough, LONG), ("rough surfaces in the rod", OCVIRK, rough),
+                                ("warm films", warm, warm), ("elastic walls in the piston", elastic, LONG), ("elastic walls in the rod", OCVIRK, elastic)):
+        summary = run(floating(first, second), "integrator.relative_tolerance=1e-9", "integrator.end_time=0.006")[1]
         lost = float(summary["max_energy_residual_relative"])
         check(lost < 1e-7, f"{what}: no energy is lost", f"{lost:.2g}")
+        methods = [run(floating(first, second), "integrator.relative_tolerance=1e-9", "integrator.end_time=0.002", f"integrator.method={method}")[0].iloc[-1]
+                   for method in ("adams", "radau")]
+        check(abs(methods[0]["pin_speed"] - methods[1]["pin_speed"]) < 1e-4 * abs(methods[0]["pin_speed"]), f"{what}: both methods agree",
+              f"{methods[0]['pin_speed']!r} {methods[1]['pin_speed']!r}")
+
+
+def random_scenes(run: Runner, scenes: int = 60, seed: int = 7) -> None:
+    """Scenes at random, also far from usual ones: each run ends and keeps its energy."""
+    random = np.random.default_rng(seed)
+
+    def pick(*words: str) -> str:
+        return str(random.choice(words))
+
+    def size(low: float, high: float) -> float:
+        return float(np.exp(random.uniform(np.log(low), np.log(high))))
+
+    def laws() -> str:
+        kind = pick("dry", "film", "both", "rough", "smooth")
+        film = f"&lubrication law = 'finite_bearing', variant = 'short', viscosity = {size(0.003, 1):.4g} /\n"
+        if pick("short", "long") == "long":
+            film = f"&lubrication law = 'pinkus_sternlicht', viscosity = {size(0.003, 1):.4g} /\n"
+        contact = f"&contact law = '{pick('lankarani_nikravesh', 'hunt_crossley', 'flores', 'exact')}', restitution = {random.uniform(0.1, 0.95):.3g} /\n"
+        coefficient = random.uniform(0.01, 0.5)
+        friction = pick("&friction law = 'ambrosio', coefficient = {0:.3g}, v0 = 0.001, v1 = 0.01 /\n", "&friction law = 'coulomb', coefficient = {0:.3g}, static_coefficient = {1:.3g} /\n",
+                        "&friction law = 'lugre', coefficient = {0:.3g}, static_coefficient = {1:.3g}, stribeck_speed = 0.02, bristle_stiffness = 2e4, "
+                        "bristle_damping = 0.4, damping_speed = 0.1 /\n").format(coefficient, coefficient * random.uniform(1, 1.6))
+        asperities = "&asperities roughness = 0.4e-6, density_product = 0.05, sharpness = 1.0e-2, coefficient = 0.1, transition_speed = 0.01 /\n"
+        return {"dry": contact + friction, "film": film, "both": contact + friction + film, "rough": film + asperities, "smooth": contact}[kind]
+
+    for number in range(scenes):
+        c = (size(3e-6, 3e-4), size(3e-6, 3e-4))
+        text = floating(laws(), laws(), pick("free", "constant_speed"), size(1e-3, 1), size(1e-8, 1e-4), c)
+        changes = ["integrator.relative_tolerance=1e-8", "integrator.end_time=0.003", "integrator.max_evaluations=300000", f"mechanism.piston_mass={size(0.01, 5):.4g}",
+                   f"initial.crank_angle_deg={random.uniform(0, 360):.4g}", f"initial.crank_speed={random.choice([-1, 1]) * size(1, 2000):.4g}",
+                   f"initial.pin_speed={random.normal(0, 300):.4g}", f"initial.eccentricity={random.uniform(-0.6, 0.6) * c[0]:.4g},0",
+                   f"initial.small_end_eccentricity=0,{random.uniform(-0.6, 0.6) * c[1]:.4g}"]
+        out = run.folder / f"scene_{number}"
+        path = run.file(text)
+        done = subprocess.run([run.program, "-q", "-o", out, *(part for change in changes for part in ("--set", change)), str(path)],
+                              capture_output=True, text=True, check=False, timeout=120)
+        check(done.returncode == 0 or (done.returncode == 4 and "evaluations" in done.stderr), f"scene {number} runs to its end", done.stderr[:300])
+        if done.returncode == 0:
+            summary = pd.read_csv(out / f"{path.stem}.summary.csv", dtype=str).set_index("quantity")["value"]
+            lost = float(summary["max_energy_residual_relative"])
+            check(lost < 1e-5, f"scene {number} keeps its energy", f"{lost:.2g} {path.read_text()[300:]} {changes}")
 
 
 def results(run: Runner) -> None:
     """Turn, drift and swing follow from the rows."""
     text = floating(OCVIRK, LONG, "constant_speed")
-    rows, summary = run(text, "integrator.end_time=0", "integrator.revolutions=3", "output.interval=0", "output.samples_per_revolution=2000",
+    rows, summary = run(text, "initial.crank_angle_deg=0", "integrator.end_time=0", "integrator.revolutions=3", "output.interval=0",
+                        "output.samples_per_revolution=2000",
                         "output.sampling=crank_angle", "integrator.relative_tolerance=1e-9")
     angle = rows["pin_angle"].to_numpy()
     check(abs(float(summary["pin_turn"]) - angle[-1]) < 1e-9, "pin_turn is the last angle")
@@ -366,12 +415,13 @@ def refusals(run: Runner) -> None:
     for case, changes, says in [
         (both, ["small_end.joint=none", "small_end.lubrication=none"], "needs two joints with kind = 'clearance'"),
         (both, ["joint.kind=ideal", "piston_pin.lubrication=none"], "needs two joints with kind = 'clearance'"),
-        (both, ["pin.mass=0"], "required with kind = 'floating'"),
-        (both, ["pin.inertia=0"], "required with kind = 'floating'"),
+        (both.replace("mass = 0.05, ", ""), [], "&pin mass: required with kind = 'floating'"),
+        (both.replace(", inertia = 2.6e-06", ""), [], "&pin inertia: required with kind = 'floating'"),
+        (both, ["pin.mass=0"], "must be > 0"),
         (both, ["pin.mass=-1"], "must be > 0"),
         (both, ["small_end.lubrication.film_moment=F"], "must be .true. with a floating pin"),
-        (both, ["small_end.lubrication=none", "small_end.lubrication.law=oscillating_film", "small_end.lubrication.kinematic_viscosity=1e-5",
-                "small_end.lubrication.viscosity=0.01"], "follows the motion of an ideal mechanism"),
+        (floating(OCVIRK, "&lubrication law = 'oscillating_film', viscosity = 0.01, kinematic_viscosity = 1e-5 /\n"), [],
+         "follows the motion of an ideal mechanism"),
         (plain, ["pin.kind=rod", "pin.mass=0.1"], "belongs to rod"),
         (plain, ["pin.kind=piston"], "must be ideal with &pin kind = 'piston'"),
         (plain, ["pin.kind=hand"], "must be one of rod, piston, floating"),
@@ -389,7 +439,7 @@ def main() -> int:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         run = Runner(options.program or str(release_program()), Path(folder))
-        for part in (references, tolerances, either_body, identities, nothing_turns_it, limits, squeeze, ring, coulomb, energies, rough_and_warm,
+        for part in (references, tolerances, either_body, identities, nothing_turns_it, limits, squeeze, ring, coulomb, energies, elements, random_scenes,
                      results, periodic, twin, resumes, refusals):
             part(run)
     return assertions.report()

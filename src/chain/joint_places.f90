@@ -4,7 +4,7 @@ module joint_places
   use chain_motion, only: crank_pin, piston_pin, small_end, body_crank, body_big_end, body_small_end, body_piston, body_frame
   implicit none
   private
-  public :: place_t, places, n_places, in_order, name_prefix, joint_group, crank_pin, piston_pin, small_end, main_bearing
+  public :: place_t, places, n_places, in_order, name_prefix, pin_title, joint_group, crank_pin, piston_pin, small_end, main_bearing
 
   !> One place: its names, and how its joint enters the chain. The eccentricity of the pin in its bearing is that of the chain
   !> at this pin, the joint's force on its pin acts on the body nearer to the crank, and the opposite force on the other; the other
@@ -36,6 +36,14 @@ contains
     character(len=:), allocatable :: prefix
     prefix = trim(places(place)%prefix)
   end function name_prefix
+
+  !> The pin of a place, in texts.
+  pure function pin_title(place) result(title)
+    integer, intent(in) :: place   !! index in `places`
+    character(len=:), allocatable :: title
+    title = trim(places(place)%title)
+    if (place == small_end) title = 'piston pin in the small end'
+  end function pin_title
 
   !> Name of the group of a place's joint in cases.
   pure function joint_group(place) result(group)

@@ -72,6 +72,7 @@ contains
       ' (crank over rod '//short_text(0.5_dp*stroke/case%mechanism%rod_length, 3)//')'
     if (bore > 0) text = text//', bore '//quantity_text(bore, 'm', digits)//', displacement '// &
       short_text(mm3_to_cm3*pi/4*bore**2*stroke, digits)//' cm3'
+    if (allocated(case%pin)) text = text//', piston pin: '//case%pin%kind
     if (allocated(case%elastic_rod)) text = text//', elastic rod'
     if (allocated(case%crankshaft)) text = text//', elastic crankshaft'
     if (allocated(case%cylinders)) text = text//'; cylinders: '//integer_text(size(case%cylinders))

@@ -65,7 +65,7 @@ contains
       associate (joint => c%joints(place))
         if (.not. allocated(joint%film)) return
         group = values%law_group('lubrication', trim(places(place)%name))
-        call values%forbid(joint%film%needs_ideal_motion, group, 'law', &
+        call values%forbid(.not. joint%film%gives_pressure(), group, 'law', &   ! that of an oscillating pin
           'follows the motion of an ideal mechanism, for &pin kind = ''rod'' alone; finite_bearing, for example, can')
         if (.not. c%has_floating_pin()) return
         call values%forbid(.not. joint%film%film_moment, group, 'film_moment', &

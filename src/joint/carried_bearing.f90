@@ -6,7 +6,7 @@ module carried_bearing
   use kinds, only: dp
   use state_layout, only: layout_t, slice_t
   use run_state, only: run_state_t
-  use joint_places, only: name_prefix
+  use joint_places, only: name_prefix, pin_title
   use clearance_joint, only: clearance_joint_t, phase_film
   use load_element, only: power_of
   use joint_evaluation, only: joint_evaluation_t, clear_loads, find_polar, find_sliding
@@ -59,7 +59,7 @@ contains
     clearance = joint%bearing%clearance
     call list%add(pre//'clearance', clearance, 'm', 'clearance of this position')
     call list%add(pre//'carried_eccentricity', y(self%place%first:self%place%last), 'm', &
-      'centre of the '//trim(joint%site%title)//' from the centre of its bearing, where a film carries it (x, y)')
+      'centre of the '//pin_title(joint%place)//' from the centre of its bearing, where a film carries it (x, y)')
     if (allocated(joint%heat)) call joint%heat%declare(pre, list, y)
     if (list%sets .and. abs(clearance - joint%bearing%clearance) > 0) &
       y(self%place%first:self%place%last) = y(self%place%first:self%place%last)*(joint%bearing%clearance/clearance)

@@ -9,7 +9,7 @@ module clearance_joint
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, angular_acceleration, small_end, body_crank, body_big_end, body_small_end, &
     body_piston, body_pin, body_frame, n_bodies
-  use joint_places, only: place_t, places, piston_pin, name_prefix
+  use joint_places, only: place_t, places, piston_pin, name_prefix, pin_title
   use chain_bodies, only: bodies_t
   use ideal_chain, only: ideal_rod
   use chain_loads, only: loads_t, bearing_moment
@@ -225,7 +225,7 @@ contains
     real(dp) :: clearance, distance, outward
     integer :: k
     pre = name_prefix(self%place)
-    pin = trim(self%site%title)
+    pin = pin_title(self%place)
     clearance = self%bearing%clearance
     associate (e => y(self%at%position:self%at%position + 1), rate => y(self%at%rate:self%at%rate + 1))
       call list%add(pre//'phase', self%phase, pin//': 0 free flight, 1 film, 2 contact')

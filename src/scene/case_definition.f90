@@ -11,7 +11,7 @@ module case_definition
   use model_parameters, only: has_parameters_t, parameter_list_t
   use run_length, only: run_length_t
   use chain_motion, only: n_pins
-  use joint_places, only: places, n_places, in_order, name_prefix, piston_pin, small_end, main_bearing
+  use joint_places, only: places, n_places, in_order, name_prefix, pin_title, piston_pin, small_end, main_bearing
   use joint_case, only: joint_case_t
   use pin_case, only: pin_case_t, pin_floating, pin_of_piston
   use guide_case, only: guide_case_t, guide_clearance
@@ -272,7 +272,7 @@ contains
       'crank speed; with drive kind constant_speed it is held', 'rad/s', example='250.0', usual='0 to 2100')
     do i = 1, n_places
       name = name_prefix(in_order(i))//'eccentricity'
-      call list%add(name, self%eccentricity(:, in_order(i)), 'centre of the '//trim(places(in_order(i))%title)// &
+      call list%add(name, self%eccentricity(:, in_order(i)), 'centre of the '//pin_title(in_order(i))// &
         ' from the centre of its bearing (x, y); in contact if longer than the clearance', 'm', default='0.0', usual='0 to 1e-2')
       if (in_order(i) == main_bearing) cycle   ! its rate follows from the load
       call list%add(name//'_rate', self%eccentricity_rate(:, in_order(i)), 'rate of '//name, 'm/s', default='0.0', &

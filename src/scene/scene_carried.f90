@@ -53,7 +53,8 @@ contains
       return
     end if
     load = -now%loads%force(:, piston_pin)
-    if (place == piston_pin) return
+    if (place == small_end) load = -load   ! the pin belongs to the piston
+    if (any(place == [piston_pin, small_end])) return
     reactions = scene%chain%reactions(now%motion, now%accelerations, now%loads)
     load = reactions%crankpin
     if (place == main_bearing) load = -reactions%crank_bearing
