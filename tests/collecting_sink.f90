@@ -8,7 +8,7 @@ module collecting_sink
   use simulation, only: simulate, run_report_t
   use row_store, only: row_store_t
   use trace_sink, only: trace_event_t
-  use chain_motion, only: crank_pin, piston_pin
+  use joint_places, only: places
   use data_tables, only: load_table
   implicit none
   private
@@ -76,7 +76,7 @@ contains
       read (line, *) trace%event(rows + 1)%time, label, trace%event(rows + 1)%normal_speed, joint
       rows = rows + 1
       trace%event(rows)%kind = merge(1, 2, label == 'contact_begins')
-      trace%event(rows)%pin = merge(crank_pin, piston_pin, joint == 'crank_pin')
+      trace%event(rows)%pin = findloc(places%name, joint, 1)
     end do
     close (unit)
     trace%event = trace%event(:rows)

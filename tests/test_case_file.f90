@@ -24,7 +24,7 @@ module test_case_file
   character(len=*), parameter :: contact = '&contact /'//n
   character(len=*), parameter :: run = '&integrator revolutions=2 /'//n
   character(len=*), parameter :: whole = bodies//joint//contact//run
-  character(len=*), parameter :: all_groups = ' (allowed: case, mechanism, bearing_load, drive, initial, joint, '// &
+  character(len=*), parameter :: all_groups = ' (allowed: case, mechanism, bearing_load, drive, initial, pin, joint, '// &
     'contact, friction, lubrication, asperities, wear, film_history, supply, bore, heat, guide, elastic_rod, crankshaft, '// &
     'damper, cylinder, combustion, cylinder_pressure, run, integrator, output)'
   character(len=*), parameter :: laws = 'lankarani_nikravesh, hertz, hunt_crossley, exact, flores, gonthier, carvalho_martins, '// &
@@ -441,7 +441,7 @@ contains
     call refused(check, whole//second//second, 'x.nml:9: &joint of crank_pin: this group is given twice')
     call refused(check, whole//'&joint place=''piston_pin'' kind=''ideal'' /', 'x.nml:8: &joint: this group is given twice')
     call refused(check, '&joint place=''wrist'' /', &
-      'x.nml:1: &joint place = wrist: must be one of piston_pin, crank_pin, main_bearing')
+      'x.nml:1: &joint place = wrist: must be one of piston_pin, small_end, crank_pin, main_bearing')
     call refused(check, '&joint place=''crank_pin'' place=''crank_pin'' /', 'x.nml:1: &joint place = crank_pin: given twice')
     call refused(check, '&drive place=''crank_pin'' /', 'x.nml:1: &drive place: unknown key (allowed: kind, torque, damping, '// &
       'flywheel_inertia, torque_table, torque_table_digest, ramp_time, ramp_from)')
@@ -735,7 +735,8 @@ contains
       'x.nml: &mechanism rod_mass = -1: must be >= 0 (kg)'//n// &
       'x.nml:3: &initial crank_sped: unknown key; did you mean crank_speed? (allowed: crank_angle_deg, crank_speed, '// &
       'eccentricity, '// &
-      'eccentricity_rate, crank_pin_eccentricity, crank_pin_eccentricity_rate, main_bearing_eccentricity, piston_offset, '// &
+      'eccentricity_rate, small_end_eccentricity, small_end_eccentricity_rate, crank_pin_eccentricity, '// &
+      'crank_pin_eccentricity_rate, main_bearing_eccentricity, pin_speed, piston_offset, '// &
       'piston_offset_rate, piston_tilt, '// &
       'piston_tilt_rate, from, goes_on)'//n//'x.nml:4: &friction coefficient = abc: must be a number'//n// &
       'x.nml: &friction v1: required with law = ''ambrosio'' (m/s)'//n// &
@@ -775,7 +776,7 @@ contains
     call refused_with(check, 'drive.kind=constantspeed', 'x.nml: --set drive.kind=constantspeed: &drive kind = constantspeed: '// &
       'must be one of free, constant_speed; did you mean constant_speed?')
     call refused(check, whole//'&joint place=''crankpin'' /', 'x.nml:8: &joint place = crankpin: must be one of piston_pin, '// &
-      'crank_pin, main_bearing; did you mean crank_pin?')
+      'small_end, crank_pin, main_bearing; did you mean crank_pin?')
     call refused(check, whole//'&output tolerance=1 /', 'x.nml:8: &output tolerance: unknown key (allowed: sampling, '// &
       'samples_per_revolution, angle_origin_deg, interval, start_time, columns, digits, film_times, every_step, '// &
       'answers, ideal_twin, window)')

@@ -6,7 +6,7 @@ module test_chain
   use checks, only: checks_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
   use chain_bodies, only: bodies_t, crank_t, rod_t, piston_t, drive_t, new_bodies
-  use chain_loads, only: loads_t, bearing_moment
+  use chain_loads, only: loads_t, unloaded, bearing_moment
   use chain_reactions, only: reactions_t
   use mechanism_chain, only: chain_t
   use ideal_chain, only: ideal_motion
@@ -64,6 +64,7 @@ contains
     z(1) = between(random, -10.0_dp, 10.0_dp)
     z_rate(1) = between(random, -300.0_dp, 300.0_dp)
     loads%axial_force = between(random, -1e3_dp, 1e4_dp)
+    loads = unloaded
     do pin = 1, 2
       z(2*pin:2*pin + 1) = merge(1, 0, chain%is_loose(pin))*1e-3_dp*[between(random, -1.0_dp, 1.0_dp), &
         between(random, -1.0_dp, 1.0_dp)]
@@ -233,9 +234,10 @@ contains
       worst_moment = 0
       do i = 1, trials
         call draw(random, piece, chain, motion, loads, z, z_rate)
+        added = unloaded
         added%axial_force = 700
-        added%force = merge(1, 0, spread(chain%is_loose, 1, 2))*reshape([500.0_dp, -300.0_dp, 200.0_dp, 900.0_dp], [2, 2])
-        added%moment = merge(1, 0, chain%is_loose)*[3.0_dp, -2.0_dp]
+        added%force(:, :2) = merge(1, 0, spread(chain%is_loose, 1, 2))*reshape([500.0_dp, -300.0_dp, 200.0_dp, 900.0_dp], [2, 2])
+        added%moment(:2) = merge(1, 0, chain%is_loose)*[3.0_dp, -2.0_dp]
         more = loads
         more%force = loads%force + added%force
         more%moment = loads%moment + added%moment
@@ -295,7 +297,7 @@ contains
       real(dp), intent(in) :: angle
     logical :: solvable
       chain = flores()
-      loads = loads_t(0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
+      loads = unloaded
       call chain%accelerate(ideal_motion(chain%bodies, angle*degree, 5000*pi/30), loads, a, moment, solvable)
     end subroutine accelerate_at
   end subroutine published_values

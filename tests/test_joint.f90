@@ -50,7 +50,7 @@ contains
     a%crank = 300
     a%rod_end = [700.0_dp, 600.0_dp]
     a%tilt = 0
-    a%pin = reshape([4.0_dp, -7.0_dp, 9.0_dp, 3.0_dp], [2, 2])
+    a%pin(:, :2) = reshape([4.0_dp, -7.0_dp, 9.0_dp, 3.0_dp], [2, 2])
     do place = crank_pin, piston_pin
       call joint%set_place(place)
       joint%bearing_turns = place == crank_pin

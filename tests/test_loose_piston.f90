@@ -6,7 +6,7 @@ module test_loose_piston
   use checks, only: checks_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
-  use chain_loads, only: loads_t, bearing_moment
+  use chain_loads, only: loads_t, unloaded, bearing_moment
   use chain_reactions, only: reactions_t
   use mechanism_chain, only: chain_t
   use assembled_chain, only: accelerate_assembled
@@ -53,6 +53,7 @@ contains
     loads%axial_force = 1e4_dp*u()
     loads%bore_force = 1e4_dp*(2*u() - 1)
     loads%bore_moment = 100*(2*u() - 1)
+    loads = unloaded
     do pin = 1, 2
       loads%force(:, pin) = merge(1, 0, chain%is_loose(pin))*1e4_dp*[2*u() - 1, 2*u() - 1]
       loads%moment(pin) = merge(1, 0, chain%is_loose(pin))*(10*u() - 5)
@@ -204,7 +205,7 @@ contains
       worst = 0
       do i = 1, trials
         call draw(random, piece, chain, motion, loads, z, z_rate)
-        added = loads_t(0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp)
+        added = unloaded
         added%force(:, piston_pin) = [500.0_dp, -300.0_dp]
         added%moment(piston_pin) = 3
         more = loads

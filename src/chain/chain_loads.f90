@@ -1,16 +1,17 @@
 !> Loads on the bodies of the chain other than gravity and the drive.
 module chain_loads
   use kinds, only: dp
-  use chain_motion, only: n_pins
+  use chain_motion, only: n_bearings
   implicit none
   private
   public :: loads_t, unloaded, force_size, bearing_moment
 
   !> Loads of the pins, of the gas and of the bore. The force of an ideal pin is found together with the accelerations.
   type :: loads_t
-    real(dp) :: force(2, n_pins)    !! (:, pin): force of the pin's joint on its pin [N]; the opposite force acts on the bearing
-    real(dp) :: moment(n_pins)  !! moment on the pin about its centre, positive from x to y [N m]; for the bearing see
-                                !! `bearing_moment`
+    real(dp) :: force(2, n_bearings)  !! (:, pin): force of the pin's joint on its pin [N]; the opposite force acts on the bearing.
+                                      !! In the rod's bearing of a floating pin it is the force on the rod
+    real(dp) :: moment(n_bearings)    !! moment on the same body about its centre, positive from x to y [N m]; for the other body
+                                      !! see `bearing_moment`
     real(dp) :: axial_force         !! on the piston along -x: force of the gas minus friction of the bore [N]
     real(dp) :: bore_force  !! force of the bore on a piston with clearance, along y [N]; that of an ideal guide is a reaction
     real(dp) :: bore_moment         !! moment of the bore about the piston's centre of mass, positive from x to y [N m]

@@ -3,7 +3,8 @@
 !>
 !> The coordinates are the crank angle q and, for each pin with clearance, its eccentricity: c at the crank pin, e at the piston
 !> pin. It is the vector from the centre of the bearing to the centre of the pin. An ideal pin has no
-!> coordinate. With o = c + e everything else follows in closed form:
+!> coordinate. With a piston pin that floats, e = e_b - e_s: its eccentricity in the piston minus that in the rod. With o = c + e
+!> everything else follows in closed form:
 !>
 !>     sin A = (R sin q - o_y)/L,    A' = (R cos q q' - o_y')/(L cos A)
 !>     x = R cos q + L cos A - o_x,  x' = -R sin q q' - L sin A A' - o_x'
@@ -18,18 +19,20 @@ module chain_motion
   use train_motion, only: train_motion_t, most_stations, most_rings
   implicit none
   private
-  public :: motion_t, tilting_t, accelerations_t, crank_pin, piston_pin, n_pins, most_shapes
-  public :: body_crank, body_big_end, body_small_end, body_piston, body_frame, n_bodies, angular_acceleration
+  public :: motion_t, tilting_t, accelerations_t, crank_pin, piston_pin, small_end, n_pins, n_bearings, most_shapes
+  public :: body_crank, body_big_end, body_small_end, body_piston, body_pin, body_frame, n_bodies, angular_acceleration
   public :: turn_crank, follow_rod, follow_piston
 
   !> The pins of the chain.
   integer, parameter :: crank_pin = 1    !! pin on the crank, bearing in the rod
   integer, parameter :: piston_pin = 2   !! pin on the rod, bearing in the piston
   integer, parameter :: n_pins = 2
+  integer, parameter :: small_end = 3    !! bearing of a floating piston pin in the rod; that in the piston is `piston_pin`
+  integer, parameter :: n_bearings = 3
 
   !> The bodies as they turn at the pins; an elastic rod turns differently at its two ends.
-  integer, parameter :: body_crank = 1, body_big_end = 2, body_small_end = 3, body_piston = 4
-  integer, parameter :: n_bodies = 4
+  integer, parameter :: body_crank = 1, body_big_end = 2, body_small_end = 3, body_piston = 4, body_pin = 5
+  integer, parameter :: n_bodies = 5
   integer, parameter :: body_frame = 0   !! it does not turn
 
   integer, parameter :: most_shapes = 16   !! largest number of bending and axial shapes of an elastic rod
@@ -62,6 +65,9 @@ module chain_motion
     real(dp) :: offset(2)           !! o = c + e, plus the offset of the pin's bearing in the bore [m]
     real(dp) :: offset_rate(2)      !! [m/s]
     type(tilting_t) :: tilting      !! for a piston with clearance in its bore
+    real(dp) :: small_end(2)        !! -e_s, from a floating pin to the centre of its bearing in the rod [m]; else not set
+    real(dp) :: small_end_rate(2)   !! [m/s]
+    real(dp) :: pin_angle           !! turn of a floating pin since the start; no load depends on it [rad]
     real(dp) :: turning(n_bodies)   !! angular speeds of the bodies, positive from x to y; 0 for a piston that does not tilt [rad/s]
     ! the following components are for elastic members only
     real(dp) :: chord                       !! distance between the pins of an elastic rod; the chord has the angle A [m]
@@ -78,7 +84,8 @@ module chain_motion
     real(dp) :: crank               !! d2q/dt2 [rad/s^2]
     real(dp) :: rod                 !! d2A/dt2 [rad/s^2]
     real(dp) :: piston              !! [m/s^2]
-    real(dp) :: pin(2, n_pins)      !! (:, pin): of its eccentricity [m/s^2]; 0 for an ideal pin
+    real(dp) :: pin(2, n_bearings)  !! (:, pin): of its eccentricity, and of -e_s of a floating pin [m/s^2]; 0 for an ideal pin
+    real(dp) :: pin_turn            !! of a floating pin [rad/s^2]
     real(dp) :: offset, tilt        !! of a piston with clearance in its bore [m/s^2], [rad/s^2]
     real(dp) :: rod_end(n_pins)  !! of the rod's rotation at its ends, positive from x to y [rad/s^2]; needed if surfaces may stick
     real(dp) :: shape(most_shapes)  !! of the shapes of an elastic rod [m/s^2]
@@ -99,6 +106,8 @@ contains
       acceleration = accelerations%rod_end(crank_pin)
     case (body_small_end)
       acceleration = accelerations%rod_end(piston_pin)
+    case (body_pin)
+      acceleration = accelerations%pin_turn
     case default
       acceleration = accelerations%tilt
     end select

@@ -14,9 +14,10 @@ module chain_reactions
   type :: reactions_t
     real(dp) :: crank_bearing(2) = 0  !! F1, F2: force of the frame on the crank
     real(dp) :: crankpin(2) = 0       !! F3, F4: force of the crank on the rod
-    real(dp) :: pin(2) = 0            !! F5, F6: force of the rod on the piston
+    real(dp) :: pin(2) = 0            !! F5, F6: force of the rod, or of a floating pin, on the piston
     real(dp) :: guide = 0             !! F7: force of the piston on the guide
     real(dp) :: frame(2) = 0          !! R_x, R_y: resultant force on the frame
+    real(dp) :: small_end(2) = 0      !! force of the rod on a floating pin
   end type reactions_t
 
 contains

@@ -1,10 +1,10 @@
 !> The places of joints in the chain. A joint at a further place is a line in `places`.
 module joint_places
   use kinds, only: dp
-  use chain_motion, only: crank_pin, piston_pin, body_crank, body_big_end, body_small_end, body_piston, body_frame
+  use chain_motion, only: crank_pin, piston_pin, small_end, body_crank, body_big_end, body_small_end, body_piston, body_frame
   implicit none
   private
-  public :: place_t, places, n_places, in_order, name_prefix, joint_group, crank_pin, piston_pin, main_bearing
+  public :: place_t, places, n_places, in_order, name_prefix, joint_group, crank_pin, piston_pin, small_end, main_bearing
 
   !> One place: its names, and how its joint enters the chain. The eccentricity of the pin in its bearing is that of the chain
   !> at this pin, the joint's force on its pin acts on the body nearer to the crank, and the opposite force on the other; the other
@@ -18,14 +18,15 @@ module joint_places
     real(dp) :: sense              !! 1: the pin belongs to the body nearer to the crank; -1: to the other
   end type place_t
 
-  integer, parameter :: n_places = 3
-  integer, parameter :: main_bearing = 3   !! index of the crank's bearing in the frame
+  integer, parameter :: n_places = 4
+  integer, parameter :: main_bearing = 4   !! index of the crank's bearing in the frame
   type(place_t), parameter :: places(n_places) = [ &
     place_t('crank_pin', 'crank_pin_', 'crank pin', crank_pin, body_crank, body_big_end, 1.0_dp), &
     place_t('piston_pin', '', 'piston pin', piston_pin, body_small_end, body_piston, 1.0_dp), &
+    place_t('small_end', 'small_end_', 'small end', piston_pin, body_piston, body_small_end, -1.0_dp), &
     place_t('main_bearing', 'main_bearing_', 'main bearing', 0, body_crank, body_frame, 1.0_dp)]
 
-  integer, parameter :: in_order(n_places) = [piston_pin, crank_pin, main_bearing]   !! order in cases and results
+  integer, parameter :: in_order(n_places) = [piston_pin, small_end, crank_pin, main_bearing]   !! order in cases and results
 
 contains
 

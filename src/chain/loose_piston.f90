@@ -15,7 +15,7 @@ module loose_piston
   use chain_loads, only: loads_t, bearing_moment
   implicit none
   private
-  public :: place_piston, move_centre, centre_acceleration, pin_eccentricity, free_piston, add_energy_beside
+  public :: place_piston, move_centre, centre_acceleration, bearing_acceleration, pin_eccentricity, free_piston, add_energy_beside
 
 contains
 
@@ -53,6 +53,17 @@ contains
       a(2) = accelerations%offset
     end associate
   end function centre_acceleration
+
+  !> Acceleration of the pin's bearing (x, y) [m/s^2].
+  pure function bearing_acceleration(motion, accelerations) result(a)
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    real(dp) :: a(2)
+    associate (at => motion%tilting)
+      a(1) = accelerations%piston
+      a(2) = accelerations%offset - at%com(1)*accelerations%tilt + at%com(2)*at%tilt_rate**2
+    end associate
+  end function bearing_acceleration
 
   !> Eccentricity e of the piston pin [m].
   pure function pin_eccentricity(motion) result(e)

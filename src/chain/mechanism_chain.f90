@@ -2,8 +2,8 @@
 !> pins into parts with accelerations in closed form.
 module mechanism_chain
   use kinds, only: dp
-  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, n_pins, follow_rod, follow_piston, &
-    body_crank, body_big_end, body_piston
+  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, small_end, n_pins, follow_rod, &
+    follow_piston, body_crank, body_big_end, body_piston, body_pin
   use chain_bodies, only: bodies_t, drive_t, undriven, weightless
   use chain_loads, only: loads_t
   use chain_reactions, only: reactions_t, reactions_of, elastic_reactions
@@ -16,7 +16,7 @@ module mechanism_chain
   use varying_drive, only: varying_drive_t
   use elastic_members, only: elastic_members_t
   use crank_train, only: crank_train_t
-  use train_motion, only: train_rows_t
+  use floating_pin, only: floating_pin_t
   use elastic_rod, only: elastic_rod_t
   use elastic_rod_piece, only: accelerate_elastic_rod
   use elastic_rod_body, only: elastic_rod_energy, elastic_end_forces
@@ -29,6 +29,7 @@ module mechanism_chain
     type(drive_t) :: drive = undriven
     type(varying_drive_t), allocatable :: varying   !! not allocated: the drive is constant
     logical :: is_loose(n_pins) = .false.   !! pins with clearance
+    type(floating_pin_t), allocatable :: floating   !! not allocated: the piston pin is a part of the rod or of the piston
     type(elastic_members_t), allocatable :: elastic   !! not allocated: all bodies are rigid
     type(crank_train_t), allocatable :: train   !! not allocated: one cylinder, and no stations of the crankshaft
   contains
@@ -60,16 +61,30 @@ contains
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
     logical, intent(out) :: solvable
+    type(loads_t) :: acting
+    if (allocated(self%floating)) then
+      call self%floating%chain_loads(self%bodies, motion, loads, acting)
+      call accelerate_bodies(self, motion, acting, accelerations, crank_moment, solvable)
+      if (solvable) call self%floating%accelerate(self%bodies, motion, loads, accelerations)
+    else
+      call accelerate_bodies(self, motion, loads, accelerations, crank_moment, solvable)
+    end if
+  end subroutine accelerate
+
+  !> The same without a floating pin.
+  pure subroutine accelerate_bodies(self, motion, loads, accelerations, crank_moment, solvable)
+    type(chain_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    type(loads_t), intent(inout) :: loads
+    type(accelerations_t), intent(out) :: accelerations
+    real(dp), intent(out) :: crank_moment
+    logical, intent(out) :: solvable
     type(drive_t) :: drive, of_crank
-    type(train_rows_t) :: rows
     solvable = .true.
     drive = self%drive
     if (allocated(self%varying)) drive = self%varying%at(self%drive, self%driven_speed(motion), motion)
     of_crank = drive
-    if (allocated(self%train)) then
-      call self%train%find_rows(motion, rows)
-      of_crank = self%train%drive_of_crank(drive, rows)
-    end if
+    if (allocated(self%train)) of_crank = self%train%drive_of_crank(drive, motion)
     if (self%has_crankshaft()) of_crank = self%elastic%crankshaft%drive_of_crank(motion)
     if (self%has_elastic_rod()) then
       call accelerate_with_elastic_rod(self, of_crank, motion, loads, accelerations, crank_moment, solvable)
@@ -79,8 +94,8 @@ contains
     if (self%has_crankshaft()) &
       call self%elastic%crankshaft%accelerate_flywheel(drive, motion, accelerations%flywheel, crank_moment)
     if (allocated(self%train) .and. solvable) &
-      call self%train%accelerate_stations(drive, motion, rows, accelerations, crank_moment)
-  end subroutine accelerate
+      call self%train%accelerate_stations(drive, motion, accelerations, crank_moment)
+  end subroutine accelerate_bodies
 
   !> The same with a rigid rod and a given drive of the crank; `crank_moment` is the moment of this drive [N m].
   pure subroutine accelerate_rigid(self, drive, motion, loads, accelerations, crank_moment)
@@ -196,6 +211,8 @@ contains
       angle = motion%crank_angle
     case (body_piston)
       angle = motion%tilting%tilt
+    case (body_pin)
+      angle = motion%pin_angle
     case default
       angle = -atan2(motion%sin_rod, motion%cos_rod)
       if (.not. self%has_elastic_rod()) return
@@ -215,11 +232,31 @@ contains
     type(accelerations_t), intent(out) :: accelerations
     real(dp), intent(out) :: crank_moment
     type(motion_t) :: rest
+    type(loads_t) :: acting
+    if (allocated(self%floating)) then
+      call self%floating%chain_loads(self%bodies, motion, loads, acting)
+      call respond_bodies(self, motion, acting, accelerations, crank_moment)
+      rest = motion
+      rest%tilting%tilt_rate = 0
+      call self%floating%accelerate(weightless(self%bodies), rest, loads, accelerations)
+    else
+      call respond_bodies(self, motion, loads, accelerations, crank_moment)
+    end if
+  end subroutine response
+
+  !> The same without a floating pin.
+  pure subroutine respond_bodies(self, motion, loads, accelerations, crank_moment)
+    type(chain_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    type(loads_t), intent(in) :: loads
+    type(accelerations_t), intent(out) :: accelerations
+    real(dp), intent(out) :: crank_moment
+    type(motion_t) :: rest
     type(drive_t) :: drive
     type(elastic_rod_t), allocatable :: slack
     drive = self%drive
     if (allocated(self%train)) then
-      drive%inertia = self%train%inertia_beside(motion)
+      drive%inertia = motion%train%inertia(self%train%full)
       drive%free_crank = self%train%frees_crank(self%drive)
     end if
     if (.not. (self%is_loose(crank_pin) .or. self%bodies%piston%is_loose .or. allocated(self%elastic))) then
@@ -249,7 +286,7 @@ contains
     accelerations%rod_end = -accelerations%rod
     if (allocated(slack)) call turn_rod_ends(slack, accelerations)
     accelerations%flywheel = 0
-  end subroutine response
+  end subroutine respond_bodies
 
   !> Add a multiple of a response to the accelerations.
   pure subroutine add_response(self, factor, change, accelerations)
@@ -261,8 +298,12 @@ contains
     accelerations%crank = accelerations%crank + factor*change%crank
     accelerations%rod = accelerations%rod + factor*change%rod
     accelerations%piston = accelerations%piston + factor*change%piston
-    accelerations%pin = accelerations%pin + factor*change%pin
+    accelerations%pin(:, :n_pins) = accelerations%pin(:, :n_pins) + factor*change%pin(:, :n_pins)
     accelerations%rod_end = accelerations%rod_end + factor*change%rod_end
+    if (allocated(self%floating)) then
+      accelerations%pin(:, small_end) = accelerations%pin(:, small_end) + factor*change%pin(:, small_end)
+      accelerations%pin_turn = accelerations%pin_turn + factor*change%pin_turn
+    end if
     if (self%bodies%piston%is_loose) then
       accelerations%offset = accelerations%offset + factor*change%offset
       accelerations%tilt = accelerations%tilt + factor*change%tilt
@@ -299,6 +340,23 @@ contains
     type(accelerations_t), intent(in) :: accelerations
     type(loads_t), intent(in) :: loads
     type(reactions_t) :: reactions
+    type(loads_t) :: acting
+    if (allocated(self%floating)) then
+      call self%floating%split_loads(self%bodies, motion, accelerations, loads, acting)
+      reactions = reactions_beside(self, motion, accelerations, acting)
+      call self%floating%split_reactions(self%bodies, motion, accelerations, loads, reactions)
+    else
+      reactions = reactions_beside(self, motion, accelerations, loads)
+    end if
+  end function reactions
+
+  !> The same without a floating pin.
+  pure function reactions_beside(self, motion, accelerations, loads) result(reactions)
+    type(chain_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    type(loads_t), intent(in) :: loads
+    type(reactions_t) :: reactions
     real(dp) :: on_ends(2), turning
     if (self%has_elastic_rod()) then
       call elastic_end_forces(self%elastic%rod, self%bodies, motion, accelerations, on_ends, turning)
@@ -306,7 +364,7 @@ contains
     else
       reactions = reactions_of(self%bodies, loads, motion, accelerations)
     end if
-  end function reactions
+  end function reactions_beside
 
   !> Kinetic and potential energy of the bodies [J].
   pure real(dp) function energy(self, motion)
@@ -320,5 +378,6 @@ contains
     if (allocated(self%train)) energy = energy + self%train%energy(motion)
     if (self%has_crankshaft()) energy = energy + self%elastic%crankshaft%energy(motion)
     if (self%bodies%piston%is_loose) call add_energy_beside(self%bodies, motion, energy)
+    if (allocated(self%floating)) energy = energy + self%floating%energy(self%bodies, motion)
   end function energy
 end module mechanism_chain

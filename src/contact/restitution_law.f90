@@ -43,7 +43,7 @@ contains
       'factor a in force = elastic force (1 + a rate), instead of restitution; 0: from restitution', &
       's/m', '> 0', default='0.0', family='loss', usual='1e-3 to 100')
     call list%add('least_impact_speed', self%least_impact_speed, 'impacts slower than this are damped as if they had this speed', &
-      'm/s', '>= 1e-9 and <= 1', default='1.0e-5', usual='1e-7 to 1e-3')
+      'm/s', '>= 1e-9 and <= 1', default='1.0e-5', usual='1e-7 to 0.1')
   end subroutine parameters
 
   subroutine prepare(self, bearing)

@@ -12,6 +12,7 @@ module case_loader
   use train_case, only: number_throws, most_cylinders
   use case_curves, only: provide_curves
   use state_file, only: provide_state
+  use pin_rules, only: provide_film_moments
   implicit none
   private
   public :: load_case, load_model
@@ -44,12 +45,14 @@ contains
     if (present(only)) then
       loader%only = only
       where (values%groups%place /= '' .or. values%groups%is_law) loader%only = any(only .and. (values%groups%place /= '' .or. &
-        values%groups%is_law))
+        values%groups%is_law .or. values%groups%name == 'pin'))
       where (values%groups%number > 0) loader%only = any(only .and. (values%groups%number > 0 .or. &
         values%groups%name == 'mechanism'))
     end if
+    loader%repeats = any(values%groups%number > 1)
     call visit_case(into, loader)
     call provide_bodies(values, into)
+    call provide_film_moments(values, into)
     if (allocated(into%load)) call hold_speed(values, into)
     call read_times(into%output%film_times, into%output%snapshot_times)
     do i = 1, n_places
@@ -76,6 +79,7 @@ contains
     i = 0
     do n = 1, most_cylinders
       group = 'cylinder_'//integer_text(n)
+      if (find_group(values%groups, group) == 0) exit
       if (.not. values%is_present(find_group(values%groups, group))) cycle
       i = i + 1
       do k = 1, size(keys)

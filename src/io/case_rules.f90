@@ -13,6 +13,7 @@ module case_rules
   use friction_law, only: friction_law_t
   use history_rules, only: check_history
   use train_rules, only: check_train
+  use pin_rules, only: check_piston_pin
   use train_builder, only: inertia_beside
   use body_rules, only: check_guide, check_elastic, bore_reach
   use chain_motion, only: crank_pin, piston_pin, n_pins, n_bodies, body_crank, body_big_end, body_small_end, body_piston
@@ -39,6 +40,7 @@ contains
       call check_train(c, values)
       if (has_train_problem()) return
       call check_bodies()
+      call check_piston_pin(c, values)
     end if
     do i = 1, n_places
       call check_joint(c%joints(in_order(i)), in_order(i))
@@ -114,9 +116,11 @@ contains
     !> Check a bearing by itself: that there is no part of a mechanism, that its joint is carried, and that its bodies are known.
     subroutine check_load()
       character(len=*), parameter :: only = 'is for a mechanism; this case has &bearing_load', &
-        groups(6) = [character(len=17) :: 'mechanism', 'guide', 'elastic_rod', 'crankshaft', 'combustion', 'cylinder_pressure'], &
+        groups(7) = [character(len=17) :: 'mechanism', 'pin', 'guide', 'elastic_rod', 'crankshaft', 'combustion', &
+        'cylinder_pressure'], &
         of_drive(4) = [character(len=16) :: 'torque', 'damping', 'flywheel_inertia', 'torque_table'], &
-        of_initial(4) = [character(len=18) :: 'piston_offset', 'piston_offset_rate', 'piston_tilt', 'piston_tilt_rate']
+        of_initial(5) = [character(len=18) :: 'pin_speed', 'piston_offset', 'piston_offset_rate', 'piston_tilt', &
+        'piston_tilt_rate']
       character(len=:), allocatable :: group
       integer :: k
       do k = 1, size(groups)

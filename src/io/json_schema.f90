@@ -49,14 +49,23 @@ contains
         if (key%required .and. .not. (allocated(key%laws) .or. group%is_model)) required = required//', '//string(trim(key%name))
       end associate
     end do
-    if (has_places(table, group)) text = text//'  "place": {"enum": ['//string(trim(places(in_order(1))%name))//', '// &
-      string(trim(places(in_order(2))%name))//']}'//n
+    if (has_places(table, group)) text = text//'  "place": {"enum": ['//place_names()//']}'//n
     text = text//'}'
     if (required /= '') text = text//', "required": ['//required(3:)//']'
     text = text//'}'
     if (has_places(table, group) .or. group%number > 0) &
       text = '{"anyOf": ['//text//','//n//'{"type": "array", "items": {"type": "object"}}]}'
   end function group_schema
+
+  !> Names of the places of joints, in quotes, separated by commas.
+  function place_names() result(names)
+    character(len=:), allocatable :: names
+    integer :: i
+    names = ''
+    do i = 1, size(places)
+      names = names//string(trim(places(in_order(i))%name))//trim(merge(', ', '  ', i < size(places)))
+    end do
+  end function place_names
 
   !> Whether a group may appear once for each joint.
   logical function has_places(table, group)

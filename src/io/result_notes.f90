@@ -4,14 +4,17 @@ module result_notes
   use film_history, only: film_history_t
   use simulation, only: run_report_t
   use run_figures, only: pin_figures_t
-  use joint_places, only: places, n_places, in_order
+  use joint_places, only: places, n_places, in_order, piston_pin, small_end
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use number_text, only: short_text, quantity_text
   implicit none
   private
-  public :: notes_on_results, history_remarks, relative_residual, energy_warning, no_exponent
+  public :: notes_on_results, history_remarks, relative_residual, energy_warning, no_exponent, &
+    pin_is_undecided, undecided_pin
 
+  character(len=*), parameter :: undecided_pin = 'the friction of both dry bearings of the floating pin has the same moment: '// &
+    'nothing decides in which one it turns, and its drift follows from inertia and the friction law near rest alone'
   real(dp), parameter :: thinnest_film = 10e-9_dp      !! below this oil is no continuous fluid, and no surface is smooth [m]
   character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: '
   real(dp), parameter :: least_cells_per_gap = 4       !! with fewer cells the thinnest part of a film is not resolved
@@ -38,6 +41,7 @@ contains
       end do
     end if
     if (report%energy_is_poor) call add_line(energy_warning(case, report))
+    if (report%figures%floating%is_present .and. pin_is_undecided(case)) call add_line(undecided_pin)
     if (.not. report%exponent%is_known .and. allocated(report%exponent%reason)) &
       call add_line(no_exponent//report%exponent%reason)
     if (notes /= '') notes = notes(:len(notes) - 1)
@@ -74,6 +78,24 @@ contains
       end if
     end subroutine note_joint
   end function notes_on_results
+
+  !> Whether a floating pin is between dry bearings whose friction has the same moment: while it slides in both of them the moments
+  !> cancel at every speed of the pin.
+  pure logical function pin_is_undecided(case)
+    type(case_t), intent(in) :: case
+    real(dp), parameter :: same = 1e-3_dp
+    real(dp) :: moment(2)   ! of friction, over the normal force [m]
+    integer :: i
+    integer, parameter :: ends(2) = [piston_pin, small_end]
+    pin_is_undecided = .false.
+    do i = 1, size(ends)
+      associate (joint => case%joints(ends(i)))
+        if (allocated(joint%film) .or. .not. allocated(joint%friction)) return
+        moment(i) = joint%friction%coefficient*(joint%bearing_radius - joint%clearance)
+      end associate
+    end do
+    pin_is_undecided = abs(moment(1) - moment(2)) <= same*maxval(moment) .and. maxval(moment) > 0
+  end function pin_is_undecided
 
   !> Largest energy residual at the ends of steps divided by the largest energy [-]; 0 if there is no energy.
   pure real(dp) function relative_residual(report)

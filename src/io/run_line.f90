@@ -4,7 +4,7 @@ module run_line
   use constants, only: two_pi
   use history_record, only: history_record_t
   use simulation, only: run_report_t
-  use run_figures, only: pin_figures_t
+  use run_figures, only: pin_figures_t, floating_figures_t
   use period_watch, only: period_watch_t
   use cycle_answers, only: cycle_quantities
   use joint_places, only: places, n_places, in_order
@@ -46,6 +46,7 @@ contains
           if (.not. report%periods%is_on .and. is_driven(case)) text = text//settling_text(case%joints(place), f%pin(place))
         end associate
       end do
+      if (f%floating%is_present) text = text//'; '//turn_text(f%floating)
       if (case%has_loose_guide()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
         ' contacts, force up to '//quantity_text(maxval(f%corner%max_force), 'N')
       if (allocated(report%histories)) text = text//histories_text(report%histories)
@@ -57,6 +58,15 @@ contains
     notes = notes_on_results(case, report)
     if (notes /= '') text = text//newline//'  note: '//replaced(notes, newline, newline//'  note: ')
   end function lines_for_user
+
+  !> Text about the turn of a floating pin.
+  function turn_text(pin) result(text)
+    type(floating_figures_t), intent(in) :: pin
+    character(len=:), allocatable :: text
+    text = 'the pin turns '//quantity_text(pin%turn, 'rad')
+    if (pin%revolutions > 0) text = 'the pin drifts '//quantity_text(pin%drift, 'rad')//' a revolution and swings '// &
+      quantity_text(pin%swing, 'rad')
+  end function turn_text
 
   !> Text about the films with memory, each beside the film of the run.
   function histories_text(histories) result(text)

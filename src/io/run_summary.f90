@@ -9,15 +9,16 @@ module run_summary
   use cycle_answers, only: answer_t, cycle_quantities
   use history_files, only: add_histories
   use result_table, only: result_table_t
-  use run_figures, only: pin_figures_t, elastic_figures_t
+  use run_figures, only: run_figures_t, pin_figures_t, elastic_figures_t
   use piston_guide, only: n_corners, corner_names
   use period_watch, only: period_watch_t
-  use joint_places, only: n_places, in_order, name_prefix
+  use joint_places, only: n_places, in_order, name_prefix, crank_pin, piston_pin, small_end
   use archard_wear, only: of_pin, of_bore
   use film_heat, only: heat_totals_t
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
-  use result_notes, only: notes_on_results, relative_residual, energy_warning, no_exponent
+  use result_notes, only: notes_on_results, relative_residual, energy_warning, no_exponent, &
+    pin_is_undecided, undecided_pin
   use text_tools, only: integer_text, next_line
   use version_number, only: program_version
   implicit none
@@ -84,6 +85,7 @@ contains
         end do
       end if
       call table%add('max_pin_force', f%pin(in_order(1))%max_force)
+      if (f%floating%is_present) call add_floating_pin(f)
       call table%add('crank_revolutions', f%crank_travel/two_pi)
       if (f%time > 0) call table%add('mean_crank_speed', f%crank_travel/f%time)
       if (report%periods%is_on) call add_period(report%periods)
@@ -170,6 +172,8 @@ contains
       if (allocated(joint%film) .and. abs(pin%film_change) > 0) &
         call table%add('film_thickness_change', pin%film_change, prefix)
       call add_contacts(prefix, pin)
+      if (report%figures%floating%is_present .and. joint%can_touch() .and. prefix /= name_prefix(crank_pin)) &
+        call table%add('max_impact_speed', pin%max_impact_speed, prefix)
       call table%add('max_entry_penetration', pin%max_entry_penetration, prefix)
       call table%add('impacts_beyond_validity', pin%impacts_beyond_validity, prefix)
       call table%add('contacts_beyond_validity', pin%contacts_beyond_validity, prefix)
@@ -184,6 +188,20 @@ contains
       if (joint%film%gives_side_flow() .and. report%figures%time > 0) &
         call table%add('mean_film_side_flow', pin%film_volume/report%figures%time, prefix)
     end subroutine add_joint
+
+    !> Rows of the turn of a floating pin.
+    subroutine add_floating_pin(f)
+      type(run_figures_t), intent(in) :: f
+      associate (in_piston => f%pin(piston_pin)%turning, in_rod => f%pin(small_end)%turning)
+        call table%add('pin_turn', f%floating%turn)
+        if (f%floating%revolutions > 0) call table%add('pin_drift_per_revolution', f%floating%drift)
+        if (f%floating%revolutions > 0) call table%add('pin_swing', f%floating%swing)
+        call table%add('turning_in_piston', in_piston)
+        call table%add('turning_in_rod', in_rod)
+        if (in_piston + in_rod > 0) call table%add('small_end_turning_share', in_rod/(in_piston + in_rod))
+        if (pin_is_undecided(case)) call table%add('pin_warning', undecided_pin)
+      end associate
+    end subroutine add_floating_pin
 
     !> Rows of the heat of a film.
     subroutine add_heat(prefix, heat)

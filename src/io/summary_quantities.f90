@@ -7,7 +7,7 @@ module summary_quantities
   public :: quantity_t, quantities_of_runs, event_columns, wear_columns, study_columns, unit_of
 
   !> In the names N stands for a number and PHASE for the phases of the joints. Quantities of the crank pin have the prefix
-  !> `crank_pin_`, those of the corners of the skirt `guide_1_` to `guide_4_`.
+  !> `crank_pin_`, those of the small end `small_end_`, those of the corners of the skirt `guide_1_` to `guide_4_`.
   type(quantity_t), parameter :: of_integration(*) = [ &
     quantity_t('status', '', '`done`, or the reason why the run ended early'), &
     quantity_t('simulated_time', 's', 'time that was simulated'), &
@@ -40,6 +40,13 @@ module summary_quantities
 
   type(quantity_t), parameter :: of_motion(*) = [ &
     quantity_t('max_pin_force', 'N', 'largest force at the pin'), &
+    quantity_t('pin_turn', 'rad', 'angle by which a floating pin has turned since the start, positive from x to y'), &
+    quantity_t('pin_drift_per_revolution', 'rad', 'its mean in the whole revolutions of the crank'), &
+    quantity_t('pin_swing', 'rad', 'largest less smallest angle of a floating pin in the last cycle'), &
+    quantity_t('turning_in_piston', 'rad', 'angle that a floating pin has turned through in the piston, in either sense'), &
+    quantity_t('turning_in_rod', 'rad', 'the same in the small end of the rod'), &
+    quantity_t('small_end_turning_share', '1', 'the latter over the sum of both'), &
+    quantity_t('pin_warning', '', 'written where nothing decides in which bearing a floating pin turns'), &
     quantity_t('crank_revolutions', '1', 'angle that the crank has turned through, in revolutions'), &
     quantity_t('mean_crank_speed', 'rad/s', 'that angle over the simulated time'), &
     quantity_t('motion', '', '`periodic` or `not_periodic` (`until = ''periodic''`)'), &
@@ -72,6 +79,7 @@ module summary_quantities
     quantity_t('contacts', '1', 'contacts that began'), &
     quantity_t('contact_time_fraction', '1', 'share of the simulated time in contact'), &
     quantity_t('max_penetration', 'm', 'deepest penetration; 0 without contact'), &
+    quantity_t('max_impact_speed', 'm/s', 'largest normal speed at which a contact of a floating pin began'), &
     quantity_t('max_entry_penetration', 'm', 'deepest penetration at the instant that counts as the beginning of a contact'), &
     quantity_t('impacts_beyond_validity', '1', &
       'contacts that began faster than 1e-5 sqrt(E/rho), the limit of the contact theory'), &
@@ -170,11 +178,11 @@ module summary_quantities
     quantity_t('duration', 's', 'duration of the contact (contact_ends only)'), &
     quantity_t('max_penetration', 'm', 'its deepest penetration (contact_ends only)'), &
     quantity_t('max_normal_force', 'N', 'its largest contact force (contact_ends only)'), &
-    quantity_t('joint', '', '`piston_pin`, `crank_pin` or a corner of the skirt, `guide_1` to `guide_4`')]
+    quantity_t('joint', '', '`piston_pin`, `small_end`, `crank_pin` or a corner of the skirt, `guide_1` to `guide_4`')]
 
   !> Columns of NAME.wear.csv, in their order.
   type(quantity_t), parameter :: wear_columns(*) = [ &
-    quantity_t('joint', '', '`piston_pin` or `crank_pin`'), &
+    quantity_t('joint', '', '`piston_pin`, `small_end` or `crank_pin`'), &
     quantity_t('angle', 'deg', 'middle of the bin, from x towards y in the frame of the body when its own angle is 0'), &
     quantity_t('pin_depth', 'm', 'mean depth worn from this bin of the pin'), &
     quantity_t('bore_depth', 'm', 'mean depth worn from this bin of the bore'), &

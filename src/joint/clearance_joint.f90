@@ -7,8 +7,8 @@ module clearance_joint
   use bearing_size, only: bearing_t, crossing_speed
   use state_layout, only: layout_t, coordinates_t, slice_t
   use run_state, only: run_state_t
-  use chain_motion, only: motion_t, accelerations_t, angular_acceleration, body_crank, body_big_end, body_small_end, body_piston, &
-    body_frame, n_bodies
+  use chain_motion, only: motion_t, accelerations_t, angular_acceleration, small_end, body_crank, body_big_end, body_small_end, &
+    body_piston, body_pin, body_frame, n_bodies
   use joint_places, only: place_t, places, piston_pin, name_prefix
   use chain_bodies, only: bodies_t
   use ideal_chain, only: ideal_rod
@@ -25,8 +25,8 @@ module clearance_joint
   public :: clearance_joint_t, most_joints, most_bearings, most_joint_states, n_joint_slopes
   public :: phase_free, phase_film, phase_contact, n_phases, contact_changes
 
-  integer, parameter :: most_joints = 2     !! with clearance
-  integer, parameter :: most_bearings = 3   !! with those whose pins are ideal in the mechanism
+  integer, parameter :: most_joints = 3     !! with clearance
+  integer, parameter :: most_bearings = 4   !! with those whose pins are ideal in the mechanism
   integer, parameter :: most_elements = 2                                       !! of a joint
   integer, parameter :: most_joint_states = most_elements*most_element_states + 1   !! of all its elements, and a temperature
   integer, parameter :: n_joint_slopes = n_motions + most_joint_states          !! columns of its slopes
@@ -76,6 +76,7 @@ module clearance_joint
     real(dp) :: start_rate(2) = 0           !! initial value [m/s]
   contains
     procedure :: set_place
+    procedure :: let_pin_float
     procedure :: add
     procedure :: heat_up
     procedure :: claim
@@ -114,6 +115,7 @@ module clearance_joint
     procedure :: work_rates
     procedure :: rubs
     procedure :: sliding_load
+    procedure :: holding_ratio
   end type clearance_joint_t
 
 contains
@@ -126,6 +128,13 @@ contains
     self%site = places(place)
     self%bearing_turns = all(self%site%bearing /= [body_piston, body_frame])
   end subroutine set_place
+
+  !> Let the pin of the joint, at the piston pin, be a floating one: its journal turns with the pin.
+  subroutine let_pin_float(self)
+    class(clearance_joint_t), intent(inout) :: self
+    self%site%pin_body = body_pin
+    if (self%site%bearing == body_small_end) self%site%pin = small_end
+  end subroutine let_pin_float
 
   !> Add an element, which has been prepared and acts in the given phases.
   subroutine add(self, element, phases)
@@ -745,6 +754,12 @@ contains
     rubs = .false.
     if (self%acting(self%phase) > 0) rubs = self%slots(self%acting(self%phase))%element%rubs
   end function rubs
+
+  !> Largest friction over normal force of surfaces in contact that stick [-].
+  pure real(dp) function holding_ratio(self)
+    class(clearance_joint_t), intent(in) :: self
+    holding_ratio = self%slots(self%acting(phase_contact))%element%holding_ratio
+  end function holding_ratio
 
   !> Int p R L dtheta |v|: the force that presses on the surfaces, summed without regard to its direction, times the sliding speed
   !> [W]. Times the wear rate of a surface it is the volume that wears in a second. On a wide arc it is larger than the normal force

@@ -11,8 +11,9 @@ module case_definition
   use model_parameters, only: has_parameters_t, parameter_list_t
   use run_length, only: run_length_t
   use chain_motion, only: n_pins
-  use joint_places, only: places, n_places, in_order, name_prefix, main_bearing
+  use joint_places, only: places, n_places, in_order, name_prefix, piston_pin, small_end, main_bearing
   use joint_case, only: joint_case_t
+  use pin_case, only: pin_case_t, pin_floating, pin_of_piston
   use guide_case, only: guide_case_t, guide_clearance
   use elastic_rod, only: elastic_rod_t
   use elastic_crankshaft, only: elastic_crankshaft_t
@@ -48,6 +49,7 @@ module case_definition
     type(run_state_t), allocatable :: state    !! that state; not allocated: the run starts with the following values
     real(dp) :: crank_angle_deg = 0, crank_speed = 0
     real(dp) :: eccentricity(2, n_places) = 0, eccentricity_rate(2, n_places) = 0   !! of the pin in its bearing, by place
+    real(dp) :: pin_speed = 0                  !! angular speed of a floating pin [rad/s]
     real(dp) :: piston_offset = 0, piston_offset_rate = 0, piston_tilt = 0, piston_tilt_rate = 0  !! of a piston with clearance in
                                                                                                   !! its bore
   contains
@@ -93,6 +95,7 @@ module case_definition
     type(drive_case_t) :: drive
     type(initial_case_t) :: initial
     type(joint_case_t) :: joints(n_places)   !! by place
+    type(pin_case_t), allocatable :: pin       !! not allocated: the piston pin is fixed in the rod
     type(guide_case_t), allocatable :: guide   !! not allocated: the guide is ideal
     type(elastic_rod_t), allocatable :: elastic_rod          !! not allocated: the rod is rigid
     type(elastic_crankshaft_t), allocatable :: crankshaft    !! not allocated: the crankshaft is rigid, or has stations
@@ -108,6 +111,8 @@ module case_definition
     procedure :: has_contact
     procedure :: forced_revolutions
     procedure :: has_play
+    procedure :: has_floating_pin
+    procedure :: may_have_joint
     procedure :: loose_pins
     procedure :: has_wear
     procedure :: has_loose_guide
@@ -153,6 +158,25 @@ contains
     integer :: i
     has_wear = any([(allocated(self%joints(i)%wear), i=1, n_places)])
   end function has_wear
+
+  !> Whether the piston pin turns in both of its bearings.
+  pure logical function has_floating_pin(self)
+    class(case_t), intent(in) :: self
+    has_floating_pin = .false.
+    if (allocated(self%pin)) has_floating_pin = self%pin%kind == pin_floating
+  end function has_floating_pin
+
+  !> Whether there is a bearing at a place: one end of the piston pin has none unless the pin floats.
+  pure logical function may_have_joint(self, place)
+    class(case_t), intent(in) :: self
+    integer, intent(in) :: place   !! index in `places`
+    logical :: in_piston
+    may_have_joint = .true.
+    if (all(place /= [piston_pin, small_end]) .or. self%has_floating_pin()) return
+    in_piston = .false.
+    if (allocated(self%pin)) in_piston = self%pin%kind == pin_of_piston
+    may_have_joint = place == merge(small_end, piston_pin, in_piston)
+  end function may_have_joint
 
   !> The pins of the chain at which joints have clearance.
   pure function loose_pins(self) result(is_loose)
@@ -254,6 +278,8 @@ contains
       call list%add(name//'_rate', self%eccentricity_rate(:, in_order(i)), 'rate of '//name, 'm/s', default='0.0', &
         usual='0 to 100')
     end do
+    call list%add('pin_speed', self%pin_speed, 'angular speed of a floating pin, positive from x to y', 'rad/s', default='0.0', &
+      usual='0 to 2100')
     call list%add('piston_offset', self%piston_offset, &
       'centre of mass of the piston from the cylinder axis along y (guide with clearance)', 'm', default='0.0', usual='0 to 1e-2')
     call list%add('piston_offset_rate', self%piston_offset_rate, 'rate of piston_offset', 'm/s', default='0.0', usual='0 to 100')

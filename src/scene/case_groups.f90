@@ -11,6 +11,7 @@ submodule (case_definition) case_groups
 contains
 
   module procedure visit_case
+    type(pin_case_t) :: pin
     type(elastic_rod_t) :: rod
     type(elastic_crankshaft_t) :: crankshaft
     type(shaft_case_t) :: shaft
@@ -33,6 +34,10 @@ contains
     call list%group('initial', &
       'Initial state. Velocities are those of the mechanism with ideal joints, plus the rates given here', .false.)
     call case%initial%parameters(list)
+    call list%group('pin', 'The piston pin. Without this group it is fixed in the rod', .true.)
+    call pin%parameters(list)
+    if (list%sets) case%pin = pin
+    if (list%is_absent()) deallocate (case%pin)
     do i = 1, n_places
       call visit_joint(case%joints(in_order(i)), trim(places(in_order(i))%name), &
         any(case%joints(in_order(:i - 1))%has_bearing()), list)
@@ -93,7 +98,7 @@ contains
     type(damper_case_t) :: found(most_rings), one
     integer :: i, n
     n = 0
-    do i = 1, most_rings
+    do i = 1, merge(most_rings, 1, list%repeats)
       call list%group('damper', 'Damper of torsional vibrations: a ring on a station of the crankshaft', .true., number=i)
       call one%parameters(list)
       if (.not. (list%sets .and. list%is_present)) cycle
@@ -111,7 +116,7 @@ contains
     type(cylinder_case_t) :: found(most_cylinders), one
     integer :: i, n
     n = 0
-    do i = 1, most_cylinders
+    do i = 1, merge(most_cylinders, 1, list%repeats)
       call list%group('cylinder', 'Cylinders on the crankshaft, a group for each in order; all but one have ideal joints. '// &
         'Without this group there is one', .true., number=i)
       call one%parameters(list)

@@ -6,6 +6,7 @@ module cycle_answers
   use kinds, only: dp
   use constants, only: two_pi, degree
   use load_element, only: of_contact, of_friction, of_film, of_asperities
+  use chain_motion, only: body_pin
   use scene_problem, only: scene_t, by_gas, by_drive, by_damping, by_guide, by_elastic
   use cycle_statistics, only: cycle_t
   use cycle_watch, only: cycle_watch_t
@@ -60,6 +61,7 @@ module cycle_answers
     quantity_t('cycle_mean_friction_power', 'W', 'the same of the friction of contact and asperities'), &
     quantity_t('cycle_mean_friction_moment', 'N.m', &
       'these losses in the cycle over the angle that the pin turns through in its bearing, in either sense'), &
+    quantity_t('cycle_turning', 'rad', 'angle that a floating pin turns through in this bearing in the cycle, in either sense'), &
     quantity_t('cycle_joint_fmep', 'Pa', 'these losses in the cycle over the displacement of the cylinder'), &
     quantity_t('cycle_max_film_pressure', 'Pa', 'largest pressure in the film in the cycle, with `report`'), &
     quantity_t('cycle_max_film_pressure_angle', 'deg', 'crank angle then'), &
@@ -71,6 +73,7 @@ module cycle_answers
       'largest depth by which a bin of the pin has worn in the cycle, in an hour of such cycles; without `extrapolation`'), &
     quantity_t('cycle_wear_depth_rate_bore', 'm/h', 'the same on the bore'), &
     quantity_t('cycle_mean_crank_speed', 'rad/s', 'angle that the crank turns through in the cycle over its duration'), &
+    quantity_t('cycle_pin_turn', 'rad', 'angle by which a floating pin turns in the cycle, positive from x to y'), &
     quantity_t('cycle_speed_fluctuation', '1', 'largest minus smallest crank speed in the cycle, over the mean'), &
     quantity_t('cycle_mean_piston_speed', 'm/s', 'two strokes of the ideal mechanism in the mean time of a revolution'), &
     quantity_t('cycle_max_cylinder_pressure', 'Pa', 'largest pressure of the gas in the cycle'), &
@@ -191,6 +194,7 @@ contains
         if (joint%has_kind(of_friction) .or. joint%has_kind(of_asperities)) &
           call add('cycle_mean_friction_power', -friction/cycle%duration, i)
         if (pin%turning > 0) call add('cycle_mean_friction_moment', -(film + friction)/pin%turning, i)
+        if (joint%site%pin_body == body_pin) call add('cycle_turning', pin%turning, i)
         if (displacement > 0) call add('cycle_joint_fmep', -(film + friction)/displacement, i)
         worn = extremes%wear_growth(scene, joint%place, revolutions)*3600/cycle%duration
         if (all(worn >= 0)) call add('cycle_wear_depth_rate_pin', worn(of_pin), i)
@@ -214,6 +218,7 @@ contains
       real(dp) :: mean_speed
       mean_speed = two_pi*revolutions/cycle%duration
       call add('cycle_mean_crank_speed', cycles%direction*mean_speed)
+      if (allocated(scene%chain%floating)) call add('cycle_pin_turn', cycle%pin_turn)
       call add('cycle_speed_fluctuation', (cycle%max_speed + cycle%max_negative_speed)/mean_speed)
       if (allocated(scene%given_load)) return
       call add('cycle_mean_piston_speed', 4*scene%chain%bodies%crank%length*revolutions/cycle%duration)

@@ -42,6 +42,8 @@ module cycle_statistics
     real(dp) :: energy_change = 0                     !! of kinetic, potential and elastic energy [J]
     real(dp) :: max_pressure = -huge(1.0_dp)          !! of the gas in the cylinder [Pa]
     real(dp) :: max_pressure_angle = 0                !! crank angle then [rad]
+    real(dp) :: pin_turn = 0                          !! of a floating pin [rad]
+    real(dp) :: max_pin_angle = -huge(1.0_dp), min_pin_angle = huge(1.0_dp)   !! its angles since the start of the run [rad]
     real(dp) :: max_speed = -huge(1.0_dp), max_negative_speed = -huge(1.0_dp)   !! of the crank, and of its negative [rad/s]
   end type cycle_t
 
@@ -71,6 +73,9 @@ contains
       total%energy_change = total%energy_change + one%energy_change
       if (one%max_pressure > total%max_pressure) total%max_pressure_angle = one%max_pressure_angle
       total%max_pressure = max(total%max_pressure, one%max_pressure)
+      total%pin_turn = total%pin_turn + one%pin_turn
+      total%max_pin_angle = max(total%max_pin_angle, one%max_pin_angle)
+      total%min_pin_angle = min(total%min_pin_angle, one%min_pin_angle)
       total%max_speed = max(total%max_speed, one%max_speed)
       total%max_negative_speed = max(total%max_negative_speed, one%max_negative_speed)
     end associate

@@ -35,6 +35,8 @@ module cycle_watch
     type(column_statistics_t) :: columns           !! statistics of columns, if any are wanted
     real(dp) :: direction = 1                      !! sense in which the crank turns: 1 or -1
     type(cycle_t) :: recent(0:longest_period - 1)   !! revolution k in element mod(k, longest_period), for the last ones that ended
+    real(dp) :: pin_turn = 0              !! of a floating pin in the revolutions followed [rad]
+    real(dp), private :: pin_angle = 0    !! its angle at the start of the present one
     type(machine_record_t), private :: machine
     real(dp), private :: works(most_parts) = 0, energy = 0   !! at the start of the revolution [J]
     real(dp), private :: heat(n_sums, n_places) = 0          !! integrals of the heat of films then
@@ -88,6 +90,8 @@ contains
     self%uncounted = self%settle
     self%ended = crank%ended
     self%followed = 0
+    self%pin_turn = 0
+    if (in_domain .and. allocated(scene%chain%floating)) self%pin_angle = now%motion%pin_angle
     call self%columns%begin(t, crank%ended)
     self%direction = crank%direction
     self%start_angle = crank%start_angle
@@ -354,6 +358,11 @@ contains
     self%present%start = self%cycle_start
     self%present%work = works - self%works
     self%present%energy_change = energy - self%energy
+    if (allocated(scene%chain%floating)) then
+      self%present%pin_turn = now%motion%pin_angle - self%pin_angle
+      self%pin_angle = now%motion%pin_angle
+      if (self%is_whole) self%pin_turn = self%pin_turn + self%present%pin_turn
+    end if
     heat = heat_of(scene, y)
     do i = 1, n_places
       self%present%pin(i)%heat = heat(:, i) - self%heat(:, i)

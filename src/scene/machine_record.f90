@@ -1,13 +1,15 @@
-!> Follows the pressure of the gas and the speed of the crank: their extremes in each revolution, searched inside the steps.
+!> Follows the pressure of the gas, the speed of the crank and the angle of a floating pin: their extremes in each revolution,
+!> searched inside the steps.
 module machine_record
   use kinds, only: dp
+  use chain_motion, only: body_pin
   use ode_method, only: ode_method_t
   use scene_problem, only: scene_t, evaluation_t
   use peak_search, only: sample_t, peak_search_t, may_peak
   use cycle_statistics, only: cycle_t
   implicit none
   private
-  public :: machine_record_t
+  public :: machine_record_t, turning_point
 
   !> Quantities that are searched: the pressure, the speed and its negative.
   integer, parameter :: of_pressure = 1, of_speed = 2, of_negative_speed = 3
@@ -16,6 +18,7 @@ module machine_record
     private
     real(dp) :: t = 0                                     !! end of the last interval that was searched [s]
     real(dp) :: angle = 0, speed = 0, acceleration = 0    !! of the crank at that time [rad], [rad/s], [rad/s^2]
+    real(dp) :: pin_angle = 0, pin_speed = 0              !! of a floating pin [rad], [rad/s]
   contains
     procedure, non_overridable :: begin
     procedure, non_overridable :: search
@@ -34,6 +37,9 @@ contains
     self%speed = now%motion%crank_speed
     self%acceleration = 0
     if (scene%crank_moves) self%acceleration = now%accelerations%crank
+    if (.not. allocated(scene%chain%floating)) return
+    self%pin_angle = now%motion%pin_angle
+    self%pin_speed = now%motion%turning(body_pin)
   end subroutine begin
 
   !> Search between the end of the last interval and t, where the scene is evaluated. Both must lie inside the last step.
@@ -54,6 +60,7 @@ contains
       cycle%max_speed = max(cycle%max_speed, next%speed)
       cycle%max_negative_speed = max(cycle%max_negative_speed, -next%speed)
     end if
+    if (allocated(scene%chain%floating)) call follow_pin(self, next, cycle)
     call self%begin(scene, t, now)
 
   contains
@@ -111,6 +118,29 @@ contains
       value = sample%value
     end function value_at
   end subroutine search
+
+  !> Account for the angle of a floating pin between two points: where it turns back, that of the cubic through angles and speeds.
+  pure subroutine follow_pin(left, right, cycle)
+    type(machine_record_t), intent(in) :: left, right
+    type(cycle_t), intent(inout) :: cycle
+    real(dp) :: farthest
+    farthest = left%pin_angle + turning_point(right%t - left%t, right%pin_angle - left%pin_angle, left%pin_speed, right%pin_speed)
+    cycle%max_pin_angle = max(cycle%max_pin_angle, left%pin_angle, right%pin_angle, farthest)
+    cycle%min_pin_angle = min(cycle%min_pin_angle, left%pin_angle, right%pin_angle, farthest)
+  end subroutine follow_pin
+
+  !> Angle [rad] from the beginning of a span of time to where a rotation turns back, on the cubic through the angle `rise` at its
+  !> end and the speeds at both ends; 0 if these have the same sign. The speed of the cubic is
+  !> v0 (1 - s)^2 + 2 middle s (1 - s) + v1 s^2.
+  pure real(dp) function turning_point(span, rise, v0, v1) result(angle)
+    real(dp), intent(in) :: span, rise, v0, v1   !! [s], [rad], [rad/s]
+    real(dp) :: middle, s
+    angle = 0
+    if (.not. (span > 0 .and. v0*v1 < 0)) return
+    middle = 3*rise/span - v0 - v1
+    s = v0/(v0 - middle + sign(sqrt(middle**2 - v0*v1), v0))
+    angle = span*s*(v0*(1 - s + s**2/3) + middle*s*(1 - 2*s/3) + v1*s**2/3)
+  end function turning_point
 
   !> Value and slope of a quantity at a point.
   pure type(sample_t) function sample_at(point, scene, quantity) result(sample)

@@ -1,12 +1,12 @@
 !> Detects a periodic motion: each time the crank completes a revolution, the state is compared with the states one to sixteen
 !> revolutions earlier.
 !>
-!> Positions, rates and first-order states are compared, without the crank angle and the quadratures, each relative to its range in
-!> the last revolutions. The motion has the period p (the shortest possible) if for three consecutive periods every state differs
-!> from that p revolutions earlier by at most the tolerance, and the remaining change is expected to be at most that too:
-!> differences d that shrink by the factor q from period to period leave d q/(1 - q). Without this second condition a motion that
-!> approaches its limit slowly would be accepted too early. Differences below a hundredth of the tolerance are not tested for this,
-!> since they are errors of the integration. Periods are multiples of the period of the gas.
+!> Positions, rates and first-order states are compared, without the angles of crank and floating pin and the quadratures, each
+!> relative to its range in the last revolutions. The motion has the period p (the shortest possible) if for three consecutive
+!> periods every state differs from that p revolutions earlier by at most the tolerance, and the remaining change is expected to be
+!> at most that too: differences d that shrink by the factor q from period to period leave d q/(1 - q). Without this second
+!> condition a motion that approaches its limit slowly would be accepted too early. Differences below a hundredth of the tolerance
+!> are not tested for this, since they are errors of the integration. Periods are multiples of the period of the gas.
 module period_watch
   use kinds, only: dp
   use constants, only: two_pi
@@ -66,9 +66,8 @@ contains
     real(dp), intent(in) :: t, y(:)
     real(dp) :: scales(scene%n)
     logical :: growing(scene%n)
-    integer :: i, n
-    n = scene%n - scene%n_quadratures
-    self%at = pack([(i, i=1, n)], [(i /= scene%crank%position, i=1, n)])
+    integer :: i
+    self%at = scene%compared_states()
     call scene%layout%natural_scales(scales, growing)
     self%smallest_range = least_range*scales(self%at)
     self%turning = merge(1.0_dp, 0.0_dp, growing(self%at))

@@ -3,7 +3,9 @@ module pin_record
   use kinds, only: dp
   use ode_method, only: ode_method_t
   use run_state, only: run_state_t
+  use chain_motion, only: body_pin
   use joint_places, only: name_prefix
+  use machine_record, only: turning_point
   use scene_problem, only: scene_t, evaluation_t, phase_film, phase_contact, event_contact_begins
   use joint_events, only: may_touch
   use inside_step, only: evaluate_inside
@@ -24,6 +26,7 @@ module pin_record
     real(dp) :: deepest = huge(1.0_dp)         !! largest penetration for which the contact geometry is valid [m]
     type(trace_event_t), private :: contact    !! present or last contact
     logical, private :: reports_film = .false.
+    logical, private :: floats = .false.       !! it is one end of a floating pin
     real(dp), private :: film_time = 0         !! time up to which the results of its film have been integrated [s]
     real(dp), private :: film_pressure = 0     !! largest pressure at that time [Pa]
     real(dp), private :: turn(3) = 0           !! time [s], angle [rad] and speed [rad/s] of the pin relative to its bearing there
@@ -51,6 +54,7 @@ contains
     self%contact%pin = pin
     if (self%joint == 0) return
     self%reports_film = scene%joints(self%joint)%reports_film
+    self%floats = scene%joints(self%joint)%site%pin_body == body_pin
     if (allocated(scene%joints(self%joint)%wear)) then
       allocate (self%wear)
       call self%wear%prepare(self%joint, scene)
@@ -73,6 +77,14 @@ contains
     if (self%joint > 0) touches = may_touch(scene%joints(self%joint))
     call figures%pin(self%pin)%declare(name_prefix(self%pin), list, self%joint > 0, touches, self%reports_film)
     if (touches) call self%contact%declare(list)
+    if (self%floats) then
+      associate (f => figures%pin(self%pin))
+        call list%add(name_prefix(self%pin)//'turning', f%turning, 'rad', &
+          'angle that the pin has turned through in this bearing')
+        if (touches) call list%add(name_prefix(self%pin)//'max_impact_speed', f%max_impact_speed, 'm/s', &
+          'largest speed at which a contact began')
+      end associate
+    end if
     if (allocated(self%wear)) call self%wear%declare(name_prefix(self%pin), list, scene%joints(self%joint))
   end subroutine declare
 
@@ -128,7 +140,10 @@ contains
       end if
       call cycles%record_peaks(self%pin, touches, largest, angle)
     end if
-    if (present(cycles) .and. self%joint > 0) call follow_turn(self, scene, t, now, cycles)
+    if (self%floats .or. present(cycles) .and. self%joint > 0) then
+      call follow_turn(self, scene, t, now, angle, cycles)
+      figures%pin(self%pin)%turning = figures%pin(self%pin)%turning + angle
+    end if
     if (self%reports_film) call sum_film(self, method, scene, t, now, figures, cycles)
     if (.not. allocated(self%wear)) return
     before = self%wear%evaluations
@@ -150,32 +165,26 @@ contains
     angle = scene%crank_angle(time, y)
   end function angle_inside
 
-  !> Add the angle that the pin turns through in its bearing since the last call, in either sense, to the present revolution. Where
-  !> it turns back, that angle is taken from the cubic through angles and speeds at both ends.
-  subroutine follow_turn(self, scene, t, now, cycles)
+  !> The angle that the pin turns through in its bearing since the last call, in either sense [rad]; it is added to the present
+  !> revolution.
+  subroutine follow_turn(self, scene, t, now, angle, cycles)
     class(pin_record_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
+    real(dp), intent(out) :: angle
     type(cycle_watch_t), intent(inout), optional :: cycles
-    real(dp) :: turn(3), span, rise, middle, share, farthest
+    real(dp) :: turn(3), span, rise, farthest
     associate (joint => scene%joints(self%joint), it => now%joint(self%joint))
       turn = [t, scene%chain%body_angle(now%motion, joint%site%pin_body), it%pin_angular_speed - it%bearing_speed]
       if (joint%bearing_turns) turn(2) = turn(2) - scene%chain%body_angle(now%motion, joint%site%bearing)
     end associate
     span = turn(1) - self%turn(1)
     rise = turn(2) - self%turn(2)
-    if (present(cycles) .and. span > 0) then
-      farthest = 0
-      if (self%turn(3)*turn(3) < 0) then   ! speed of the cubic: v0 (1 - s)^2 + 2 middle s (1 - s) + v1 s^2
-        middle = 3*rise/span - self%turn(3) - turn(3)
-        share = self%turn(3)/(self%turn(3) - middle + sign(sqrt(middle**2 - self%turn(3)*turn(3)), self%turn(3)))
-        farthest = span*share*(self%turn(3)*(1 - share + share**2/3) + middle*share*(1 - 2*share/3) + turn(3)*share**2/3)
-        call cycles%record_turn(self%pin, abs(farthest) + abs(rise - farthest))
-      else
-        call cycles%record_turn(self%pin, abs(rise))
-      end if
-    end if
+    farthest = turning_point(span, rise, self%turn(3), turn(3))
+    angle = 0
+    if (span > 0) angle = abs(farthest) + abs(rise - farthest)
+    if (present(cycles)) call cycles%record_turn(self%pin, angle)
     self%turn = turn
   end subroutine follow_turn
 
@@ -277,6 +286,7 @@ contains
       if (kind == event_contact_begins) then
         f%contacts = f%contacts + 1
         if (present(cycles)) call cycles%count_impact(self%pin)
+        f%max_impact_speed = max(f%max_impact_speed, relative%penetration_rate)
         f%max_entry_penetration = max(f%max_entry_penetration, relative%penetration)
         if (relative%penetration_rate > self%validity_limit) f%impacts_beyond_validity = f%impacts_beyond_validity + 1
       end if

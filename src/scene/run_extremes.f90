@@ -8,7 +8,8 @@ module run_extremes
   use joint_places, only: n_places
   use scene_problem, only: scene_t, evaluation_t, event_contact_begins, of_guide, phase_contact
   use joint_events, only: penetration_and_rate, may_lose_force, find_lost_force
-  use cycle_statistics, only: skirt
+  use cycle_statistics, only: skirt, cycle_t
+  use run_length, only: longest_period
   use cycle_watch, only: cycle_watch_t
   use pin_record, only: pin_record_t
   use guide_record, only: guide_record_t
@@ -42,6 +43,7 @@ module run_extremes
     procedure :: change_phases
     procedure :: record_event
     procedure :: find_film_changes
+    procedure :: find_pin_turns
     procedure :: begin_wear
     procedure :: end_wear_cycle
     procedure :: change_bore
@@ -62,6 +64,7 @@ contains
     call self%guide%prepare(scene)
     call self%elastic%prepare(scene, self%figures%elastic)
     call self%train%prepare(scene)
+    self%figures%floating%is_present = allocated(scene%chain%floating)
   end subroutine prepare
 
   !> Declare the totals so far.
@@ -87,6 +90,7 @@ contains
     type(evaluation_t), intent(in) :: now
     logical, intent(in) :: in_domain
     type(cycle_watch_t), intent(inout), optional :: cycles
+    real(dp) :: turned   ! before the run
     integer :: i
     if (in_domain) call self%elastic%begin(scene, t, now)
     if (in_domain) call self%train%begin(scene, t, now)
@@ -97,7 +101,7 @@ contains
       if (present(cycles) .and. allocated(self%pins(i)%wear)) call self%pins(i)%wear%mark_revolution(cycles%ended)
       if (.not. in_domain) cycle
       call self%pins(i)%record_values(scene, now, self%figures, cycles)
-      if (self%pins(i)%joint > 0) call self%pins(i)%follow_turn(scene, t, now)
+      if (self%pins(i)%joint > 0) call self%pins(i)%follow_turn(scene, t, now, turned)
     end do
     if (.not. (in_domain .and. self%guide%is_present)) return
     call self%guide%stand_at(t, now)
@@ -192,6 +196,7 @@ contains
           if (allocated(joint%heat)) figures%heat = joint%heat%totals(y)
         end associate
       end do
+      if (f%floating%is_present) f%floating%turn = y(scene%chain%floating%turn%position)
       call self%guide%add_time(scene, t - f%time, f)
       f%time = t
     end associate
@@ -246,6 +251,21 @@ contains
       end associate
     end do
   end subroutine find_film_changes
+
+  !> Mean turn of a floating pin in a revolution of the crank, and its swing in the last cycle.
+  subroutine find_pin_turns(self, cycles, revolutions)
+    class(run_extremes_t), intent(inout) :: self
+    type(cycle_watch_t), intent(in) :: cycles
+    integer, intent(in) :: revolutions   !! in a cycle
+    type(cycle_t) :: cycle
+    associate (pin => self%figures%floating)
+      pin%revolutions = cycles%followed
+      if (.not. pin%is_present .or. pin%revolutions == 0) return
+      pin%drift = cycles%pin_turn/pin%revolutions
+      cycle = cycles%last_cycle(min(revolutions, pin%revolutions, longest_period))
+      pin%swing = cycle%max_pin_angle - cycle%min_pin_angle
+    end associate
+  end subroutine find_pin_turns
 
   !> Count wear from time t.
   subroutine begin_wear(self, t)

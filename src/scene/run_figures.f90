@@ -7,7 +7,7 @@ module run_figures
   use film_heat, only: heat_totals_t
   implicit none
   private
-  public :: run_figures_t, pin_figures_t, elastic_figures_t
+  public :: run_figures_t, pin_figures_t, elastic_figures_t, floating_figures_t
 
   !> Results at one pin, or at one corner of the skirt of a piston with clearance in its bore. A pin without clearance has only a
   !> force, an ideal crank pin has no results; a corner has contacts, their time, and the largest penetration and normal force.
@@ -27,9 +27,20 @@ module run_figures
     real(dp) :: max_film_pressure = 0         !! [Pa]
     real(dp) :: friction_work = huge(1.0_dp)  !! work of the friction forces on the bodies so far [J]; huge: not integrated
     type(heat_totals_t) :: heat               !! of its film
+    real(dp) :: turning = 0                   !! angle that a floating pin has turned through in this bearing, in either sense [rad]
+    real(dp) :: max_impact_speed = 0          !! normal speed at the beginning of a contact of a floating pin [m/s]
   contains
     procedure :: declare => declare_pin
   end type pin_figures_t
+
+  !> Results of the turn of a floating pin.
+  type :: floating_figures_t
+    logical :: is_present = .false.
+    real(dp) :: turn = 0                      !! angle since the start [rad]
+    integer :: revolutions = 0                !! whole revolutions of the crank in this run
+    real(dp) :: drift = 0                     !! mean turn in one of these [rad]
+    real(dp) :: swing = 0                     !! largest less smallest angle in the last cycle [rad]
+  end type floating_figures_t
 
   !> Results of the elastic members.
   type :: elastic_figures_t
@@ -48,6 +59,7 @@ module run_figures
     type(pin_figures_t) :: pin(n_places)        !! by place
     type(pin_figures_t) :: corner(n_corners)
     type(elastic_figures_t) :: elastic
+    type(floating_figures_t) :: floating
     integer :: evaluations = 0                !! number of evaluations of the scene for rows, events and these results
     integer :: peak_evaluations = 0           !! number of those evaluations that search peaks between accepted points
     real(dp) :: max_energy = 0                !! largest |kinetic + potential energy| [J]

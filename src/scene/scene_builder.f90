@@ -7,7 +7,7 @@ module scene_builder
   use ode_method, only: ode_settings_t
   use chain_motion, only: body_crank, body_big_end, body_piston
   use bearing_load, only: bearing_load_t
-  use joint_places, only: in_order
+  use joint_places, only: in_order, piston_pin, small_end
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
   use joint_events, only: may_touch, may_pass_static
   use load_elements, only: add_elements
@@ -93,6 +93,7 @@ contains
     real(dp) :: gravity(2)   ! along the axis of the cylinder towards the crank, rotated towards -y [m/s^2]
     associate (m => case%mechanism)
       piston = piston_t(m%piston_mass)
+      if (case%has_floating_pin() .and. ideal_joint) piston%mass = piston%mass + case%pin%mass   ! it goes along the cylinder
       if (case%has_loose_guide() .and. .not. ideal_joint) &
         piston = piston_t(m%piston_mass, .true., case%guide%piston_inertia, case%guide%piston_com)
       gravity = axis_gravity(case)
@@ -150,6 +151,7 @@ contains
       end if
     end do
     if (scene%n_joints > 0) scene%chain%is_loose = case%loose_pins()
+    if (case%has_floating_pin() .and. .not. ideal_joint) call float_pin(case, scene)
     if (allocated(case%load) .and. .not. ideal_joint) call give_load(case%load, scene)
     if (allocated(case%guide) .and. .not. (ideal_joint .and. case%has_loose_guide())) then
       allocate (scene%guide)
@@ -168,6 +170,20 @@ contains
     if (case%has_train()) call build_train(case, ideal_joint, scene%chain%train)
     if (allocated(case%combustion) .or. allocated(case%measured)) allocate (scene%gas)
   end subroutine assemble_scene
+
+  !> Let the piston pin turn in both of its joints.
+  subroutine float_pin(case, scene)
+    type(case_t), intent(in) :: case
+    type(scene_t), intent(inout) :: scene
+    integer :: i
+    allocate (scene%chain%floating)
+    scene%chain%floating%mass = case%pin%mass
+    scene%chain%floating%inertia = case%pin%inertia
+    scene%chain%floating%start_speed = case%initial%pin_speed
+    do i = 1, scene%n_joints
+      if (any(scene%joints(i)%place == [piston_pin, small_end])) call scene%joints(i)%let_pin_float()
+    end do
+  end subroutine float_pin
 
   !> Set a torque that depends on the speed, or a prescribed speed with a run-up.
   subroutine vary_drive(case, scene)

@@ -4,6 +4,8 @@ submodule (scene_problem) scene_events
   use joint_events, only: contact_changes, find_joint_events, find_joint_force_events, has_force_events, &
     pass_joint_event, choose_sliding, may_touch, static_speed, judge_entry, judge_reversal, contact_kink_time, may_lose_force, &
     find_lost_force
+  use sticking, only: find_released
+  use clearance_joint, only: most_joints
   use elastic_film, only: wall_load, wall_deflection
   use joint_evaluation, only: outward_acceleration
   use guide_events, only: n_guide_events, corner_events, corner_force_events, corner_share, change_contact, &
@@ -194,7 +196,8 @@ contains
     if (any(scene%guide%touches)) mode_of = mode_of + n_phases**scene%n_joints
   end function mode_of
 
-  !> Choose the state of set-valued friction of one joint: its direction of sliding, or sticking.
+  !> Choose the state of set-valued friction of one joint: its direction of sliding, or sticking; and of the other joints that
+  !> stick, which this may release in the same instant.
   subroutine find_sliding_direction(scene, i, t, y, may_slide)
     class(scene_t), intent(inout) :: scene
     integer, intent(in) :: i
@@ -207,9 +210,33 @@ contains
       was_sliding = element%sliding /= 0
       element%sliding = 0
       call scene%evaluate(t, y, now, in_domain)
-      if (in_domain) call choose_sliding(element, now%joint(i), was_sliding, may_slide)
+      if (.not. in_domain) return
+      call choose_sliding(element, now%joint(i), was_sliding, may_slide)
+      if (count(now%joint(:scene%n_joints)%sticks) == 1) return
+      if (was_sliding .and. .not. may_slide) element%sliding = 0   ! all together
+      if (element%sliding /= 0) call scene%evaluate(t, y, now, in_domain)
     end associate
+    if (in_domain) call release_surfaces(scene, t, y, now)
   end subroutine find_sliding_direction
+
+  !> Let surfaces slide that stick in an evaluation but that friction cannot hold, until the others hold: sliding friction may be
+  !> less than static friction.
+  subroutine release_surfaces(scene, t, y, now)
+    class(scene_t), intent(inout) :: scene
+    real(dp), intent(in) :: t, y(:)
+    type(evaluation_t), intent(inout) :: now
+    integer :: sense(most_joints), i
+    logical :: in_domain
+    do
+      sense = find_released(scene%chain, scene%joints(:scene%n_joints), now%motion, now%joint)
+      if (all(sense == 0)) return
+      do i = 1, scene%n_joints
+        if (sense(i) /= 0) scene%joints(i)%slots(scene%joints(i)%acting(phase_contact))%element%sliding = sense(i)
+      end do
+      call scene%evaluate(t, y, now, in_domain)
+      if (.not. (in_domain .and. any(now%joint(:scene%n_joints)%sticks))) return
+    end do
+  end subroutine release_surfaces
 
   module procedure reported_event
     reported_event = event_none

@@ -4,7 +4,7 @@ module scene_problem
   use ode_problem, only: ode_problem_t, max_events
   use state_layout, only: layout_t, coordinates_t, slice_t
   use run_state, only: run_state_t
-  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, turn_crank, follow_rod, follow_piston
+  use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, small_end, turn_crank, follow_rod, follow_piston
   use train_motion, only: most_cylinders
   use joint_places, only: places, n_places, in_order
   use chain_loads, only: loads_t, force_size
@@ -136,6 +136,7 @@ module scene_problem
     procedure :: energy_scale
     procedure :: speed_scale
     procedure :: twist_frequency
+    procedure :: compared_states
   end type scene_t
 
   interface
@@ -321,6 +322,7 @@ contains
     end do
     if (allocated(self%guide)) call self%guide%set_rates(now%motion%tilting, now%accelerations%offset, now%accelerations%tilt, &
       dydt)
+    if (allocated(self%chain%floating)) call self%chain%floating%set_rates(now%motion, now%accelerations, dydt)
     if (allocated(self%chain%elastic)) call self%chain%elastic%set_rates(now%motion, now%accelerations, dydt)
     if (allocated(self%chain%train)) call self%chain%train%set_rates(now%motion, now%accelerations, dydt)
     do i = 1, self%n_joints
@@ -458,8 +460,13 @@ contains
         offset = offset + shift
         offset_rate = offset_rate + shift_rate
         if (joint%site%pin == piston_pin) cycle
-        now%motion%crank_pin = shift
-        now%motion%crank_pin_rate = shift_rate
+        if (joint%site%pin == small_end) then
+          now%motion%small_end = shift
+          now%motion%small_end_rate = shift_rate
+        else
+          now%motion%crank_pin = shift
+          now%motion%crank_pin_rate = shift_rate
+        end if
       end associate
     end do
     now%motion%offset = offset
@@ -504,9 +511,9 @@ contains
     call claim_states(self)
     self%clears_loads = any([(allocated(self%joints(i)%heat), i=1, self%n_joints)])
     self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying) &
-      .or. allocated(self%chain%train) .or. allocated(self%given_load))
+      .or. allocated(self%chain%train) .or. allocated(self%chain%floating) .or. allocated(self%given_load))
     self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide) &
-      .or. allocated(self%chain%train) .or. size(self%carried) > 0
+      .or. allocated(self%chain%train) .or. allocated(self%chain%floating) .or. size(self%carried) > 0
     call self%set_layout()
   end subroutine claim
 
@@ -522,6 +529,8 @@ contains
     do i = 1, size(self%carried)
       call self%carried(i)%claim(self%layout, self%joints(self%carried(i)%joint))
     end do
+    if (allocated(self%chain%floating)) call self%chain%floating%claim(self%layout, &
+      self%speed_scale()*self%chain%bodies%crank%length*self%chain%bodies%per_rod_length)
     if (allocated(self%guide)) call self%guide%claim(self%layout, self%speed_scale(), self%span)
     if (allocated(self%chain%elastic)) call claim_elastic(self)
     if (allocated(self%chain%train)) call claim_train(self)
@@ -620,8 +629,21 @@ contains
     do i = 1, size(self%carried)
       call self%carried(i)%set_start(self%joints(self%carried(i)%joint), y)
     end do
+    if (allocated(self%chain%floating)) call self%chain%floating%set_start(y)
     if (allocated(self%guide)) call self%guide%set_start(y)
   end function initial_state
+
+  !> Indices of the states by which motions are compared: all except quadratures, the crank angle, and the angle of a floating pin,
+  !> on which nothing depends and which drifts.
+  pure function compared_states(self) result(at)
+    class(scene_t), intent(in) :: self
+    integer, allocatable :: at(:)
+    integer :: i, angle
+    angle = 0
+    if (allocated(self%chain%floating)) angle = self%chain%floating%turn%position
+    at = [(i, i=1, self%n - self%n_quadratures)]
+    at = pack(at, at /= self%crank%position .and. at /= angle)
+  end function compared_states
 
   !> Whether the force of a film has no bound near this state.
   pure logical function is_singular(self, y)

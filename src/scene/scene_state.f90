@@ -26,6 +26,7 @@ contains
     do i = 1, size(self%carried)
       call self%carried(i)%declare(list, self%joints(self%carried(i)%joint), y)
     end do
+    if (allocated(self%chain%floating)) call self%chain%floating%declare(list, y)
     if (allocated(self%guide)) call self%guide%declare(list, y)
     if (allocated(self%chain%elastic)) call self%chain%elastic%declare(list, t, y, angle, speed)
     if (allocated(self%chain%train)) call self%chain%train%declare(list, t, y, angle, speed)

@@ -2,10 +2,10 @@
 submodule (scene_problem) scene_tangent
   use ode_problem, only: difference_jacobian
   use chain_bodies, only: drive_t
-  use load_element, only: n_motions, by_pin_speed
+  use chain_loads, only: bearing_moment
+  use load_element, only: n_motions, by_pin_speed, by_bearing_speed
   use clearance_joint, only: most_joint_states, n_joint_slopes
   use crank_rod_tangent, only: rod_slopes, acceleration_slopes, torque_slopes
-  use train_motion, only: train_rows_t
   implicit none
 
 contains
@@ -19,30 +19,33 @@ contains
     real(dp) :: slope(3 + most_joint_states, 6 + most_joint_states)   !! of all rates, with respect to q, e, q', e' and the states
     logical :: has_closed_form
     type(drive_t) :: of_case
-    type(train_rows_t) :: rows
     real(dp) :: by_torque(3)
     integer :: skip, n, i
 
     has_closed_form = self%chain%is_loose(piston_pin) .and. .not. (self%chain%is_loose(crank_pin) .or. allocated(self%guide) &
       .or. allocated(self%chain%elastic) .or. size(self%carried) > 0)
-    if (has_closed_form) has_closed_form = self%joints(1)%place == piston_pin .and. self%joints(1)%has_slopes
+    if (has_closed_form) has_closed_form = all(self%joints(:self%n_joints)%has_slopes) .and. &
+      .not. (allocated(self%chain%floating) .and. allocated(self%chain%train))
     if (has_closed_form) then
       call self%evaluate(t, y, now, has_closed_form)
-      if (has_closed_form) has_closed_form = .not. now%joint(1)%sticks
+      if (has_closed_form) has_closed_form = .not. any(now%joint(:self%n_joints)%sticks)
     end if
     if (.not. has_closed_form) then
       call difference_jacobian(self, t, y, a_p, a_v)
       return
+    else if (allocated(self%chain%floating)) then
+      call floating_jacobian(self, now, a_p, a_v)
+      return
     end if
     n = self%joints(1)%n_states
     call self%joints(1)%slopes(now%joint(1), of_loads, of_rates)
+    if (self%joints(1)%site%sense < 0) call turn_round(now%joint(1), of_loads, of_rates)
     drive = self%chain%drive
     if (allocated(self%chain%varying)) &
       drive%damping = drive%damping - self%chain%varying%torque_slope(self%chain%driven_speed(now%motion))
     if (allocated(self%chain%train)) then
-      call self%chain%train%find_rows(now%motion, rows)
       of_case = drive
-      drive = self%chain%train%drive_of_crank(of_case, rows)
+      drive = self%chain%train%drive_of_crank(of_case, now%motion)
     end if
     call rod_slopes(self%chain%bodies, now%motion, rod_angle, rod_speed)
     call acceleration_slopes(self%chain%bodies, drive, now%loads, now%motion, now%accelerations, by_motion, by_loads)
@@ -54,16 +57,137 @@ contains
       call follow_state(n, of_rates(:, :by_pin_speed), by_nothing, rod_angle, rod_speed, slope(4:3 + n, :6))
       slope(4:3 + n, 7:6 + n) = of_rates(:n, n_motions + 1:n_motions + n)
     end if
+    if (self%joints(1)%site%sense < 0) then   ! the state is the eccentricity of the joint, not that of the chain
+      slope(2:3, :) = -slope(2:3, :)
+      slope(:, 2:3) = -slope(:, 2:3)
+      slope(:, 5:6) = -slope(:, 5:6)
+    end if
     skip = merge(0, 1, drive%free_crank)   ! a prescribed crank angle is not an unknown
     if (allocated(self%chain%train)) then
       call place_slopes(self, n, skip, slope, a_p, a_v)
       call torque_slopes(self%chain%bodies, drive, now%motion, by_torque)
-      call self%chain%train%add_slopes(of_case, rows%inertia, self%crank, [(i, i=1, 3 - skip)], by_torque(1 + skip:), a_p, a_v)
+      call self%chain%train%add_slopes(of_case, now%motion%train%inertia, self%crank, [(i, i=1, 3 - skip)], &
+        by_torque(1 + skip:), a_p, a_v)
     else
       a_p = slope(1 + skip:3 + n, 1 + skip:3)
       a_v = slope(1 + skip:3 + n, 4 + skip:6 + n)
     end if
   end procedure jacobian
+
+  !> Make the slopes of a joint whose pin belongs to the piston those of the chain's pin: of the load on the rod, which takes what
+  !> the bearing takes, with respect to the opposite of the eccentricity and to the angular speed of the rod.
+  pure subroutine turn_round(joint, of_loads, of_rates)
+    type(joint_evaluation_t), intent(in) :: joint
+    real(dp), intent(inout) :: of_loads(3, n_joint_slopes), of_rates(most_joint_states, n_joint_slopes)
+    call on_bearing(joint, of_loads)
+    of_loads(:, :by_pin_speed - 1) = -of_loads(:, :by_pin_speed - 1)
+    of_loads(:, by_pin_speed) = of_loads(:, by_bearing_speed)
+    of_rates(:, :by_pin_speed - 1) = -of_rates(:, :by_pin_speed - 1)
+    of_rates(:, by_pin_speed) = of_rates(:, by_bearing_speed)
+  end subroutine turn_round
+
+  !> Make the slopes of a load on the pin those of the load on its bearing: the force -F and the moment -M - e x F.
+  pure subroutine on_bearing(joint, of_loads)
+    type(joint_evaluation_t), intent(in) :: joint
+    real(dp), intent(inout) :: of_loads(3, n_joint_slopes)
+    integer :: k
+    do k = 1, n_joint_slopes
+      of_loads(:, k) = [-of_loads(:2, k), bearing_moment(joint%eccentricity, of_loads(:2, k), of_loads(3, k))]
+    end do
+    of_loads(3, 1) = of_loads(3, 1) - joint%force(2)
+    of_loads(3, 2) = of_loads(3, 2) + joint%force(1)
+  end subroutine on_bearing
+
+  !> The Jacobian of a scene with a floating pin between a rigid rod and a piston in an ideal guide.
+  subroutine floating_jacobian(scene, now, a_p, a_v)
+    class(scene_t), intent(in) :: scene
+    type(evaluation_t), intent(in) :: now
+    real(dp), intent(out) :: a_p(:, :), a_v(:, :)
+    ! columns: q, both e and phi, their rates, the states of the joints; rows of loads: F_x, F_y, moment
+    integer, parameter :: m = 6, most = 2*m + 2*most_joint_states
+    type(loads_t) :: acting
+    type(drive_t) :: drive
+    real(dp) :: of_loads(3, n_joint_slopes), of_rates(most_joint_states, n_joint_slopes)
+    real(dp) :: by_motion(3, 4), by_loads(3, 3), angle(2), speed(2)
+    real(dp) :: rod_angle(most), rod_speed(most), on_pin(3, most), on_rod(3, most), on_piston(3, most), chain(3, most), &
+      slope(m + 2*most_joint_states, most)
+    integer :: i, e, states, skip, n
+
+    drive = scene%chain%drive
+    if (allocated(scene%chain%varying)) drive%damping = drive%damping - scene%chain%varying%torque_slope(now%motion%crank_speed)
+    call rod_slopes(scene%chain%bodies, now%motion, angle, speed)
+    call scene%chain%floating%chain_loads(scene%chain%bodies, now%motion, now%loads, acting)
+    call acceleration_slopes(scene%chain%bodies, drive, acting, now%motion, now%accelerations, by_motion, by_loads)
+    by_loads(2, 1) = by_loads(2, 1) - scene%chain%bodies%per_piston_mass   ! the piston takes another load than the rod
+    rod_angle = 0
+    rod_speed = 0
+    do i = 1, scene%n_joints
+      e = column_of(i)
+      rod_angle([1, e + 1]) = angle*[1.0_dp, scene%joints(i)%site%sense]
+      rod_speed([1, e + 1]) = speed*[1.0_dp, scene%joints(i)%site%sense]
+      rod_speed(m + [1, e + 1]) = rod_angle([1, e + 1])
+    end do
+    states = 0
+    do i = 1, scene%n_joints
+      call scene%joints(i)%slopes(now%joint(i), of_loads, of_rates)
+      if (scene%joints(i)%place == piston_pin) then
+        call spread_columns(i, 3, of_loads, on_piston)
+      else
+        call spread_columns(i, 3, of_loads, on_pin)
+        call on_bearing(now%joint(i), of_loads)
+        call spread_columns(i, 3, of_loads, on_rod)
+      end if
+      n = scene%joints(i)%n_states
+      call spread_columns(i, n, of_rates, slope(m + states + 1:m + states + n, :))
+      states = states + n
+    end do
+    on_pin = on_pin + on_piston
+    if (allocated(scene%gas)) on_piston(1, 1) = on_piston(1, 1) + scene%gas%force_slope(now%motion%crank_angle)
+    chain = matmul(by_loads, on_rod)
+    do i = 1, 3
+      chain(i, :) = chain(i, :) + by_motion(i, 2)*rod_angle + by_motion(i, 4)*rod_speed
+      chain(i, [1, m + 1]) = chain(i, [1, m + 1]) + by_motion(i, [1, 3])
+    end do
+    associate (pin => scene%chain%floating, recoil => scene%chain%bodies%per_piston_mass*on_piston(1, :))
+      slope(1, :) = chain(1, :)
+      slope(2, :) = on_pin(1, :)/pin%mass + recoil
+      slope(3, :) = on_pin(2, :)/pin%mass
+      slope(4, :) = on_pin(1, :)/pin%mass - chain(2, :)   ! e_s'' = e_b'' - (S - C)''
+      slope(5, :) = slope(3, :) - chain(3, :)
+      slope(6, :) = on_pin(3, :)/pin%inertia
+    end associate
+    skip = merge(0, 1, drive%free_crank)   ! a prescribed crank angle is not an unknown
+    a_p = slope(1 + skip:m + states, 1 + skip:m)
+    a_v(:, :m - skip) = slope(1 + skip:m + states, m + 1 + skip:2*m)
+    a_v(:, m - skip + 1:) = slope(1 + skip:m + states, 2*m + 1:2*m + states)
+
+  contains
+
+    !> The first column of the eccentricity of a joint.
+    pure integer function column_of(i)
+      integer, intent(in) :: i
+      column_of = merge(2, 4, scene%joints(i)%place == piston_pin)
+    end function column_of
+
+    !> Put the slopes of a joint to the columns of the motions on which they depend.
+    subroutine spread_columns(i, rows, own, all)
+      integer, intent(in) :: i, rows
+      real(dp), intent(in) :: own(:, :)
+      real(dp), intent(out) :: all(:, :)   !! (rows, most)
+      integer :: e, n
+      e = column_of(i)
+      n = scene%joints(i)%n_states
+      all = 0
+      all(:, e:e + 1) = own(:rows, 1:2)
+      all(:, m + e:m + e + 1) = own(:rows, 3:4)
+      all(:, 2*m) = own(:rows, by_pin_speed)
+      all(:, 2*m + states + 1:2*m + states + n) = own(:rows, n_motions + 1:n_motions + n)
+      if (scene%joints(i)%place == piston_pin) return
+      do n = 1, most   ! the bearing turns with the rod, -A'
+        all(:, n) = all(:, n) - own(:rows, by_bearing_speed)*rod_speed(n)
+      end do
+    end subroutine spread_columns
+  end subroutine floating_jacobian
 
   !> Put the derivatives of the accelerations of crank and pin and of the rates of the joint's states to their places among those of
   !> a whole state; the others are 0.

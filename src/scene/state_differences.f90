@@ -30,16 +30,14 @@ module state_differences
 
 contains
 
-  !> The components of the state that are compared, all except the crank angle and the quadratures, their natural sizes, and the
-  !> initial directions.
+  !> The components of the state that are compared, their natural sizes, and the initial directions.
   type(differences_t) function new_differences(scene) result(differences)
     type(scene_t), intent(in) :: scene
     real(dp) :: scales(scene%n), unused(most_directions, most_directions)
     logical :: growing(scene%n)
-    integer :: i, n, d
-    n = scene%n - scene%n_quadratures
+    integer :: n, d
     call scene%layout%natural_scales(scales, growing)
-    differences%at = pack([(i, i=1, n)], [(i /= scene%crank%position, i=1, n)])
+    differences%at = scene%compared_states()
     differences%scale = scales(differences%at)
     n = size(differences%at)
     allocate (differences%state(n, min(n, most_directions)), differences%impact_speed(most_joints, min(n, most_directions)))

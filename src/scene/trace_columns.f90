@@ -4,9 +4,10 @@ module trace_columns
   use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: nearest_word, allowed
   use trace_row, only: trace_row_t, column_list_t, name_length
-  use chain_motion, only: motion_t, accelerations_t, piston_pin
+  use chain_motion, only: motion_t, accelerations_t, piston_pin, small_end, body_pin
   use chain_reactions, only: reactions_t
   use joint_columns, only: add_joint_columns
+  use joint_places, only: places
   use guide_columns, only: add_guide_columns
   use elastic_columns, only: add_elastic_columns
   use train_columns, only: add_train_columns
@@ -143,12 +144,34 @@ contains
     do i = 1, size(scene%joints)
       call add_joint_columns(scene%joints(i), now%joint(i), row)
     end do
+    if (allocated(scene%chain%floating)) call add_floating_pin(scene, now, row)
     if (allocated(scene%guide)) call add_guide_columns(scene%guide, now%motion, now%accelerations, now%guide, row)
     if (allocated(scene%chain%elastic)) call add_elastic_columns(scene%chain%elastic, now%motion, now%accelerations, row)
     if (allocated(scene%chain%train)) &
       call add_train_columns(scene%chain%train, now%motion, now%accelerations, reaction, row)
     if (allocated(scene%gas)) call scene%gas%add_columns(now%motion%sin_crank, now%motion%cos_crank, now%cylinder_pressure, row)
   end subroutine add_columns
+
+  !> Add the columns of a floating pin.
+  pure subroutine add_floating_pin(scene, now, row)
+    type(scene_t), intent(in) :: scene
+    type(evaluation_t), intent(in) :: now
+    type(trace_row_t), intent(inout) :: row
+    real(dp) :: force(2)
+    integer :: i
+    force = -now%loads%force(:, small_end)
+    call row%add('small_end_force_x[N]', force(1), 'force of the joint in the small end on the floating pin, along x')
+    call row%add('small_end_force_y[N]', force(2), 'the same along y; the rod takes the opposite force')
+    call row%add('pin_angle[rad]', now%motion%pin_angle, 'turn of the floating pin since the start, positive from x to y')
+    call row%add('pin_speed[rad/s]', now%motion%turning(body_pin), 'rate of pin_angle')
+    call row%add('pin_acceleration[rad/s2]', now%accelerations%pin_turn, 'rate of pin_speed')
+    do i = 1, scene%n_joints
+      if (scene%joints(i)%site%pin_body /= body_pin) cycle
+      row%place = places(scene%joints(i)%place)%prefix
+      call row%add_on_request('joint_moment[N.m]', now%joint(i)%moment, 'moment of the joint on the floating pin')
+    end do
+    row%place = ''
+  end subroutine add_floating_pin
 
   pure subroutine add_motion(m, a, row)
     type(motion_t), intent(in) :: m

@@ -11,6 +11,14 @@ import numpy as np
 from gudgeon.program import release_program
 from gudgeon.results import MissingResult
 
+#: Places of bearings: prefix of their columns and rows, and name.
+PLACES = {
+    "piston_pin": ("", "piston pin"),
+    "small_end": ("small_end_", "small end"),
+    "crank_pin": ("crank_pin_", "crank pin"),
+    "main_bearing": ("main_bearing_", "main bearing"),
+}
+
 #: Keys of a case whose names alone are not clear as labels.
 KEYS = {
     "joint.clearance": "radial clearance",
