@@ -235,6 +235,18 @@ def check_words(program: Path) -> None:
                 check(option in (words.get(found[1], "") + common if found else options), f"{page.name}: {code}: has the option {option}")
 
 
+def check_keys(program: Path) -> None:
+    """The groups that pages name, and the keys of the table of typical values, are there."""
+    said = "".join(subprocess.run([program, "--reference", subject], capture_output=True, text=True).stdout for subject in ("case", "bearing", "study"))
+    groups, keys = set(re.findall(r"^## &(\w+)", said, re.MULTILINE)) | {"so_far", "name"}, set(re.findall(r"^\| `(\w+)` \|", said, re.MULTILINE))
+    for page in (ROOT / "data/manual").glob("*.md"):
+        for group in re.findall(r"`&(\w+)", page.read_text(encoding="utf-8")):
+            check(group in groups, f"{page.name}: the group &{group} is there")
+    for row in table_with(ROOT / "data/manual/typical_values.md", "typical of"):
+        for key in re.findall(r"`(?:\w+\.)?(\w+)`", row[1]):
+            check(key in keys, f"typical_values.md: the key {key} is there")
+
+
 def check_pictures() -> None:
     """Each picture is made by a command that data/pictures.csv names and that is there."""
     with (ROOT / "data/pictures.csv").open(encoding="utf-8", newline="") as lines:
@@ -459,6 +471,7 @@ def main() -> int:
     check_commands(program)
     check_tutorials(program)
     check_results_in_python(program)
+    check_keys(program)
     check_reference(program)
     check_study(program)
     check_built(program)

@@ -12,7 +12,7 @@ from measured import FOLDER, write_table
 
 #: Question: the cases, the scenes that are its rungs, and the quantities it asks for.
 QUESTIONS = {
-    "Bearing": (("sim_I", "sim_III", "motor"), ("ideal piston pin", "quasi-static piston pin", "film variant half_film", "film finite_bearing",
+    "Bearing": (("sim_I", "sim_III", "compressor", "motor"), ("ideal piston pin", "quasi-static piston pin", "film variant half_film", "film finite_bearing",
                                        "clearance at the crank pin too", "elastic rod", "no film"), ("peak_force", "min_film", "loss")),
     "Impact": (("both_pins", "dry_friction"), ("no friction", "contact exact", "contact hertz", "contact geometry johnson", "contact geometry conformal",
                                                "friction coulomb", "friction lugre", "ideal crank pin", "clearance at the crank pin too", "elastic rod",
