@@ -18,6 +18,7 @@ from measured import TOP, built_program, write_table
 
 ENGINES = {"a film of finite length": "film/sim_IV_finite", "a dry pin": "cylinders/four_dry", "ideal pins, Wiebe": "cylinders/inline_four",
            "ideal pins, a table": "cylinders/six_mwm"}
+SINGLE = {"cylinders/six_mwm": ("mechanism.crank_inertia=0.01",)}   # on a rigid shaft it has an inertia
 RIGID = ("crankshaft=none", "damper=none")
 SHAFT = ("crankshaft.inertia=9*0.03", "crankshaft.stiffness=1.2e6", "crankshaft.damping=2.0", "crankshaft.absolute_damping=0.1")
 PHASES = (0, -480, -240, -600, -120, -360)   # degrees
@@ -42,13 +43,14 @@ def scene(cylinders: int, stations: bool) -> list[str]:
 
 def run(program: Path, case: str, settings: list[str], turns: int) -> tuple[int, int, int]:
     """Evaluations, instructions inside them, instructions of a run."""
-    common = ("run.until=end", "drive.kind=constant_speed", "drive.torque=0.0", "drive.damping=0.0", f"integrator.revolutions={turns}", "integrator.relative_tolerance=1e-6",
+    common = ("run.until=end", "drive.kind=constant_speed", "drive.torque=0.0", "drive.damping=0.0", f"integrator.revolutions={turns}",
+              "integrator.relative_tolerance=1e-6",
               "integrator.method=auto", "output.samples_per_revolution=1", "output.columns=time", "output.answers=F", "output.ideal_twin=F",
-              "cylinder=none", *RIGID)
+              "output.window=all", "cylinder=none", *RIGID)
     with tempfile.TemporaryDirectory() as folder:
         profile = Path(folder) / "profile"
         done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={profile}", program, "-q", "-o", folder,
-                               *(word for setting in (*common, *settings) for word in ("--set", setting)), TOP / "cases" / f"{case}.nml"],
+                               *(word for setting in (*common, *SINGLE.get(case, ()), *settings) for word in ("--set", setting)), TOP / "cases" / f"{case}.nml"],
                               capture_output=True, text=True, check=True)
         with (Path(folder) / f"{Path(case).name}.summary.csv").open(newline="") as file:
             summary = {row["quantity"]: row["value"] for row in csv.DictReader(file)}

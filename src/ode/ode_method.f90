@@ -195,11 +195,12 @@ contains
   end function difference
 
   !> Count the duration of the last accepted step, once it is known which part of it is final: up to t_to, which is self%t or the
-  !> time at which an event or the end of the integration cuts the step.
+  !> time at which an event or the end of the integration cuts the step. Nothing if the method has just been started.
   subroutine count_time(self, t_to)
     class(ode_method_t), intent(inout) :: self
     real(dp), intent(in) :: t_to   !! t_old <= t_to <= t
     real(dp) :: share
+    if (.not. self%t > self%t_old) return
     share = 1
     if (t_to < self%t) share = (t_to - self%t_old)/(self%t - self%t_old)
     self%statistics%stiffness = self%statistics%stiffness + share*self%stiffness_done

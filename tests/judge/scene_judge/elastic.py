@@ -215,6 +215,6 @@ def requested_columns(run: Run) -> list[str]:
     names = []
     if "elastic_rod.section_area" in run.case:
         names += [f"{name}_{what}" for name in ElasticRod(run).names for what in ("rate", "acceleration")]
-    if "crankshaft.flywheel_inertia" in run.case:
+    if run.number("crankshaft.flywheel_inertia"):
         names.append("flywheel_acceleration")
     return names

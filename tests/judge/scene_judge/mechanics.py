@@ -11,9 +11,11 @@ import dataclasses
 import math
 
 from .elastic import ElasticRod
+from .engine import Engine
 from .trace import Run
 
 Vector = tuple[float, float]
+DIFFERENCES = 10.0     # allowed error of torques of other cylinders, whose slopes are differences, over that of other terms
 LAST_DIGITS = 1e-13   # rounding, relative to the forces whose difference a force is
 
 
@@ -77,6 +79,7 @@ class Bodies:
     piston_com: Vector = (0.0, 0.0)
     elastic: ElasticRod | None = None
     shaft: tuple[float, float, float] | None = None   # elastic crankshaft: flywheel's inertia, stiffness, damping
+    engine: Engine | None = None          # other cylinders, or stations of the crankshaft
 
     @classmethod
     def of(cls, run: Run) -> Bodies:
@@ -90,7 +93,9 @@ class Bodies:
                    *((n("guide.piston_inertia"), run.pair("guide.piston_com")) if run.has_loose_guide else ()))
         if "elastic_rod.section_area" in run.case:
             found.elastic = ElasticRod(run)
-        if "crankshaft.flywheel_inertia" in run.case:
+        if Engine.is_in(run):
+            found.engine = Engine(run)
+        elif "crankshaft.flywheel_inertia" in run.case:
             found.shaft = n("crankshaft.flywheel_inertia"), n("crankshaft.torsional_stiffness"), n("crankshaft.torsional_damping")
         return found
 
@@ -162,6 +167,10 @@ class Row:
         if b.shaft:
             kinetic.append(0.5 * b.shaft[0] * self.get["flywheel_speed"]**2)
             strain.append(0.5 * b.shaft[1] * self.get["crankshaft_twist"]**2)
+        if b.engine:
+            more = b.engine.energy_terms(self.get)
+            kinetic += more[0]
+            strain += more[1]
         return kinetic, strain + [-m * b.gravity * (b.downwards[0] * x + b.downwards[1] * y) for m, (x, y) in zip(b.mass, places)]
 
     @property
@@ -209,7 +218,9 @@ class Row:
         return self.bodies.elastic.end_turn(end, -self.rod_turn, self.shape_rates[1:]) if self.bodies.elastic else self.rod_turn
 
     def crank_drive(self) -> float:
-        """Moment that drives the crank: that of the drive and its damping, or that of an elastic shaft [N m]."""
+        """Moment that drives the crank: that of the drive and its damping, or that of an elastic shaft or of an engine's shaft [N m]."""
+        if self.bodies.engine:
+            return math.fsum(self.bodies.engine.on_crank(self.get, self.bodies.damping))
         return self.get["crankshaft_moment"] if self.bodies.shaft else self.get["crank_moment"] - self.bodies.damping * self.turn
 
     def elastic_power(self) -> float:
@@ -341,6 +352,9 @@ class Row:
                 abs(math.fsum((b.inertia[0] * self.turn_rate, -self.crank_drive(), cross(arm, on_crank), cross(pin, on_rod), -crank_pin_moment))),
                 abs(b.inertia[0] * self.turn_rate) + abs(get["crank_moment"]) + abs(b.damping * self.turn) + abs(self.crank_drive()) + abs(crank_pin_moment)
                 + math.hypot(*arm) * math.hypot(*on_crank) + math.hypot(*pin) * math.hypot(*on_rod))
+        if b.engine:
+            found["Euler, crank"].size += DIFFERENCES * math.fsum(map(abs, b.engine.on_crank(get, b.damping)))
+            found |= {name: balance(*terms) for name, terms in b.engine.segment_terms(get).items()}
         if b.shaft:
             twisting = b.shaft[1] * get["crankshaft_twist"], b.shaft[2] * get["flywheel_speed"], -b.shaft[2] * self.turn
             found["shaft's law"] = balance(get["crankshaft_moment"], *(-term for term in twisting))

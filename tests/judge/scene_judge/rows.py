@@ -95,7 +95,9 @@ class RowChecks:
         self.worn_bore = self.wears and run.text("wear.bore") == "worn"   # no law of a round bore
         self.weighted = self.contact is not None and run.text("lubrication.transition") == "weighted"
         self.drive = Drive(run) if joint == "piston_pin" and "crankshaft.flywheel_inertia" not in run.case else None
-        self.gas = gas_of(run) if joint == "piston_pin" else None
+        engine = self.bodies.engine
+        knows_gas = not engine or engine.has_gas and engine.scale == 1
+        self.gas = gas_of(run) if joint == "piston_pin" and knows_gas else None
         self.guide = Guide(whole) if whole.has_guide and joint == "piston_pin" else None
         tolerance = min(run.number("integrator.relative_tolerance"), 1e-3)
         self.gas_tolerance = max(10 * tolerance, 1e-9)

@@ -10,6 +10,7 @@ import tempfile
 from pathlib import Path
 
 Values = dict[str, list]         # values of a case: 'joint.clearance' -> [4e-05]
+REPEATED = "cylinder", "damper"   # groups that are numbered in their order
 Columns = dict[str, list[float]]  # columns of a trace: 'crank_angle' -> values
 
 
@@ -74,9 +75,13 @@ def read_case(text: str) -> Values:
     """The values of a resolved case file by group and key; crank_pin.joint.clearance if the group belongs to one joint."""
     values: Values = {}
     group = ""
+    groups: list[str] = []
     for line in text.splitlines():
         if line.startswith("&"):
-            group = line[1:].strip()
+            groups.append(line[1:].strip())
+            group = groups[-1]
+            if group in REPEATED:
+                group += f"_{groups.count(group)}"
         found = re.match(r"\s+(\w+) = (.*)$", line)
         if not found:
             continue

@@ -8,8 +8,9 @@ from pathlib import Path
 
 from .carried import judge_carried, requested_heat
 from .elastic import requested_columns
+from .engine import Engine
 from .energy import BLURRED, Balances, balances
-from .moving_films import moving_film_drift
+from .moving_films import drift, moving_film_drift
 from .reruns import Comparison, Reruns
 from .rows import RowChecks
 from .trace import Run, merged, run_case
@@ -21,6 +22,7 @@ GRID = 4_000              # number of rows of the grid
 ENERGY = 100.0            # allowed error of the energy in relative tolerances, for each revolution begun
 CEILING = 1e-3            # largest relative error of the energy at any tolerance
 DRIFT = 2e-2              # the same of speeds and positions against the integrals of their rates: 20 tolerances at the loosest
+CARRIED = 5e-2            # the same of the place of a bearing under its load, over its clearance
 FLOOR = 1e-10             # smallest allowed error of the energy: rounding
 
 
@@ -37,7 +39,7 @@ class Verdict:
 
 def requested(run: Run) -> dict[str, str]:
     """The setting that adds to the trace the columns on request that the judge needs."""
-    names = requested_columns(run) + requested_heat(run)
+    names = requested_columns(run) + requested_heat(run) + (Engine(run).requested() if Engine.is_in(run) else [])
     return {"output.columns": "'" + ", ".join(("standard", *names)) + "'"} if names else {}
 
 
@@ -88,6 +90,24 @@ def judge_energy(checks: RowChecks, verdict: Verdict) -> None:
         verdict.faults.append(f"{found.worst} is not the integral of its rate: {found.drift:.3g} of its size off, {drifts:.1g} allowed")
 
 
+def judge_stations(checks: RowChecks, allowed: float) -> tuple[int, list[str], list[str]]:
+    """Number of checks, faults and notes on the stations of a crankshaft: their angular momentum against the integral of their torques."""
+    engine, columns, times = checks.bodies.engine, checks.run.columns, checks.run.times
+    gets = [{name: column[i] for name, column in columns.items()} for i in range(len(times))]
+    made, faults = 0, []
+    for j in range(len(engine.inertia)):
+        if j == engine.full or j == engine.driven and checks.run.text("drive.kind") != "free":
+            continue   # the crank's law, and a speed that is held
+        momentum = [engine.moving(get, j) * engine.speed(get, j) for get in gets]
+        rates = {i: (math.fsum(engine.torques(get, j, checks.bodies.damping)), 0.0) for i, get in enumerate(gets)}
+        size = max(max(map(abs, momentum)), 1e-300)
+        made += 1
+        far, _, _ = drift(times, rates, {"momentum": momentum}, size)
+        if not far <= allowed:
+            faults.append(f"station {j + 1}: its angular momentum is not the integral of its torques: {far:.3g} of it off, {allowed:.1g} allowed")
+    return made, faults, ["work not judged: that of other cylinders and of the shaft"]
+
+
 def judge_files(run: Run, resolved: bool = True) -> Verdict:
     """Judge the files of one run only. `resolved`: the rows are close enough for integrals over them."""
     verdict = Verdict()
@@ -96,9 +116,12 @@ def judge_files(run: Run, resolved: bool = True) -> Verdict:
         return verdict
     checks = None if has_no_mechanism(run) else judge_rows(run, verdict)
     if resolved:
-        judged = [judge_carried(run, max(FLOOR, min(DRIFT, allowed_error(run))))]
-        if checks:
+        judged = [judge_carried(run, max(FLOOR, min(CARRIED, allowed_error(run))))]
+        if checks and checks.bodies.engine:
+            judged.append(judge_stations(checks, max(FLOOR, min(DRIFT, allowed_error(run)))))
+        elif checks:
             judge_energy(checks, verdict)
+        if checks:
             judged.append(judge_wear(checks))
         for made, faults, notes in judged:
             verdict.checks += made
