@@ -26,13 +26,16 @@ done
 program=$(scripts/build.sh) || exit 1
 
 status=0
-for study in map_I map_IV map_I_oscillating map_IV_oscillating bifurcation_clearance bifurcation_speed restitution contact_laws; do
+for study in map_I map_IV map_I_oscillating map_IV_oscillating bifurcation_clearance bifurcation_speed restitution contact_laws \
+  pin_ticking pin_sliding; do
   more=
   case $study in bifurcation_*) more='-s run.lyapunov_revolutions=20' ;; esac   # for the colours of the picture
   # shellcheck disable=SC2086  # options are words
   "$program" sweep -o "$out" $options $more "cases/studies/$study.nml" || status=$?
 done
 gudgeon-plot study --results "$out" --format png --format svg || status=1
+gudgeon-plot study "$out/pin_ticking.runs.csv" --columns small_end_eccentricity_rate_x_max_abs small_end_min_film_thickness || status=1
+gudgeon-plot study "$out/pin_sliding.runs.csv" --columns pin_speed_rms small_end_asperity_force_max || status=1
 
 sensitivity() {   # sensitivity STUDY OUTPUT...
   study=$1

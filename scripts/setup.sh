@@ -6,7 +6,7 @@
 #   scripts/setup.sh --python   also makes, in .venv, gudgeon-plot and the Python package gudgeon of scripts/python, with what they need
 #   scripts/setup.sh --browser  as --python, and Chromium (Debian packages), which tests/test_report.py needs
 #   scripts/setup.sh --studies  also the packages of gudgeon-plot sensitivity, scripts/run_studies.sh and scripts/cluster
-#   scripts/setup.sh --manual   also FORD, which scripts/manual.sh needs
+#   scripts/setup.sh --manual   also MkDocs and FORD, which scripts/manual.sh needs
 #   scripts/setup.sh --lint     also the linters of Fortran and Python
 #   scripts/setup.sh --embedding  also what the tests of the library, the Python package and functional mock-up units need
 #

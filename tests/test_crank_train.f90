@@ -4,7 +4,6 @@ module test_crank_train
   use kinds, only: dp
   use constants, only: pi, two_pi
   use checks, only: checks_t
-  use train_motion, only: train_motion_t, train_rows_t
   use chain_motion, only: motion_t, turn_crank
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, undriven, new_bodies
   use state_layout, only: coordinates_t
@@ -67,23 +66,17 @@ contains
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: h = 1e-5_dp, speed = 31.0_dp, gas = 850.0_dp, acceleration = 77.0_dp
     type(ideal_cylinder_t) :: cylinder, bare
-    type(train_motion_t) :: train
     type(cylinder_forces_t) :: ahead, behind, forces
     real(dp) :: q, inertia, torque, still, unused, slope, off(4), lagrange
     integer :: i
-    cylinder%bodies = new_bodies(crank_t(0.04_dp, 1.2_dp, 0.0018_dp, [-0.004_dp, 0.003_dp]), &
-      rod_t(0.135_dp, 0.55_dp, 0.0019_dp, [0.04_dp, 0.002_dp]), piston_t(0.42_dp), [-9.2_dp, 3.1_dp])
-    bare = cylinder
-    bare%bodies = new_bodies(crank_t(0.04_dp, 0.0_dp, 0.0_dp, [0.0_dp, 0.0_dp]), cylinder%bodies%rod, cylinder%bodies%piston, &
-      cylinder%bodies%gravity)
+    call cylinder%set_bodies(new_bodies(crank_t(0.04_dp, 1.2_dp, 0.0018_dp, [-0.004_dp, 0.003_dp]), &
+      rod_t(0.135_dp, 0.55_dp, 0.0019_dp, [0.04_dp, 0.002_dp]), piston_t(0.42_dp), [-9.2_dp, 3.1_dp]))
+    call bare%set_bodies(new_bodies(crank_t(0.04_dp, 0.0_dp, 0.0_dp, [0.0_dp, 0.0_dp]), cylinder%bodies%rod, &
+      cylinder%bodies%piston, cylinder%bodies%gravity))
     off = 0
     do i = 1, 24
       q = two_pi*i/24 + 0.1_dp
-      inertia = 0
-      torque = 0
       call row(cylinder, q, speed, gas, inertia, torque)
-      unused = 0
-      still = 0
       call row(cylinder, q, 0.0_dp, gas, unused, still)
       off(1) = max(off(1), abs(inertia - 2*(cylinder%energy(q, 1.0_dp) - cylinder%energy(q, 0.0_dp)))/inertia)
       slope = (cylinder%inertia(q + h) - cylinder%inertia(q - h))/(2*h)
@@ -93,8 +86,6 @@ contains
       off(3) = max(off(3), abs(still + (cylinder%energy(q + h, 0.0_dp) - cylinder%energy(q - h, 0.0_dp) &
         + gas*(ahead%piston_position - behind%piston_position))/(2*h)))
       forces = bare%forces(q, speed, acceleration, gas)
-      inertia = 0
-      torque = 0
       call row(bare, q, speed, gas, inertia, torque)
       lagrange = torque - inertia*acceleration
       off(4) = max(off(4), abs(forces%torque - lagrange))
@@ -105,15 +96,13 @@ contains
     call check%that(off(4) < 1e-11_dp, 'torque of the rod by Lagrange and by Newton and Euler')
   contains
 
-    subroutine row(one, angle, rate, force, sum_inertia, sum_torque)
+    subroutine row(one, angle, rate, force, inertia, torque)
       type(ideal_cylinder_t), intent(in) :: one
       real(dp), intent(in) :: angle, rate, force
-      real(dp), intent(inout) :: sum_inertia, sum_torque
-      train%sine(1) = sin(angle)
-      train%cosine(1) = cos(angle)
-      train%gas_force(1) = force
-      call one%follow(1, train)
-      call one%add_row(1, train, rate, sum_inertia, sum_torque)
+      real(dp), intent(out) :: inertia, torque
+      real(dp) :: half_slope, weight, piston_rate
+      call one%find_terms(sin(angle), cos(angle), inertia, half_slope, weight, piston_rate)
+      torque = weight - force*piston_rate - half_slope*rate**2
     end subroutine row
   end subroutine follows_its_energy
 
@@ -186,15 +175,14 @@ contains
       real(dp), intent(in) :: state(:)
       real(dp), intent(out) :: dydt(:)
       type(motion_t) :: motion
-      type(train_rows_t) :: rows
       real(dp) :: acceleration(4), ring(2), copy(size(state))
       integer :: j
       copy = state
       call turn_crank(motion, copy(1), copy(m + 1))
       call train%read_state(0.0_dp, copy, motion)
-      call train%find_rows(motion, rows)
-      rows%torque(4) = rows%torque(4) - drive%damping*motion%train%speed(4)
-      acceleration = rows%torque(:4)/rows%inertia(:4)
+      call train%load_stations(motion)
+      motion%train%torque(4) = motion%train%torque(4) - drive%damping*motion%train%speed(4)
+      acceleration = motion%train%torque(:4)/motion%train%inertia(:4)
       ring = -[(train%ring_torque(motion, j)/train%rings(j)%inertia, j=1, 2)]
       dydt(:m) = copy(m + 1:2*m)
       dydt(m + 1) = acceleration(2)

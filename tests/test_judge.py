@@ -29,11 +29,10 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "judge"))
 from assertions import Assertions
-from scene_judge.elastic import requested_columns
 from scene_judge.energy import SAFETY
 from scene_judge.quadrature import integral, stencils
 from scene_judge.trace import Run, merged, run_case
-from scene_judge.verdict import judge_files, judge_scene, summary_of
+from scene_judge.verdict import judge_files, judge_scene, requested, summary_of
 
 assertions = Assertions()
 check = assertions.check
@@ -502,7 +501,7 @@ def traced(program: Path, scene: str) -> Run:
     """A run with rows at every step and on a regular grid; if the first run ends early, that run."""
     name, settings = SCENES[scene]
     case, plain = ROOT / "cases" / f"{name}.nml", {**settings, "output.digits": "17", "output.ideal_twin": ".false."}
-    plain |= requested_columns(run_case(program, case, plain))
+    plain |= requested(run_case(program, case, plain))
     first = run_case(program, case, {**plain, "output.every_step": ".true."})
     if first.status:
         return first
@@ -510,9 +509,8 @@ def traced(program: Path, scene: str) -> Run:
 
 
 def changed(run: Run, column: str, change: Callable[[float, int], float]) -> Run:
-    columns = dict(run.columns)
-    columns[column] = [change(value, i) for i, value in enumerate(columns[column])]
-    return dataclasses.replace(run, columns=columns)
+    own = {column: [change(value, i) for i, value in enumerate(run.every[column])]}
+    return dataclasses.replace(run, columns=run.columns | {name: own[name] for name in own if name in run.columns}, every=run.every | own)
 
 
 def corrupted(program: Path, scene: str) -> list[Finding]:

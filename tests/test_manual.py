@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import os
 import re
 import shutil
 import subprocess
@@ -18,7 +19,11 @@ import tempfile
 from pathlib import Path
 from urllib.parse import unquote
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts/manual"))
+
+import tutorial
 from test_faults import ROOT, assertions, check, program_built
+from test_report import Browser  # restarts in .venv
 
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 PATH = re.compile(r"`((?:src|tests|data|cases|scripts)/[\w./*-]+)`")
@@ -79,7 +84,8 @@ def value_in(case: Path, group: str, key: str) -> float | None:
 
 
 MEASURED = re.compile(r"\d\.\d|\de-?\d")
-NOT_MEASURED = {"cases/README.md": "simulation case figures", "tests/README.md": "what is judged"}   # first cells of tables of parameters and limits
+NOT_MEASURED = {"cases/README.md": "simulation case figures", "tests/README.md": "what is judged",
+                "data/manual/typical_values.md": "typical of", "data/manual/messages.md": "message"}   # first cells of tables of parameters and limits
 
 
 def check_tables() -> None:
@@ -134,17 +140,14 @@ def check_lists() -> None:
     text = (ROOT / "tests/README.md").read_text(encoding="utf-8")
     for test in sorted([*(ROOT / "tests").glob("test_*.py"), *(ROOT / "tests").glob("test_*.sh")]):
         check(f"`{test.name}`" in text, f"tests/README.md names {test.name}")
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     for folder in [*(ROOT / "src").iterdir(), *(ROOT / name for name in ("cases", "data", "scripts", "src", "tests"))]:
         if folder.is_dir():
-            check(f"`{folder.name}/`" in text, f"README.md: the map has {folder.relative_to(ROOT)}")
+            check(f"`{folder.name}/`" in text, f"CONTRIBUTING.md: the map has {folder.relative_to(ROOT)}")
     listed = first_column(ROOT / "data/references.csv")
     there = {path.stem for path in (ROOT / "data").glob("*.csv") if (ROOT / "data" / f"{path.stem}.events.csv").exists()}
     there |= {f"film/models/{path.stem}" for path in (ROOT / "data/film/models").glob("*.nml")}
     check(listed == there, "data/references.csv lists every reference", str(listed ^ there))
-    index = (ROOT / "data/manual/index.md").read_text(encoding="utf-8")
-    for page in re.findall(r"^ordered_subpage: (.+)$", index, re.MULTILINE):
-        check(index.count(f"{page})") == 1, f"data/manual/index.md: the table has {page}")
 
 
 def table_with(page: Path, first: str) -> list[list[str]]:
@@ -159,19 +162,168 @@ def first_column(path: Path) -> set[str]:
 
 
 def check_built(program: Path) -> None:
-    """The manual is built without a warning, and the links of its pages lead to existing files."""
-    done = subprocess.run(["scripts/manual.sh", program], cwd=ROOT, capture_output=True, text=True)
+    """The manual is built without a warning, loads nothing from a network, and the links of its pages lead to existing files."""
+    done = subprocess.run(["scripts/manual.sh", "--pdf", program], cwd=ROOT, capture_output=True, text=True)
     check(done.returncode == 0 and not done.stderr, "the manual is built without a warning", done.stderr[-500:])
     built = ROOT / "build/manual"
-    for page in [built / "index.html", *sorted((built / "page").glob("*.html"))]:
+    check((built / "gudgeon.pdf").exists() and (built / "gudgeon.pdf").read_bytes()[:5] == b"%PDF-", "the manual is printed")
+    for page in [built / "index.html", *sorted(built.glob("*.html")), *sorted(built.glob("api/*.html")), *sorted(built.glob("api/module/*.html"))[:5]]:
         if not page.exists():
             check(False, f"{page.name} is built")
             continue
         text = page.read_text(encoding="utf-8")
+        loaded = re.findall(r'<(?:script|link|img|iframe)\b[^>]*(?:src|href)="((?:https?:)?//[^"]+)"', text)
+        check(not loaded, f"manual, {page.name}: loads nothing from a network", str(loaded))
         for link in HREF.findall(text):
-            if "://" in link or link.startswith(("#", "mailto:", "data:", "//")):
+            if "://" in link or link.startswith(("#", "mailto:", "data:", "//", "/")) or link == ".":
                 continue
             check((page.parent / unquote(link.partition("#")[0])).exists(), f"manual, {page.name}: the link {link} leads to an existing file")
+
+
+def commands_of(page: Path) -> list[str]:
+    """The commands in the blocks of code of a page, without their comments."""
+    lines = re.findall(r"^    ((?:gudgeon|fpm|pip|gcc|\. scripts|scripts/|tests/|\.venv/bin/).*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return [re.sub(r"\s+#.*", "", line).strip() for line in lines]
+
+
+def check_commands(program: Path) -> None:
+    """Every command in a page is run here, page by page in its order, or tests/commands_not_run.csv says why not; the options and words of commands inside
+    sentences are there."""
+    with (ROOT / "tests/commands_not_run.csv").open(encoding="utf-8", newline="") as lines:
+        excused = {row["command"]: row["why"] for row in csv.DictReader(lines)}
+    check(all(excused.values()), "each command that is not run has its reason")
+    met: set[str] = set()
+    for page in pages():
+        name = str(page.relative_to(ROOT))
+        todo = [] if name.startswith("data/measured/") or page.name.startswith("tutorial_") else commands_of(page)
+        met |= {command for command in todo if command in excused}
+        todo = [command for command in todo if command not in excused]
+        if not todo:
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            work = Path(folder, "work")
+            work.mkdir()
+            for link in ("cases", "data", "scripts"):
+                (work / link).symlink_to(ROOT / link)
+            (work / "sim_I.nml").symlink_to(ROOT / "cases/sim_I.nml")
+            for case in ("engine", "CASE"):   # names that pages use for a case of the reader
+                (work / f"{case}.nml").write_text(subprocess.run([program, "--template=engine"], capture_output=True, text=True).stdout)
+            (Path(folder) / "gudgeon").symlink_to(program)
+            for command in todo:
+                done = subprocess.run(command, shell=True, cwd=work, capture_output=True, text=True, timeout=300,
+                                      env={**os.environ, "PATH": f"{folder}:{ROOT / '.venv/bin'}:{os.environ['PATH']}"})
+                check(done.returncode == 0, f"{name}: runs {command}", done.stderr[-300:])
+    check(met == set(excused), "tests/commands_not_run.csv has no other commands", str(set(excused) - met))
+    check_words(program)
+
+
+def check_words(program: Path) -> None:
+    """Options of gudgeon, and words and options of gudgeon-plot, in all pages."""
+    options = subprocess.run([program, "--help"], capture_output=True, text=True).stdout
+    source = ROOT / "scripts/python/src/gudgeon"
+    words = {path.stem: path.read_text(encoding="utf-8") for path in (source / "commands").glob("*.py")}
+    common = "".join(path.read_text(encoding="utf-8") for path in source.glob("*.py"))
+    for page in pages():
+        text = page.read_text(encoding="utf-8")
+        for code in [*re.findall(r"`([^`\n]+)`", text), *re.findall(r"^    (.+)$", text, re.MULTILINE)]:
+            code = code.removeprefix("$ ").split("#")[0].split(" > ")[0]
+            found = re.match(r"gudgeon-plot ([a-z]+)\b", code)
+            if not found and not code.startswith("gudgeon "):
+                continue
+            check(not found or found[1] in words, f"{page.name}: {code}: is there")
+            for option in re.findall(r"(?<!\S)(--[a-z-]+)", code):
+                check(option in (words.get(found[1], "") + common if found else options), f"{page.name}: {code}: has the option {option}")
+
+
+def check_pictures() -> None:
+    """Each picture is made by a command that data/pictures.csv names and that is there."""
+    with (ROOT / "data/pictures.csv").open(encoding="utf-8", newline="") as lines:
+        listed = {row["picture"]: row["command"] for row in csv.DictReader(lines)}
+    there = {str(path.relative_to(ROOT)) for folder in ("cases", "data", "scripts") for path in (ROOT / folder).rglob("*") if path.suffix in (".png", ".svg")}
+    there = {path for path in there if "/build/" not in path}
+    check(there == set(listed), "data/pictures.csv has every picture", str(there ^ set(listed)))
+    for picture, command in listed.items():
+        check(command.startswith("gudgeon-plot ") or (ROOT / command.split()[0]).is_file(), f"{picture}: its command is there", command)
+
+
+def check_tutorials(program: Path) -> None:
+    """The commands of README and the tutorials print what the pages show; the Portuguese pages have the same files, commands and outputs."""
+    for name, other in (("README.md", "data/manual/readme_pt.md"), ("data/manual/tutorial_engine.md", "data/manual/tutorial_engine_pt.md"),
+                        ("data/manual/tutorial_compressor.md", "data/manual/tutorial_compressor_pt.md"), ("data/manual/tutorial_laws.md", "")):
+        wrong = tutorial.run(ROOT / name, program)
+        check(not wrong, f"{name} shows what its commands print", "\n".join(wrong))
+        if not other:
+            continue
+        ours, theirs = ([body for _, body, _ in tutorial.blocks((ROOT / one).read_text(encoding="utf-8"))] for one in (name, other))
+        check(len(ours) > 2 and ours == theirs, f"{other} has the same commands")
+
+
+def check_symbols() -> None:
+    """The table of symbols gives each letter one meaning."""
+    letters = [letter for row in table_with(ROOT / "data/manual/symbols.md", "symbol") for letter in re.findall(r"\$([^$]+)\$", row[0])]
+    check(len(letters) > 60 and len(set(letters)) == len(letters), "data/manual/symbols.md: each symbol once", str({one for one in letters if letters.count(one) > 1}))
+
+
+def check_results_in_python(program: Path) -> None:
+    """The ten lines of Python of the page "Results" find the largest force of the summary."""
+    code = code_after((ROOT / "data/manual/results.md").read_text(encoding="utf-8"), "**In ten lines of Python**")
+    with tempfile.TemporaryDirectory() as folder:
+        case = Path(folder) / "engine.nml"
+        case.write_text(subprocess.run([program, "--template=engine"], capture_output=True, text=True).stdout, encoding="utf-8")
+        subprocess.run([program, "-q", case.name], cwd=folder, check=True)
+        done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True)
+        found = re.findall(r"[\d.]+(?:E[+-]\d+)?", done.stdout)
+        check(done.returncode == 0 and abs(float(found[0]) / float(found[2]) - 1) < 0.01, "results in ten lines of Python", done.stdout + done.stderr)
+
+
+def check_messages() -> None:
+    """Each message with a cure is one that the source has, and the list of all is not empty."""
+    done = subprocess.run([sys.executable, ROOT / "scripts/manual/messages.py"], capture_output=True, text=True)
+    check(done.stdout.count("\n- ") > 250, "the messages of the program are found in its source", done.stderr[-300:])
+    for row in table_with(ROOT / "data/manual/messages.md", "message"):
+        check(row[0].strip("`") in done.stdout, "a message with a cure is in the source", row[0])
+
+
+def check_drawings() -> None:
+    """The drawings of the manual are those that their script draws."""
+    kept = ROOT / "data/manual/drawings"
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([sys.executable, ROOT / "scripts/manual/drawings.py", folder], capture_output=True, text=True)
+        check(done.returncode == 0, "the drawings are drawn", done.stderr[-300:])
+        drawn = {path.name: path.read_bytes() for path in Path(folder).glob("*.svg")}
+    check(drawn == {path.name: path.read_bytes() for path in kept.glob("*.svg")}, "the drawings are those of scripts/manual/drawings.py")
+
+
+#: Types a word into the search of a page.
+SEARCH = """const q = document.querySelector('.md-search__input'); q.focus(); q.value = arguments[0];
+q.dispatchEvent(new Event('input', {bubbles: true})); q.dispatchEvent(new Event('keyup'));"""
+
+
+def check_read() -> None:
+    """A browser that reaches no network opens the manual from the file system: style, equations, drawings, search, and no message."""
+    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    check(chromium and driver, "Chromium is there: scripts/setup.sh --browser")
+    if not (chromium and driver):
+        return
+    with tempfile.TemporaryDirectory() as profile:
+        browser = Browser(chromium, driver, profile, "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1")
+        try:
+            for page in ("index", "theory", "case_file"):
+                browser.open(ROOT / f"build/manual/{page}.html")
+                wide = browser.run("return getComputedStyle(document.querySelector('.md-header')).position === 'sticky'")
+                check(wide, f"manual, {page}: is styled")
+                broken = browser.run("return [...document.images].filter(i => !i.naturalWidth).map(i => i.src)")
+                check(not broken, f"manual, {page}: every picture is shown", str(broken))
+                flat = browser.run("return [...document.querySelectorAll('math')].filter(m => m.getBoundingClientRect().height < 4).length")
+                check(flat == 0, f"manual, {page}: equations are drawn", str(flat))
+                browser.run(SEARCH, "asperities")
+                check(browser.wait("document.querySelectorAll('.md-search-result__item').length > 1", 20), f"manual, {page}: the search finds")
+                check(not (said := browser.messages()), f"manual, {page}: console", str(said))
+            browser.open(ROOT / "build/manual/api/index.html")
+            check(browser.run("return getComputedStyle(document.querySelector('.navbar')).display") == "flex", "manual, api: is styled")
+            check(not (said := browser.messages()), "manual, api: console", str(said))
+        finally:
+            browser.close()
 
 
 def described(program: Path) -> set[tuple[str, str]]:
@@ -299,10 +451,18 @@ def main() -> int:
     check_tables()
     check_page_of_cases()
     check_lists()
+    check_drawings()
+    check_messages()
+    check_symbols()
+    check_pictures()
     program = (options.program or program_built()).resolve()
+    check_commands(program)
+    check_tutorials(program)
+    check_results_in_python(program)
     check_reference(program)
     check_study(program)
     check_built(program)
+    check_read()
     check_law()
     return assertions.report()
 

@@ -382,6 +382,19 @@ def pages() -> None:
     check(found is not None and abs(float(found[1]) / largest - 1) < 1e-12, f"the page of a run has its largest force: {found}, {largest}")
 
 
+def tables() -> None:
+    """The tables beside rows and events, of a run of this process and of its files."""
+    run = case_of("film/sim_I_fed").run(end=0.6)
+    check(list(run.tables) == ["film_history"], f"tables of a run with a film with memory: {list(run.tables)}")
+    least = run.tables["film_history"]["min_film_thickness[m]"].min()
+    check(abs(least / run.summary["film_history_min_film_thickness"] - 1) < 1e-8, f"its thinnest film is that of the summary: {least}")
+    run = case_of("wear/worn_bore").run(end=0.02)
+    with tempfile.TemporaryDirectory() as folder:
+        again = gudgeon.load(run.save(folder))
+        check(list(again.tables) == ["wear"] and again.tables["wear"].equals(run.tables["wear"]), "tables of a run and of its files")
+    check(case_of("sim_I").run(end=0.01).tables == {}, "a run without tables has none")
+
+
 def memory() -> None:
     """Resident memory does not grow over many instances."""
 
@@ -436,7 +449,7 @@ def main() -> int:
     if "--all" in sys.argv:
         found = sorted((TOP / "cases").rglob("*.nml"))
         names = [str(p.relative_to(TOP / "cases").with_suffix("")) for p in found if "studies" not in p.parts]
-    for part in (lambda: against_program(program, names), cases, runs, steps, sweeps, threads, static_lengths, texts_of_the_package, pages, memory, lambda: writes_nowhere(program)):
+    for part in (lambda: against_program(program, names), cases, runs, steps, sweeps, threads, static_lengths, texts_of_the_package, pages, tables, memory, lambda: writes_nowhere(program)):
         try:
             part()
         except Exception:

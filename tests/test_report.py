@@ -71,7 +71,7 @@ e.dispatchEvent(new Event('input', {bubbles: true})); e.dispatchEvent(new Event(
 class Browser:
     """A headless Chromium, controlled by the WebDriver protocol."""
 
-    def __init__(self, chromium: str, driver: str, profile: str) -> None:
+    def __init__(self, chromium: str, driver: str, profile: str, *arguments: str) -> None:
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]
@@ -80,7 +80,7 @@ class Browser:
             [driver, f"--port={port}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
         self.session = ""
-        options = {"binary": chromium, "args": [*BROWSER_OPTIONS, f"--user-data-dir={profile}"]}
+        options = {"binary": chromium, "args": [*BROWSER_OPTIONS, *arguments, f"--user-data-dir={profile}"]}
         capabilities = {
             "alwaysMatch": {
                 "browserName": "chrome",

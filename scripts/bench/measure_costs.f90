@@ -26,14 +26,16 @@ program measure_costs
   implicit none
 
   integer, parameter :: n_states = 64, blocks = 31, calls = 6400, steps_in_block = 2000
-  integer, parameter :: name_length = 28, n_scenes = 34, n_quantities = 8
+  integer, parameter :: name_length = 32, n_scenes = 42, n_quantities = 8
   character(len=name_length), parameter :: scenes(n_scenes) = [character(len=name_length) :: 'ideal', 'ideal+gas', 'free', &
     'free+gas', 'contact_hertz', 'contact', 'contact_johnson', 'contact_conformal', 'contact_wear', &
     'contact_conformal_wear', 'contact+quadrature', 'contact+ambrosio', &
     'contact+coulomb', 'contact+brown_mcphee', 'contact+stribeck', 'contact+lugre', 'contact+elasto_plastic', &
     'closed_form', 'closed_form+quadrature', 'closed_form+gas', 'as_printed', 'half_film', 'oscillating', &
     'oscillating_as_printed', 'finite_short', 'finite_table', 'finite_mixed', 'closed_form+rod_0_1', 'closed_form+rod_0_4', &
-    'closed_form+rod_2_4', 'closed_form+rod_4_8', 'closed_form+shaft', 'closed_form+rubbing_guide', 'closed_form+loose_piston']
+    'closed_form+rod_2_4', 'closed_form+rod_4_8', 'closed_form+shaft', 'closed_form+rubbing_guide', 'closed_form+loose_piston', &
+    'finite_table+heat', 'ideal+carried_short', 'ideal+carried_table', 'ideal+carried_table+heat', 'finite_table+gas', &
+    'finite_table+gas+9_stations', 'finite_table+gas+6_cylinders', 'finite_table+gas+6_on_9_stations']
   character(len=name_length), parameter :: quantities(n_quantities) = [character(len=name_length) :: 'rhs', &
     'rhs_in_turn', 'step', 'events', 'step+figures', 'row', 'row_no_reactions', 'row_time_and_angle']
   character(len=name_length) :: scene_name, quantity, text
@@ -88,7 +90,7 @@ contains
     if (index(name, 'half_film') > 0) law = 'lubrication.variant=half_film'
     if (index(name, 'johnson') > 0) law = 'contact.geometry=johnson'
     if (index(name, 'conformal') > 0) law = 'contact.geometry=conformal'
-    if (index(name, 'finite') == 1) law = 'lubrication.variant=table'
+    if (index(name, 'finite') == 1 .or. index(name, 'carried') > 0) law = 'lubrication.variant=table'
     if (index(name, 'short') > 0) law = 'lubrication.variant=short'
     wear = 'wear=none'
     if (index(name, 'wear') > 0) wear = 'wear.rate=1e-15,1e-15'
@@ -96,9 +98,9 @@ contains
     if (dry .and. along_case(quantity)) then
       call read_case('cases/flores/friction_050.nml', [character(len=40) :: law, friction_law, at_rest, friction, &
         'joint.bearing_length=0.04', wear], case, error)
-    else if (index(name, 'finite') == 1) then
+    else if (index(name, 'finite') == 1 .or. index(name, 'carried') > 0) then
       call read_case('cases/film/sim_IV_'//trim(merge('mixed ', 'finite', index(name, 'mixed') > 0))//'.nml', &
-        [character(len=40) :: law, small_table], case, error)
+        [character(len=40) :: law, small_table, member(name)], case, error)
     else if (index(name, 'oscillating') == 1) then
       call read_case('cases/sim_IV.nml', [law, oscillating], case, error)
     else
@@ -109,22 +111,25 @@ contains
     if (index(name, 'contact+') /= 1 .or. index(name, 'quadrature') > 0) then
       if (allocated(case%joints(piston_pin)%friction)) deallocate (case%joints(piston_pin)%friction)
     end if
-    if (dry .or. index(name, 'free') == 1 .or. index(name, 'ideal') == 1) then
+    if (dry .or. index(name, 'free') == 1 .or. index(name, 'ideal') == 1 .and. index(name, 'carried') == 0) then
       if (allocated(case%joints(piston_pin)%film)) deallocate (case%joints(piston_pin)%film)
     end if
-    if (index(name, 'ideal') == 1 .or. index(name, 'free') == 1) deallocate (case%joints(piston_pin)%contact)
-    if (index(name, 'ideal') == 1) case%joints(piston_pin)%kind = 'ideal'
+    if (index(name, 'ideal') == 1 .or. index(name, 'free') == 1) then
+      if (allocated(case%joints(piston_pin)%contact)) deallocate (case%joints(piston_pin)%contact)
+    end if
+    if (index(name, 'ideal') == 1 .and. index(name, 'carried') == 0) case%joints(piston_pin)%kind = 'ideal'
     call build_scene(case, .false., scene, error)
     if (allocated(error)) error stop 'measure_costs: no such scene'
     if (index(name, '+quadrature') > 0) call scene%measure_joint()
   end subroutine make
 
-  !> Settings that make a member of simulation IV elastic or give it clearance. The name of a rod ends with its numbers of modes and
-  !> shapes.
+  !> Settings that make a member of simulation IV elastic or give it clearance, heat a film, or add cylinders and stations. The name
+  !> of a rod ends with its numbers of modes and shapes.
   function member(name) result(settings)
     character(len=*), intent(in) :: name
-    character(len=40) :: settings(7)
-    settings = 'friction.transition_speed=1e-3'   ! the same in every scene
+    character(len=40) :: settings(20)
+    integer :: i
+    settings = 'case.title=x'   ! the same in every scene
     if (index(name, '+rod') > 0) settings(:4) = [character(len=40) :: 'elastic_rod.section_area=426e-6', &
       'elastic_rod.section_inertia=3e-8', 'elastic_rod.transverse_modes='//name(len(name) - 2:len(name) - 2), &
       'elastic_rod.axial_shapes='//name(len(name):)]
@@ -132,9 +137,21 @@ contains
       'crankshaft.torsional_stiffness=2e4']
     if (index(name, '+rubbing_guide') > 0) settings(:3) = [character(len=40) :: 'guide.coefficient=0.1', 'guide.v0=1e-3', &
       'guide.v1=1e-2']
-    if (index(name, '+loose_piston') > 0) settings = [character(len=40) :: 'guide.kind=clearance', 'guide.bore_clearance=1e-4', &
-      'guide.skirt_top=0.03', 'guide.skirt_bottom=0.03', 'guide.piston_radius=0.035', 'guide.piston_inertia=1e-3', &
-      'guide.stiffness=1e8']
+    if (index(name, '+loose_piston') > 0) settings(:7) = [character(len=40) :: 'guide.kind=clearance', &
+      'guide.bore_clearance=1e-4', 'guide.skirt_top=0.03', 'guide.skirt_bottom=0.03', 'guide.piston_radius=0.035', &
+      'guide.piston_inertia=1e-3', 'guide.stiffness=1e8']
+    if (index(name, '+carried') > 0) settings(1) = 'joint.kind=quasi_static'
+    if (index(name, '+heat') > 0) settings(2:6) = [character(len=40) :: 'heat.heat_capacity=60.0', 'heat.inlet_temperature=350', &
+      'lubrication.viscosity=0.0', 'lubrication.oil=SAE 30', 'lubrication.temperature=350']
+    if (index(name, '+6_') > 0) then
+      do i = 1, 6
+        write (settings(i), '(a, i0, a, f0.1)') 'cylinder_', i, '.phase_deg=', -120.0*modulo(7*i, 6)
+        if (index(name, '9_stations') > 0) write (settings(i + 6), '(a, i0, a, i0)') 'cylinder_', i, '.station=', i + 2
+      end do
+    end if
+    if (index(name, '+9_stations') > 0) settings(7) = 'cylinder_1.station=3'
+    if (index(name, '9_stations') > 0) settings(13:16) = [character(len=40) :: 'crankshaft.inertia=9*0.03', &
+      'crankshaft.stiffness=1.2e6', 'crankshaft.damping=2.0', 'crankshaft.absolute_damping=0.1']
   end function member
 
   !> States along one compression stroke, with the pin in the film, or in contact if the scene has contact.
@@ -146,12 +163,15 @@ contains
     integer :: i
 
     if (allocated(scene%gas)) call scene%gas%start(1.5_dp*pi, 250.0_dp)
+    if (allocated(scene%other_gas)) &
+      call scene%other_gas%start(scene%gas, 1.5_dp*pi + scene%chain%train%cylinders%shift, 250.0_dp)
     if (index(name, 'contact') == 1) then
       call scene%joints(1)%begin_contact(0.1_dp)
       scene%joints(1)%slots(scene%joints(1)%acting(phase_contact))%element%sliding = 1
     end if
-    allocate (y(scene%n, n_states), source=0.0_dp)
+    allocate (y(scene%n, n_states))
     do i = 1, n_states
+      y(:, i) = scene%initial_state()
       part = (i - 0.5_dp)/n_states
       y(scene%crank%position, i) = pi*(1.05_dp + 0.8_dp*part)
       y(scene%crank%rate, i) = 250
@@ -161,8 +181,8 @@ contains
       if (scene%joints(1)%phase == phase_contact) reach = 20e-6_dp + 1e-6_dp*part
       associate (at => scene%joints(1)%at)
         y(at%position:at%position + 1, i) = reach*[cos(turn), sin(turn)]
-        y(at%rate:at%rate + 1, i) = 2e-3_dp*[cos(3*turn), sin(5*turn)]
-        if (scene%n_states() > 0) y(2*scene%n_positions + 1, i) = 1e-6_dp*cos(7*turn)
+        if (scene%n_joints > 0) y(at%rate:at%rate + 1, i) = 2e-3_dp*[cos(3*turn), sin(5*turn)]
+        if (scene%n_states() > 0 .and. index(name, 'contact') == 1) y(2*scene%n_positions + 1, i) = 1e-6_dp*cos(7*turn)
       end associate
     end do
   end subroutine make_states

@@ -1,94 +1,117 @@
 #!/usr/bin/env python3
 """Prepares the pages of the manual for scripts/manual.sh.
 
-    scripts/manual/pages.py collect PROGRAM   into build/manual_pages: data/manual, the tables of data/measured and the program's
-                                              reference pages
-    scripts/manual/pages.py link              changes the links of README.md in build/manual to files of the repository
+    scripts/manual/pages.py collect PROGRAM   into build/manual_pages: data/manual, the tables of data/measured, the pages of other folders
+                                              that they refer to, the program's reference pages, and every file with a link to it
+    scripts/manual/pages.py local             replaces what the pages of FORD load from a network by files in build/manual_pages/api
 """
 from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import messages
+
 TOP = Path(__file__).resolve().parents[2]
 SOURCE = TOP / "data/manual"
 MEASURED = TOP / "data/measured"
+BESIDE = Path(__file__).resolve().parent
 PAGES = TOP / "build/manual_pages"
-BUILT = TOP / "build/manual"
-REFERENCE = {"case_file": "case", "results": "results", "studies": "study"}   # page: argument of gudgeon --reference
+API = PAGES / "api"
+REFERENCE = {"case_file": "case", "results": "results", "studies": "study", "oils": "oils"}   # page: argument of gudgeon --reference
+OTHERS = ("CONTRIBUTING.md", "CHANGELOG.md", "cases/README.md", "cases/studies/README.md", "data/README.md", "tests/README.md",
+          "scripts/bench/README.md", "scripts/cluster/README.md")   # pages of other folders that the manual has
 LINK = re.compile(r"(\]\()([^)#\s]+)(#[^)\s]*)?(\))")
 
 
-def place_in_manual(path: Path) -> Path | None:
-    """Path of a file of the repository among the built pages, if it is a page of the manual."""
-    if path.parent in (SOURCE, MEASURED) and path.suffix == ".md":
-        name = "findings" if path == MEASURED / "findings.md" else path.stem
-        return BUILT / "page" / (name + ".html" if path.parent == SOURCE or name == "findings" else f"measured_{name}.html")
-    return TOP / "build/manual/index.html" if path == TOP / "README.md" else None
+def place_in_manual(path: Path) -> Path:
+    """Place of a file of the repository below PAGES: pages side by side, other files as they are in files/."""
+    if path == TOP / "README.md":   # the manual begins with a page of its own
+        return PAGES / "index.md"
+    if path.parent in (SOURCE, BESIDE):
+        return PAGES / path.name
+    if path.suffix != ".md":
+        return PAGES / "files" / path.relative_to(TOP)
+    if path.parent == MEASURED:
+        return PAGES / f"measured_{path.name}"
+    words = [word for word in path.relative_to(TOP).with_suffix("").parts if word not in ("README", "data", "manual", "scripts")]
+    return PAGES / ("_".join(words or path.relative_to(TOP).with_suffix("").parts).lower() + ".md")
 
 
-def relinked(text: str, origin: Path, page: Path) -> str:
-    """The Markdown text of the file `origin` with its links changed so that they hold in the built page."""
+def relinked(text: str, origin: Path, page: Path, wanted: set[Path]) -> str:
+    """The Markdown text of the file `origin` with its links changed so that they hold in `page`; the files are added to `wanted`."""
 
     def new(match: re.Match[str]) -> str:
-        if "://" in match[2]:
-            return match[0]
         target = (origin.parent / match[2]).resolve()
-        target = place_in_manual(target) or target
-        return f"{match[1]}{os.path.relpath(target, page.parent)}{match[3] or ''}{match[4]}"
+        if "://" in match[2] or match[2].startswith("mailto:") or TOP not in target.parents:
+            return match[0]
+        if target.is_dir():   # a folder is its page, if it has one
+            target = target / "README.md"
+        if not target.exists():
+            return match[0]
+        if target != TOP / "README.md":
+            wanted.add(target)
+        return f"{match[1]}{os.path.relpath(place_in_manual(target), page.parent)}{match[3] or ''}{match[4]}"
 
     return LINK.sub(new, text)
 
 
-def title_of(text: str, path: Path) -> str:
-    found = re.search(r"^# (.+)$", text, re.MULTILINE)
-    return found[1] if found else path.stem.replace("_", " ")
+def title_of(page: Path) -> str:
+    return re.search(r"^# (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)[1]
+
+
+def reference(program: str, subject: str) -> str:
+    return subprocess.run([program, "--reference", subject], check=True, capture_output=True, text=True).stdout
 
 
 def collect(program: str) -> None:
-    PAGES.mkdir(parents=True, exist_ok=True)
-    tables = []
-    for path in sorted(MEASURED.glob("*.md")):
-        page = place_in_manual(path)
-        text = path.read_text(encoding="utf-8")
-        title = title_of(text, path)
-        if page.stem != "findings":
-            tables.append(f"- [{title}]({page.name})\n")
-        body = re.sub(r"^# .*\n+", "", relinked(text, path, page), count=1, flags=re.MULTILINE)   # FORD prints the title
-        (PAGES / f"{page.stem}.md").write_text(f"---\ntitle: {title}\n---\n\n{body}", encoding="utf-8")
-    for path in sorted(SOURCE.glob("*.md")):
-        page = place_in_manual(path)
-        text = path.read_text(encoding="utf-8")
-        head, _, body = text.partition("\n\n")
-        body = re.sub(r"\A# .*\n+", "", relinked(body, path, page))   # FORD prints the title
-        if path.stem in REFERENCE:
-            body += subprocess.run([program, "--reference", REFERENCE[path.stem]], check=True, capture_output=True, text=True).stdout
-        if path.stem == "measured":
-            body += "".join(tables)
-        (PAGES / path.name).write_text(f"---\n{head}\n---\n\n{body}", encoding="utf-8")
+    shutil.rmtree(PAGES, ignore_errors=True)
+    wanted = {path for folder in (SOURCE, MEASURED) for path in folder.glob("*.md")} | {TOP / name for name in OTHERS}
+    wanted |= {SOURCE / "manual.css", BESIDE / "iframe-worker.js"}
+    done: set[Path] = set()
+    while todo := wanted - done:
+        for path in todo:
+            page = place_in_manual(path)
+            page.parent.mkdir(parents=True, exist_ok=True)
+            done.add(path)
+            if path.suffix != ".md":
+                shutil.copy(path, page)
+                continue
+            text = relinked(path.read_text(encoding="utf-8"), path, page, wanted)
+            if path.parent == SOURCE and path.stem in REFERENCE:
+                text += reference(program, REFERENCE[path.stem])
+            if path == SOURCE / "messages.md":
+                text += messages.page()
+            if path == SOURCE / "measured.md":
+                text += "".join(f"- [{title_of(table)}](measured_{table.name})\n" for table in sorted(MEASURED.glob("*.md")))
+            page.write_text(text, encoding="utf-8")
 
 
-def link() -> None:
-    """Change the links of README.md, the first page of the manual, which FORD leaves unchanged."""
-    page = BUILT / "index.html"
-    text = page.read_text(encoding="utf-8")
+def local() -> None:
+    """FORD's pages load Bootstrap from a network; MkDocs has a copy. No comment of the source has equations, so MathJax is left out."""
+    import mkdocs
 
-    def new(match: re.Match[str]) -> str:
-        target = (TOP / match[2]).resolve()
-        if "://" in match[2] or (page.parent / match[2]).exists() or not target.exists():
-            return match[0]
-        return f'{match[1]}"{os.path.relpath(place_in_manual(target) or target, page.parent)}"'
-
-    page.write_text(re.sub(r'((?:href|src)=)"([^"#]+)"', new, text), encoding="utf-8")
+    theme = Path(mkdocs.__file__).parent / "themes/mkdocs"
+    for file in ("css/bootstrap.min.css", "js/bootstrap.bundle.min.js"):
+        (API / file).parent.mkdir(exist_ok=True)
+        shutil.copy(theme / file, API / file)
+    for page in API.rglob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        top = os.path.relpath(API, page.parent)
+        text = re.sub(r'<link href="https://[^"]*/bootstrap\.min\.css"[^>]*>', f'<link href="{top}/css/bootstrap.min.css" rel="stylesheet">', text)
+        text = re.sub(r'<script src="https://[^"]*/bootstrap\.bundle\.min\.js"[^>]*>', f'<script src="{top}/js/bootstrap.bundle.min.js">', text)
+        text = re.sub(r'<script src="https://[^"]*MathJax[^>]*></script>', "", text)
+        page.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["collect"] and len(sys.argv) == 3:
         collect(sys.argv[2])
-    elif sys.argv[1:] == ["link"]:
-        link()
+    elif sys.argv[1:] == ["local"]:
+        local()
     else:
         sys.exit(__doc__)

@@ -56,7 +56,7 @@ contains
     self%path = name//'.nml'
     if (folder /= '') self%path = folder//'/'//self%path
     allocate (self%numbers(0))
-    call parse_values(text, self%path, [character(len=1) ::], self%values)
+    call parse_values(text, self%path, [character(len=1) ::], self%values, all_groups=.true.)
   end subroutine read
 
   !> Set GROUP.KEY to a value as a case file has it. Without a value, a key has its default again. GROUP alone is added, or removed

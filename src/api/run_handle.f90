@@ -150,12 +150,16 @@ contains
     if (.not. allocated(self%table)) then
       call self%run%finish(self%report, error)
       if (.not. allocated(error)) call march_histories(self%case, .false., self%report, error)
-      case = self%case
-      do i = 1, merge(n_places, 0, self%is_twin)
-        case%joints(i)%kind = 'ideal'
-      end do
-      if (self%is_twin .and. allocated(case%notes)) deallocate (case%notes)
-      self%table = summary_table(case, self%report, clock() - self%began, self%is_twin)
+      if (self%is_twin) then
+        case = self%case
+        do i = 1, n_places
+          case%joints(i)%kind = 'ideal'
+        end do
+        if (allocated(case%notes)) deallocate (case%notes)
+        self%table = summary_table(case, self%report, clock() - self%began, .true.)
+      else
+        self%table = summary_table(self%case, self%report, clock() - self%began)
+      end if
       call self%keep(error, self%status)
     end if
     status = self%status

@@ -13,7 +13,7 @@ module crank_train
   use state_layout, only: layout_t, coordinates_t, slice_t
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, turn_crank
-  use train_motion, only: train_rows_t, most_stations
+  use train_motion, only: most_stations
   use chain_bodies, only: bodies_t, drive_t
   use varying_drive, only: varying_drive_t
   use ideal_cylinders, only: ideal_cylinder_t, small_sine_cosine
@@ -55,19 +55,15 @@ module crank_train
     procedure :: claim
     procedure :: declare
     procedure :: energy_scale
-    procedure :: read_state
-    procedure :: place_cylinders
-    procedure :: find_rows
-    procedure :: drive_of_crank
-    procedure :: accelerate_stations
-    procedure :: set_rates
-    procedure :: segment_torque
-    procedure :: ring_torque
+    procedure, non_overridable :: read_state
+    procedure, non_overridable :: load_stations
+    procedure, non_overridable :: drive_of_crank
+    procedure, non_overridable :: accelerate_stations
+    procedure, non_overridable :: set_rates
+    procedure, non_overridable :: segment_torque
+    procedure, non_overridable :: ring_torque
     procedure :: energy
-    procedure :: damping_power
-    procedure :: gas_power
-    procedure :: inertia_beside
-    procedure :: frees_crank
+    procedure, non_overridable :: frees_crank
     procedure :: add_slopes
   end type crank_train_t
 
@@ -111,7 +107,7 @@ module crank_train
 
 contains
 
-  !> Set the motion of stations and rings, for a motion whose crank is known.
+  !> Set the motion of stations and rings and the crank angles of the cylinders, for a motion whose crank is known.
   pure subroutine read_state(self, t, y, motion)
     class(crank_train_t), intent(in) :: self
     real(dp), intent(in) :: t, y(*)
@@ -146,73 +142,81 @@ contains
           end if
         end associate
       end do
+      do j = 1, size(self%cylinders)
+        train%angle(j) = motion%crank_angle + train%twist(self%cylinders(j)%station) + self%cylinders(j)%shift
+      end do
     end associate
-    call self%place_cylinders(motion)
   end subroutine read_state
 
-  !> Set the crank angles of the cylinders.
-  pure subroutine place_cylinders(self, motion)
+  !> Set inertia and torque of each station, and the power of gas and damping. The forces of the gas must be known.
+  pure subroutine load_stations(self, motion)
     class(crank_train_t), intent(in) :: self
     type(motion_t), intent(inout) :: motion
-    real(dp) :: sine, cosine, along, across
-    integer :: i
-    associate (train => motion%train, s => motion%sin_crank, c => motion%cos_crank)
-      do i = 1, size(self%cylinders)
-        associate (it => self%cylinders(i))
-          train%angle(i) = motion%crank_angle + train%twist(it%station) + it%shift
-          across = s*it%cos_shift + c*it%sin_shift
-          along = c*it%cos_shift - s*it%sin_shift
-          train%sine(i) = across
-          train%cosine(i) = along
-          if (it%station /= self%full) then
-            call small_sine_cosine(train%twist(it%station), sine, cosine)
-            train%sine(i) = across*cosine + along*sine
-            train%cosine(i) = along*cosine - across*sine
-          end if
-          call it%follow(i, train)
-        end associate
-      end do
-    end associate
-  end subroutine place_cylinders
-
-  !> Inertia and torque of each station.
-  pure subroutine find_rows(self, motion, rows)
-    class(crank_train_t), intent(in) :: self
-    type(motion_t), intent(in) :: motion
-    type(train_rows_t), intent(out) :: rows
-    real(dp) :: moment
+    real(dp) :: moment, before, drag, power
     integer :: i, j
     associate (train => motion%train)
+      power = 0
+      before = 0
       do j = 1, self%n
-        rows%inertia(j) = self%inertia(j)
-        rows%torque(j) = -self%drag(j)*(train%speed(j) - self%drag_speed)
-      end do
-      do j = 1, self%n - 1
-        moment = self%segment_torque(motion, j)
-        rows%torque(j) = rows%torque(j) + moment
-        rows%torque(j + 1) = rows%torque(j + 1) - moment
+        drag = self%drag(j)*(train%speed(j) - self%drag_speed)
+        power = power - drag*train%speed(j)
+        moment = 0
+        if (j < self%n) then
+          moment = self%segment_torque(motion, j)
+          power = power - self%damping(j)*(train%speed(j + 1) - train%speed(j))**2
+        end if
+        train%inertia(j) = self%inertia(j)
+        train%torque(j) = moment - before - drag
+        before = moment
       end do
       do i = 1, size(self%rings)
         j = self%rings(i)%station
-        rows%torque(j) = rows%torque(j) + self%ring_torque(motion, i)
+        train%torque(j) = train%torque(j) + self%ring_torque(motion, i)
+        power = power - self%rings(i)%damping*(train%ring_speed(i) - train%speed(j))**2
       end do
-      do i = 1, size(self%cylinders)
-        j = self%cylinders(i)%station
-        call self%cylinders(i)%add_row(i, train, train%speed(j), rows%inertia(j), rows%torque(j))
-      end do
+      train%damping_power = power
     end associate
-  end subroutine find_rows
+    call load_by_cylinders(self, motion)
+  end subroutine load_stations
+
+  !> Add the cylinders to inertias and torques of the stations, and set the power of the gas.
+  pure subroutine load_by_cylinders(train, motion)
+    type(crank_train_t), intent(in) :: train
+    type(motion_t), intent(inout) :: motion
+    real(dp) :: sine, cosine, of_twist(2), at_shaft(2), inertia, half_slope, weight, rate, power
+    integer :: i
+    power = 0
+    associate (at => motion%train)
+      do i = 1, size(train%cylinders)
+        associate (it => train%cylinders(i), j => train%cylinders(i)%station)
+          at_shaft = [motion%sin_crank, motion%cos_crank]
+          if (j /= train%full) then
+            call small_sine_cosine(at%twist(j), of_twist(1), of_twist(2))
+            at_shaft = [motion%sin_crank*of_twist(2) + motion%cos_crank*of_twist(1), &
+              motion%cos_crank*of_twist(2) - motion%sin_crank*of_twist(1)]
+          end if
+          sine = at_shaft(1)*it%cos_shift + at_shaft(2)*it%sin_shift
+          cosine = at_shaft(2)*it%cos_shift - at_shaft(1)*it%sin_shift
+          call it%find_terms(sine, cosine, inertia, half_slope, weight, rate)
+          at%inertia(j) = at%inertia(j) + inertia
+          at%torque(j) = at%torque(j) + (weight - at%gas_force(i)*rate - half_slope*at%speed(j)**2)
+          power = power - at%gas_force(i)*rate*at%speed(j)
+        end associate
+      end do
+      at%gas_power = power
+    end associate
+  end subroutine load_by_cylinders
 
   !> The drive of the crank: by the shaft, the other cylinders and, if that acts there, the drive of the case.
-  pure type(drive_t) function drive_of_crank(self, drive, rows) result(of_crank)
+  pure type(drive_t) function drive_of_crank(self, drive, motion) result(of_crank)
     class(crank_train_t), intent(in) :: self
     type(drive_t), intent(in) :: drive
-    type(train_rows_t), intent(in) :: rows
+    type(motion_t), intent(in) :: motion
     of_crank%free_crank = self%frees_crank(drive)
-    of_crank%torque = rows%torque(self%full)
+    of_crank%torque = motion%train%torque(self%full)
     of_crank%damping = 0
     of_crank%acceleration = drive%acceleration
-    of_crank%inertia = rows%inertia(self%full)
+    of_crank%inertia = motion%train%inertia(self%full)
     if (self%driven /= self%full) return
     if (drive%free_crank) of_crank%torque = of_crank%torque + drive%torque
     of_crank%damping = drive%damping
@@ -226,36 +230,34 @@ contains
   end function frees_crank
 
   !> Accelerations of stations and rings, when that of the crank is known, and the moment of the drive [N m].
-  pure subroutine accelerate_stations(self, drive, motion, rows, accelerations, moment)
+  pure subroutine accelerate_stations(self, drive, motion, accelerations, moment)
     class(crank_train_t), intent(in) :: self
     type(drive_t), intent(in) :: drive
     type(motion_t), intent(in) :: motion
-    type(train_rows_t), intent(in) :: rows
     type(accelerations_t), intent(inout) :: accelerations
     real(dp), intent(inout) :: moment   !! in: of `drive_of_crank` on the crank
     real(dp) :: torque
-    integer :: i, j
-    do j = 1, self%n
-      if (j == self%full) then
-        accelerations%station(j) = accelerations%crank
-        if (j == self%driven .and. .not. drive%free_crank) moment = moment - rows%torque(j)
-        cycle
-      end if
-      torque = rows%torque(j)
-      if (j == self%driven) then
-        torque = torque - drive%damping*motion%train%speed(j)
-        if (.not. drive%free_crank) then
-          accelerations%station(j) = drive%acceleration
-          moment = rows%inertia(j)*drive%acceleration - torque
-          cycle
+    integer :: j
+    associate (train => motion%train, driven => self%driven)
+      do j = 1, self%n
+        if (j /= self%full .and. j /= driven) accelerations%station(j) = train%torque(j)/train%inertia(j)
+      end do
+      accelerations%station(self%full) = accelerations%crank
+      if (driven /= self%full) then
+        torque = train%torque(driven) - drive%damping*train%speed(driven)
+        if (drive%free_crank) then
+          accelerations%station(driven) = (torque + drive%torque)/train%inertia(driven)
+        else
+          accelerations%station(driven) = drive%acceleration
+          moment = train%inertia(driven)*drive%acceleration - torque
         end if
-        torque = torque + drive%torque
+      else if (.not. drive%free_crank) then
+        moment = moment - train%torque(driven)
       end if
-      accelerations%station(j) = torque/rows%inertia(j)
-    end do
+    end associate
     if (drive%free_crank) moment = drive%torque
-    do i = 1, size(self%rings)
-      accelerations%ring(i) = -self%ring_torque(motion, i)/self%rings(i)%inertia
+    do j = 1, size(self%rings)
+      accelerations%ring(j) = -self%ring_torque(motion, j)/self%rings(j)%inertia
     end do
   end subroutine accelerate_stations
 
@@ -322,49 +324,4 @@ contains
       end do
     end associate
   end function energy
-
-  !> Power of the damping of segments, rings and stations [W].
-  pure real(dp) function damping_power(self, motion) result(power)
-    class(crank_train_t), intent(in) :: self
-    type(motion_t), intent(in) :: motion
-    integer :: i, j
-    associate (train => motion%train)
-      power = 0
-      do j = 1, self%n
-        power = power - self%drag(j)*(train%speed(j) - self%drag_speed)*train%speed(j)
-        if (j < self%n) power = power - self%damping(j)*(train%speed(j + 1) - train%speed(j))**2
-      end do
-      do i = 1, size(self%rings)
-        power = power - self%rings(i)%damping*(train%ring_speed(i) - train%speed(self%rings(i)%station))**2
-      end do
-    end associate
-  end function damping_power
-
-  !> Power of the gas on the pistons of the other cylinders [W].
-  pure real(dp) function gas_power(self, motion) result(power)
-    class(crank_train_t), intent(in) :: self
-    type(motion_t), intent(in) :: motion
-    integer :: i
-    power = 0
-    associate (train => motion%train)
-      do i = 1, size(self%cylinders)
-        if (.not. abs(train%gas_force(i)) > 0) cycle
-        power = power - train%gas_force(i)*self%cylinders(i)%piston_rate(i, train)*train%speed(self%cylinders(i)%station)
-      end do
-    end associate
-  end function gas_power
-
-  !> What moves with the crank beside the mechanism [kg m^2].
-  pure real(dp) function inertia_beside(self, motion) result(inertia)
-    class(crank_train_t), intent(in) :: self
-    type(motion_t), intent(in) :: motion
-    real(dp) :: torque
-    integer :: i
-    inertia = self%inertia(self%full)
-    torque = 0
-    do i = 1, size(self%cylinders)
-      if (self%cylinders(i)%station == self%full) &
-        call self%cylinders(i)%add_row(i, motion%train, 0.0_dp, inertia, torque)
-    end do
-  end function inertia_beside
 end module crank_train

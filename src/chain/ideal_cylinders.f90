@@ -1,14 +1,14 @@
 !> A cylinder whose rod and piston have ideal joints: a function of the angle of its throw, without states. It adds an inertia I and
-!> a torque G - I'/2 q'^2 to the equation of the station of the crankshaft on which its throw stands:
+!> a torque G - F_gas p - I'/2 q'^2 to the equation of the station of the crankshaft on which its throw stands. With k = dA/dq and
+!> p = dx/dq, the speed of the rod's big end and that of its small end give the speed of its centre of mass (U, V), so that
 !>
-!>     I = m_c-term + m_r R^2 + k (2 m12 + k m22) + m_p p^2,    k = dA/dq,  p = dx/dq
-!>     I'/2 = c k (1 + k) + (m12 + k m22) k' + m_p p p'
-!>     G = p (m_p g_x - F_gas) + k (moment of gravity on the rod) + moment of gravity on the crank with the rod's mass at its pin
+!>     I = a + b p^2 + c k^2 + e p cos q,    a = m11 - m_r R^2 U/L,  b = m_p + m_r U/L,  c = m22 - m_r U L,  e = 2 m_r V R/L
+!>     G = w_1 sin q + w_2 cos q + w_3 p:    gravity on the crank, and on the rod with its mass at both ends
+!>     k = R cos q/(L cos A),  k' = tan A (k^2 - 1),  p = -R sin q (1 + k)
 !>
 !> Its bodies, with the body of the crank of its throw, are in its own axes: x along its axis, gravity turned accordingly.
 module ideal_cylinders
   use kinds, only: dp
-  use train_motion, only: train_motion_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin
   use chain_bodies, only: bodies_t, drive_t
   use chain_loads, only: loads_t
@@ -27,10 +27,16 @@ module ideal_cylinders
     real(dp) :: bank = 0                 !! angle of its axis from that of the full cylinder, positive from x to y [rad]
     real(dp) :: axial_position = 0       !! [m]
     type(bodies_t) :: bodies
+    real(dp), private :: length = 0      !! R [m]
+    real(dp), private :: ratio = 0       !! R/L
+    real(dp), private :: constant = 0    !! a [kg m^2]
+    real(dp), private :: by_piston = 0   !! b [kg]
+    real(dp), private :: by_rod = 0      !! c [kg m^2]
+    real(dp), private :: by_offset = 0   !! e/2 [kg m]
+    real(dp), private :: weight(3) = 0   !! w [N m], [N m], [N]
   contains
-    procedure, non_overridable :: follow
-    procedure, non_overridable :: add_row
-    procedure, non_overridable :: piston_rate
+    procedure :: set_bodies
+    procedure, non_overridable :: find_terms
     procedure :: inertia
     procedure :: energy
     procedure :: forces
@@ -45,69 +51,48 @@ module ideal_cylinders
 
 contains
 
-  !> Set sine and cosine of the rod's angle, and 1/(L cos A), of element i of the motion, whose crank is known.
-  pure subroutine follow(self, i, train)
-    class(ideal_cylinder_t), intent(in) :: self
-    integer, intent(in) :: i
-    type(train_motion_t), intent(inout) :: train
-    real(dp) :: gap
-    associate (sin_rod => train%sin_rod(i))
-      sin_rod = self%bodies%crank%length*train%sine(i)*self%bodies%per_rod_length
-      gap = (1 - sin_rod)*(1 + sin_rod)
+  !> Set the bodies, and the terms that follow from them.
+  pure subroutine set_bodies(self, bodies)
+    class(ideal_cylinder_t), intent(inout) :: self
+    type(bodies_t), intent(in) :: bodies
+    real(dp) :: at_end(2)   ! of the rod's mass at its small end [kg]
+    self%bodies = bodies
+    associate (b => bodies, rod => bodies%rod)
+      at_end = rod%mass*rod%com*b%per_rod_length
+      self%length = b%crank%length
+      self%ratio = b%crank%length*b%per_rod_length
+      self%constant = b%crank_term - at_end(1)*b%crank%length**2
+      self%by_piston = b%piston%mass + at_end(1)
+      self%by_rod = b%rod_term - at_end(1)*rod%length**2
+      self%by_offset = at_end(2)*b%crank%length
+      self%weight = [b%crank_weight - self%ratio*b%rod_weight, b%gravity(1)*b%piston%mass - b%rod_weight(1)*b%per_rod_length]
     end associate
-    train%cos_rod(i) = sqrt(gap)
-    train%per_arm(i) = self%bodies%per_rod_length/gap*train%cos_rod(i)
-  end subroutine follow
+  end subroutine set_bodies
 
-  !> Add inertia and torque in the motion of element i, at a speed [rad/s] and with its force of the gas, to those of the station.
-  pure subroutine add_row(self, i, train, speed, inertia, torque)
+  !> Inertia I, half of its slope I'/2 [kg m^2], moment of gravity G [N m] and speed of the piston p [m] at the sine and the cosine of
+  !> a crank angle.
+  pure subroutine find_terms(self, sine, cosine, inertia, half_slope, weight, rate)
     class(ideal_cylinder_t), intent(in) :: self
-    integer, intent(in) :: i
-    type(train_motion_t), intent(in) :: train
-    real(dp), intent(in) :: speed
-    real(dp), intent(inout) :: inertia, torque
-    real(dp) :: k, k_slope, p, p_slope, along, across, m12, c
-    associate (b => self%bodies, r => self%bodies%crank%length, mass => self%bodies%piston%mass, sine => train%sine(i), &
-               cosine => train%cosine(i), sin_rod => train%sin_rod(i), cos_rod => train%cos_rod(i), per_arm => train%per_arm(i), &
-               gas_force => train%gas_force(i))
-      k = r*cosine*per_arm
-      k_slope = b%rod%length*sin_rod*per_arm*((k - 1)*(k + 1))
-      p = -r*sine*(1 + k)
-      p_slope = -(r*sine*k_slope + r*cosine*(1 + k))
-      along = b%static_moment(1)*cosine + b%static_moment(2)*sine
-      across = b%static_moment(1)*sine - b%static_moment(2)*cosine
-      m12 = across*sin_rod - along*cos_rod
-      c = across*cos_rod + along*sin_rod
-      inertia = inertia + (b%crank_term + k*(2*m12 + k*b%rod_term) + mass*p**2)
-      torque = torque + (b%crank_weight(1)*sine + b%crank_weight(2)*cosine) &
-        + k*(b%rod_weight(1)*sin_rod - b%rod_weight(2)*cos_rod) + p*(b%gravity(1)*mass - gas_force) &
-        - speed**2*(c*k*(1 + k) + (m12 + k*b%rod_term)*k_slope + mass*p*p_slope)
-    end associate
-  end subroutine add_row
-
-  !> p = dx/dq of the piston in the motion of element i [m].
-  pure real(dp) function piston_rate(self, i, train) result(rate)
-    class(ideal_cylinder_t), intent(in) :: self
-    integer, intent(in) :: i
-    type(train_motion_t), intent(in) :: train
-    associate (r => self%bodies%crank%length)
-      rate = -r*train%sine(i)*(1 + r*train%cosine(i)*train%per_arm(i))
-    end associate
-  end function piston_rate
+    real(dp), intent(in) :: sine, cosine
+    real(dp), intent(out) :: inertia, half_slope, weight, rate
+    real(dp) :: sin_rod, lever, k, k_slope, rate_slope
+    sin_rod = self%ratio*sine
+    lever = self%ratio/sqrt((1 - sin_rod)*(1 + sin_rod))
+    k = lever*cosine
+    k_slope = lever*sine*((k - 1)*(k + 1))
+    rate = -self%length*sine*(1 + k)
+    rate_slope = -self%length*(sine*k_slope + cosine*(1 + k))
+    inertia = self%constant + rate*(self%by_piston*rate + 2*self%by_offset*cosine) + self%by_rod*k**2
+    half_slope = rate_slope*(self%by_piston*rate + self%by_offset*cosine) - self%by_offset*sine*rate + self%by_rod*k*k_slope
+    weight = self%weight(1)*sine + self%weight(2)*cosine + self%weight(3)*rate
+  end subroutine find_terms
 
   !> Inertia at a crank angle [kg m^2].
   pure real(dp) function inertia(self, angle)
     class(ideal_cylinder_t), intent(in) :: self
     real(dp), intent(in) :: angle   !! [rad]
-    type(train_motion_t) :: train
-    real(dp) :: torque
-    train%sine(1) = sin(angle)
-    train%cosine(1) = cos(angle)
-    train%gas_force(1) = 0
-    call self%follow(1, train)
-    inertia = 0
-    torque = 0
-    call self%add_row(1, train, 0.0_dp, inertia, torque)
+    real(dp) :: half_slope, weight, rate
+    call self%find_terms(sin(angle), cos(angle), inertia, half_slope, weight, rate)
   end function inertia
 
   !> Kinetic and potential energy at a crank angle [rad] and a speed [rad/s] [J].

@@ -16,7 +16,6 @@ module mechanism_chain
   use varying_drive, only: varying_drive_t
   use elastic_members, only: elastic_members_t
   use crank_train, only: crank_train_t
-  use train_motion, only: train_rows_t
   use floating_pin, only: floating_pin_t
   use elastic_rod, only: elastic_rod_t
   use elastic_rod_piece, only: accelerate_elastic_rod
@@ -81,15 +80,11 @@ contains
     real(dp), intent(out) :: crank_moment
     logical, intent(out) :: solvable
     type(drive_t) :: drive, of_crank
-    type(train_rows_t) :: rows
     solvable = .true.
     drive = self%drive
     if (allocated(self%varying)) drive = self%varying%at(self%drive, self%driven_speed(motion), motion)
     of_crank = drive
-    if (allocated(self%train)) then
-      call self%train%find_rows(motion, rows)
-      of_crank = self%train%drive_of_crank(drive, rows)
-    end if
+    if (allocated(self%train)) of_crank = self%train%drive_of_crank(drive, motion)
     if (self%has_crankshaft()) of_crank = self%elastic%crankshaft%drive_of_crank(motion)
     if (self%has_elastic_rod()) then
       call accelerate_with_elastic_rod(self, of_crank, motion, loads, accelerations, crank_moment, solvable)
@@ -99,7 +94,7 @@ contains
     if (self%has_crankshaft()) &
       call self%elastic%crankshaft%accelerate_flywheel(drive, motion, accelerations%flywheel, crank_moment)
     if (allocated(self%train) .and. solvable) &
-      call self%train%accelerate_stations(drive, motion, rows, accelerations, crank_moment)
+      call self%train%accelerate_stations(drive, motion, accelerations, crank_moment)
   end subroutine accelerate_bodies
 
   !> The same with a rigid rod and a given drive of the crank; `crank_moment` is the moment of this drive [N m].
@@ -261,7 +256,7 @@ contains
     type(elastic_rod_t), allocatable :: slack
     drive = self%drive
     if (allocated(self%train)) then
-      drive%inertia = self%train%inertia_beside(motion)
+      drive%inertia = motion%train%inertia(self%train%full)
       drive%free_crank = self%train%frees_crank(self%drive)
     end if
     if (.not. (self%is_loose(crank_pin) .or. self%bodies%piston%is_loose .or. allocated(self%elastic))) then

@@ -68,7 +68,7 @@ module film_law
     procedure, non_overridable :: drag_moment
     procedure, non_overridable :: neglects_shear
     procedure :: pressure => nowhere
-    procedure :: peak_and_flow => peak_without_flow
+    procedure :: peak_and_flow => no_peak
     procedure :: side_flow => flow_beside_peak
     procedure :: pressure_field => long_field
     procedure :: table_key => no_key
@@ -270,16 +270,14 @@ contains
     nowhere = 0
   end function nowhere
 
-  !> Largest pressure [Pa], and side flow out of both ends [m^3/s]. The default is the largest value of `pressure`.
-  pure subroutine peak_without_flow(self, motion, most, flow)
+  !> Largest pressure [Pa], and side flow out of both ends [m^3/s]: none of laws that do not give a pressure.
+  pure subroutine no_peak(self, motion, most, flow)
     class(film_law_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion
     real(dp), intent(out) :: most, flow
-    real(dp) :: eps
+    most = 0
     flow = 0
-    eps = min(norm2(motion%eccentricity)*self%per_clearance, 1 - epsilon(1.0_dp))
-    most = max(largest_pressure(self, motion, 1.0_dp), largest_pressure(self, motion, sqrt((1 - eps)/(1 + eps))))
-  end subroutine peak_without_flow
+  end subroutine no_peak
 
   !> Side flow out of both ends [m^3/s], 0 for laws that do not give it.
   pure real(dp) function flow_beside_peak(self, motion) result(flow)
@@ -315,41 +313,6 @@ contains
     grid = new_reynolds_grid(field_points, 2, max(1 - norm2(motion%eccentricity)*per_clearance, least_gap), 1.0_dp, 0.0_dp)
     angles = grid%angle
   end function angles_of_film
-
-  !> Largest value of `pressure` over angles theta with tan(theta/2) = scale tan(s/2) and uniform s, refined around the largest.
-  pure real(dp) function largest_pressure(self, motion, scale) result(most)
-    class(film_law_t), intent(in) :: self
-    type(film_motion_t), intent(in) :: motion
-    real(dp), intent(in) :: scale
-    integer, parameter :: first_places = 90, thirds = 40
-    real(dp) :: at(0:3), value
-    integer :: i, best
-    most = -huge(most)
-    best = 0
-    do i = 1, first_places
-      value = at_place(two_pi*i/first_places)
-      if (value > most) best = i
-      most = max(most, value)
-    end do
-    at(0) = two_pi*(best - 1)/first_places
-    at(3) = two_pi*(best + 1)/first_places
-    do i = 1, thirds
-      at(1:2) = at(0) + (at(3) - at(0))*[1, 2]/3
-      if (at_place(at(1)) > at_place(at(2))) then
-        at(3) = at(2)
-      else
-        at(0) = at(1)
-      end if
-    end do
-    most = max(most, at_place(at(1)))
-
-  contains
-
-    pure real(dp) function at_place(s)
-      real(dp), intent(in) :: s
-      at_place = self%pressure(motion, 2*atan2(scale*sin(0.5_dp*s), cos(0.5_dp*s)))
-    end function at_place
-  end function largest_pressure
 
   !> Key of the law's table, for laws whose table takes long to compute: laws with equal keys have equal tables. A stored table may
   !> be set (`restore_table`), together with its key in `table_of`, before `make_table` is called.

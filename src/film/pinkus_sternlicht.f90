@@ -35,6 +35,7 @@ module pinkus_sternlicht
     procedure :: is_quasi_static
     procedure, nopass :: gives_pressure => yes
     procedure :: pressure
+    procedure :: peak_and_flow
   end type pinkus_sternlicht_t
 
 contains
@@ -206,4 +207,22 @@ contains
       pressure = max(0.0_dp, 6*self%pressure_scale*bracket/((2 + eps**2)*(1 + eps*c)**2))
     end associate
   end function pressure
+
+  !> Largest pressure [Pa] of (5.20); a long film has no side flow. By the Reynolds equation u^3 dp/da is proportional to eps W (cos a
+  !> + 3 eps/(2 + eps^2)) + 2 eps_dot sin a; the pressure is largest where this falls through 0.
+  pure subroutine peak_and_flow(self, motion, most, flow)
+    class(pinkus_sternlicht_t), intent(in) :: self
+    type(film_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: most, flow
+    type(reduced_motion_t) :: state
+    real(dp) :: strength
+    most = 0
+    flow = 0
+    call reduce(self%per_clearance, motion, state)
+    associate (eps => state%ratio, rate => state%ratio_rate, wedge => state%wedge)
+      strength = sqrt(wedge**2 + 4*rate**2)
+      if (strength > 0) most = self%pressure(motion, atan2(2*rate, wedge) &
+        + acos(max(-1.0_dp, min(1.0_dp, -3*eps*wedge/((2 + eps**2)*strength)))) - pi)
+    end associate
+  end subroutine peak_and_flow
 end module pinkus_sternlicht

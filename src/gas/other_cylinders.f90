@@ -27,7 +27,7 @@ module other_cylinders
   contains
     procedure :: start
     procedure :: declare
-    procedure :: force
+    procedure, non_overridable :: find_forces
     procedure :: n_events
     procedure :: events
     procedure :: pass
@@ -70,26 +70,28 @@ contains
     end if
   end subroutine declare
 
-  !> Force of the gas on the piston of cylinder i at a crank angle [rad] from its axis, towards the shaft [N].
-  pure real(dp) function force(self, gas, i, angle)
+  !> Forces of the gas on the pistons at crank angles from their axes [rad], towards the shaft [N]; unchanged where there is none.
+  pure subroutine find_forces(self, gas, angle, force)
     class(other_cylinders_t), intent(in) :: self
     type(working_gas_t), intent(in) :: gas
-    integer, intent(in) :: i
-    real(dp), intent(in) :: angle
+    real(dp), intent(in) :: angle(*)
+    real(dp), intent(inout) :: force(*)
     real(dp) :: pressure
-    force = 0
-    if (.not. self%has_gas(i)) return
-    if (allocated(gas%cycle)) then
-      pressure = gas%cycle%pressure(gas%sense*angle, self%part(i), self%cycle_start(i))
-    else if (allocated(gas%valves)) then
-      pressure = self%valves(i)%pressure(angle)
-    else if (allocated(gas%curve)) then
-      pressure = gas%curve%value(angle)
-    else
-      pressure = gas%held_pressure
-    end if
-    force = (self%scale(i)*pressure - gas%crankcase_pressure)*gas%cylinder%area
-  end function force
+    integer :: i
+    do i = 1, size(self%has_gas)
+      if (.not. self%has_gas(i)) cycle
+      if (allocated(gas%cycle)) then
+        pressure = gas%cycle%pressure(gas%sense*angle(i), self%part(i), self%cycle_start(i))
+      else if (allocated(gas%valves)) then
+        pressure = self%valves(i)%pressure(angle(i))
+      else if (allocated(gas%curve)) then
+        pressure = gas%curve%value(angle(i))
+      else
+        pressure = gas%held_pressure
+      end if
+      force(i) = (self%scale(i)*pressure - gas%crankcase_pressure)*gas%cylinder%area
+    end do
+  end subroutine find_forces
 
   !> Number of the event functions of all of them together.
   pure integer function n_events(self, gas)

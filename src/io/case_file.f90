@@ -6,7 +6,7 @@ module case_file
   use text_file, only: read_text_file
   use joint_places, only: places, n_places, in_order, joint_group
   use case_definition, only: case_t
-  use case_schema, only: key_table_t, case_schema_of, find_group, shown_group
+  use case_schema, only: key_table_t, case_schema_of, find_group, shown_group, name_in_file
   use case_values, only: case_values_t
   use case_loader, only: load_case
   use case_rules, only: check_rules
@@ -62,26 +62,33 @@ contains
     if (.not. allocated(error)) call parse_values(text, path, overrides, values, is_bearing)
   end subroutine read_case_values
 
-  !> The values of a case file's text and of overrides; see `read_case_values`. `path` gives its name in messages.
-  subroutine parse_values(text, path, overrides, values, is_bearing)
+  !> The values of a case file's text and of overrides; see `read_case_values`. `path` gives its name in messages. Groups that may be
+  !> repeated have more than one number only if the case has such a group, or `all_groups` is present and true.
+  subroutine parse_values(text, path, overrides, values, is_bearing, all_groups)
     character(len=*), intent(in) :: text, path, overrides(:)
     type(case_values_t), intent(out) :: values
     logical, intent(out), optional :: is_bearing
-    type(error_t), allocatable :: error
-    logical :: without_mechanism
+    logical, intent(in), optional :: all_groups
+    type(namelist_t) :: list
+    type(error_t), allocatable :: syntax, error
+    logical :: without_mechanism, repeats
     integer :: i
+    call read_namelist(text, path, list, syntax)
     without_mechanism = .false.
     if (present(is_bearing)) then
-      call find_kind(text, is_bearing)
+      is_bearing = has_group(list, 'film_history') .and. .not. (has_group(list, 'mechanism') .or. allocated(syntax))
       without_mechanism = is_bearing
     end if
+    repeats = .false.
+    if (present(all_groups)) repeats = all_groups
     if (without_mechanism) then
       call bearing_schema_of(values%key_table_t)
     else
-      call case_schema_of(values%key_table_t)
+      call case_schema_of(values%key_table_t, repeats)
+      if (.not. repeats .and. repeats_groups(values%key_table_t, list, overrides)) call case_schema_of(values%key_table_t)
     end if
     call values%set_defaults(path)
-    call set_from_file(values, text)
+    call set_from_file(values, list, syntax)
     do i = 1, size(overrides)
       call apply_override(values, trim(overrides(i)), behind_file + i, error)
       if (allocated(error)) values%problems%is_structural = .true.
@@ -90,23 +97,34 @@ contains
     call values%prefer_overrides()
   end subroutine parse_values
 
-  !> Whether a text has the group of a film with memory, and no mechanism.
-  subroutine find_kind(text, is_bearing)
-    character(len=*), intent(in) :: text
-    logical, intent(out) :: is_bearing
-    type(namelist_t) :: list
-    type(error_t), allocatable :: error
+  pure logical function has_group(list, name)
+    type(namelist_t), intent(in) :: list
+    character(len=*), intent(in) :: name
     integer :: i
-    is_bearing = .false.
-    call read_namelist(text, '', list, error)
-    if (allocated(error)) return   ! reported with the name of the file
+    has_group = .false.
     do i = 1, size(list%groups)
-      if (list%groups(i)%name == 'film_history') is_bearing = .true.
+      has_group = has_group .or. list%groups(i)%name == name
     end do
-    do i = 1, size(list%groups)
-      if (list%groups(i)%name == 'mechanism') is_bearing = .false.
+  end function has_group
+
+  !> Whether a file has a group that may be repeated, or an override may name one: its group is not in the table without them.
+  logical function repeats_groups(table, list, overrides)
+    type(key_table_t), intent(in) :: table
+    type(namelist_t), intent(in) :: list
+    character(len=*), intent(in) :: overrides(:)
+    character(len=:), allocatable :: name
+    integer :: i, dot
+    repeats_groups = .false.
+    do i = 1, size(table%groups)
+      if (table%groups(i)%number > 0) repeats_groups = repeats_groups .or. has_group(list, name_in_file(table%groups(i)))
     end do
-  end subroutine find_kind
+    do i = 1, size(overrides)
+      name = lowercase(overrides(i)(:index(overrides(i)//'=', '=') - 1))
+      dot = index(name, '.', back=.true.)
+      if (dot > 0) name = name(:dot - 1)
+      repeats_groups = repeats_groups .or. find_group(table%groups, trim(adjustl(name))) == 0
+    end do
+  end function repeats_groups
 
   !> Complete and check a case from its values; `path` gives its name. Defaults that depend on the selected laws are put into the
   !> values. The error has every problem of the values, but contradictions between them only if it is clear what is wanted.
@@ -139,15 +157,14 @@ contains
     text = template_text('A case of gudgeon with every key there is. Keys marked required have no default.', table)
   end function template
 
-  !> Set the values from the groups and keys of a file's text.
-  subroutine set_from_file(values, text)
+  !> Set the values from the groups and keys of a file. `syntax` is the error with which it ends, if there is one.
+  subroutine set_from_file(values, list, syntax)
     type(case_values_t), intent(inout) :: values
-    character(len=*), intent(in) :: text
-    type(namelist_t) :: list
-    type(error_t), allocatable :: error, syntax
+    type(namelist_t), intent(inout) :: list
+    type(error_t), allocatable, intent(inout) :: syntax
+    type(error_t), allocatable :: error
     logical, allocatable :: is_known(:)   !! for each group of the file
     integer :: i
-    call read_namelist(text, values%file, list, syntax)
     if (allocated(syntax)) values%problems%is_incomplete = .true.
     if (size(list%groups) == 0 .and. .not. allocated(syntax)) then
       call fail(syntax, values%file//': the file contains no group; gudgeon --template prints a case', status_case_file)

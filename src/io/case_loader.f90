@@ -49,6 +49,7 @@ contains
       where (values%groups%number > 0) loader%only = any(only .and. (values%groups%number > 0 .or. &
         values%groups%name == 'mechanism'))
     end if
+    loader%repeats = any(values%groups%number > 1)
     call visit_case(into, loader)
     call provide_bodies(values, into)
     call provide_film_moments(values, into)
@@ -78,6 +79,7 @@ contains
     i = 0
     do n = 1, most_cylinders
       group = 'cylinder_'//integer_text(n)
+      if (find_group(values%groups, group) == 0) exit
       if (.not. values%is_present(find_group(values%groups, group))) cycle
       i = i + 1
       do k = 1, size(keys)

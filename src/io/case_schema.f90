@@ -51,12 +51,15 @@ module case_schema
 
 contains
 
-  !> Groups and keys of a case file, in the order of the template and of the resolved case.
-  subroutine case_schema_of(table)
+  !> Groups and keys of a case file, in the order of the template and of the resolved case. Without `repeats` only the first of groups
+  !> that may be repeated.
+  subroutine case_schema_of(table, repeats)
     type(key_table_t), intent(out) :: table
+    logical, intent(in), optional :: repeats
     type(schema_t) :: schema
     type(case_t) :: case
     call schema%begin()
+    if (present(repeats)) schema%repeats = repeats
     call visit_case(case, schema)
     call add_laws_of_one_joint(schema)
     call schema%get_table(table)

@@ -47,6 +47,7 @@ contains
       n = 0
       groups = ''
       do k = 1, size(groups)
+        if (find_group(values%groups, name//'_'//integer_text(k)) == 0) return
         if (.not. values%is_present(find_group(values%groups, name//'_'//integer_text(k)))) cycle
         n = n + 1
         groups(n) = name//'_'//integer_text(k)

@@ -21,7 +21,10 @@ contains
     row%place = places(joint%place)%prefix
     call row%add('eccentricity_x[m]', now%eccentricity(1), 'centre of the pin from the centre of its bearing, along x')
     call row%add('eccentricity_y[m]', now%eccentricity(2), 'the same along y')
-    if (joint%place /= piston_pin) then  ! not among the other columns
+    if (joint%place == piston_pin) then   ! whose trace has them on request alone
+      call row%add_on_request('eccentricity_rate_x[m/s]', now%eccentricity_rate(1), 'rate of eccentricity_x')
+      call row%add_on_request('eccentricity_rate_y[m/s]', now%eccentricity_rate(2), 'rate of eccentricity_y')
+    else
       call row%add('eccentricity_rate_x[m/s]', now%eccentricity_rate(1), 'rate of eccentricity_x')
       call row%add('eccentricity_rate_y[m/s]', now%eccentricity_rate(2), 'rate of eccentricity_y')
     end if

@@ -44,6 +44,7 @@ module model_parameters
     logical :: sets = .false.             !! this visitor sets the parameters of the present group, and `chosen`
     logical :: is_present = .false.       !! while it sets them: the case has the present group
     logical :: passes = .false.           !! this visitor ignores the parameters of the present group
+    logical :: repeats = .true.           !! a group that may be repeated is visited for every number, not for the first alone
     character(len=32), private :: amount = ''   !! see `make_optional`; empty: laws are not optional
   contains
     procedure(visit_parameter), deferred :: visit

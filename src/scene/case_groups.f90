@@ -98,7 +98,7 @@ contains
     type(damper_case_t) :: found(most_rings), one
     integer :: i, n
     n = 0
-    do i = 1, most_rings
+    do i = 1, merge(most_rings, 1, list%repeats)
       call list%group('damper', 'Damper of torsional vibrations: a ring on a station of the crankshaft', .true., number=i)
       call one%parameters(list)
       if (.not. (list%sets .and. list%is_present)) cycle
@@ -116,7 +116,7 @@ contains
     type(cylinder_case_t) :: found(most_cylinders), one
     integer :: i, n
     n = 0
-    do i = 1, most_cylinders
+    do i = 1, merge(most_cylinders, 1, list%repeats)
       call list%group('cylinder', 'Cylinders on the crankshaft, a group for each in order; all but one have ideal joints. '// &
         'Without this group there is one', .true., number=i)
       call one%parameters(list)

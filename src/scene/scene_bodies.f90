@@ -57,16 +57,14 @@ contains
     if (allocated(self%chain%train)) call self%chain%train%read_state(t, y, now%motion)
   end subroutine place_more_bodies
 
-  !> Set the forces of the gas in the other cylinders.
+  !> Set the forces of the gas in the other cylinders, and the loads of the stations.
   pure subroutine load_train(self, now)
     class(scene_t), intent(in) :: self
     type(evaluation_t), intent(inout) :: now
-    integer :: i
-    associate (train => now%motion%train)
-      do i = 1, size(self%chain%train%cylinders)
-        train%gas_force(i) = 0
-        if (allocated(self%gas)) train%gas_force(i) = self%other_gas%force(self%gas, i, train%angle(i))
-      end do
+    associate (train => self%chain%train, at => now%motion%train)
+      at%gas_force(:size(train%cylinders)) = 0
+      if (allocated(self%gas)) call self%other_gas%find_forces(self%gas, at%angle, at%gas_force)
+      call train%load_stations(now%motion)
     end associate
   end subroutine load_train
 
@@ -163,8 +161,8 @@ contains
     associate (chain => self%chain, motion => now%motion, loads => now%loads)
       if (allocated(chain%train)) then
         associate (speed => chain%driven_speed(motion))
-          now%power = now%power + (now%crank_moment - chain%drive%damping*speed)*speed + chain%train%damping_power(motion) &
-            + chain%train%gas_power(motion)
+          now%power = now%power + (now%crank_moment - chain%drive%damping*speed)*speed + (motion%train%damping_power &
+            + motion%train%gas_power)
         end associate
         if (allocated(chain%elastic)) now%power = now%power + chain%elastic%damping_power(motion)
       else if (allocated(chain%elastic)) then

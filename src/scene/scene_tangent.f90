@@ -6,7 +6,6 @@ submodule (scene_problem) scene_tangent
   use load_element, only: n_motions, by_pin_speed, by_bearing_speed
   use clearance_joint, only: most_joint_states, n_joint_slopes
   use crank_rod_tangent, only: rod_slopes, acceleration_slopes, torque_slopes
-  use train_motion, only: train_rows_t
   implicit none
 
 contains
@@ -20,7 +19,6 @@ contains
     real(dp) :: slope(3 + most_joint_states, 6 + most_joint_states)   !! of all rates, with respect to q, e, q', e' and the states
     logical :: has_closed_form
     type(drive_t) :: of_case
-    type(train_rows_t) :: rows
     real(dp) :: by_torque(3)
     integer :: skip, n, i
 
@@ -46,9 +44,8 @@ contains
     if (allocated(self%chain%varying)) &
       drive%damping = drive%damping - self%chain%varying%torque_slope(self%chain%driven_speed(now%motion))
     if (allocated(self%chain%train)) then
-      call self%chain%train%find_rows(now%motion, rows)
       of_case = drive
-      drive = self%chain%train%drive_of_crank(of_case, rows)
+      drive = self%chain%train%drive_of_crank(of_case, now%motion)
     end if
     call rod_slopes(self%chain%bodies, now%motion, rod_angle, rod_speed)
     call acceleration_slopes(self%chain%bodies, drive, now%loads, now%motion, now%accelerations, by_motion, by_loads)
@@ -69,7 +66,8 @@ contains
     if (allocated(self%chain%train)) then
       call place_slopes(self, n, skip, slope, a_p, a_v)
       call torque_slopes(self%chain%bodies, drive, now%motion, by_torque)
-      call self%chain%train%add_slopes(of_case, rows%inertia, self%crank, [(i, i=1, 3 - skip)], by_torque(1 + skip:), a_p, a_v)
+      call self%chain%train%add_slopes(of_case, now%motion%train%inertia, self%crank, [(i, i=1, 3 - skip)], &
+        by_torque(1 + skip:), a_p, a_v)
     else
       a_p = slope(1 + skip:3 + n, 1 + skip:3)
       a_v = slope(1 + skip:3 + n, 4 + skip:6 + n)

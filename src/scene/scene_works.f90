@@ -108,7 +108,7 @@ contains
       speed = now%motion%piston_velocity
       if (scene%chain%bodies%piston%is_loose) speed = now%motion%tilting%com_velocity
       power = -scene%gas%force(now%cylinder_pressure)*speed
-      if (allocated(scene%chain%train)) power = power + scene%chain%train%gas_power(now%motion)
+      if (allocated(scene%chain%train)) power = power + now%motion%train%gas_power
     case (by_guide)
       if (scene%guide%is_loose) then
         associate (at => now%motion%tilting)
@@ -120,7 +120,7 @@ contains
       end if
     case (by_elastic)
       if (allocated(scene%chain%elastic)) power = scene%chain%elastic%damping_power(now%motion)
-      if (has_stations(scene)) power = power + scene%chain%train%damping_power(now%motion)
+      if (has_stations(scene)) power = power + now%motion%train%damping_power
     case default
       speed = scene%chain%driven_speed(now%motion)
       power = now%crank_moment*speed

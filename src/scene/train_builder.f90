@@ -93,9 +93,9 @@ contains
         other%sin_shift = sin(other%shift)
         other%cos_shift = cos(other%shift)
         other%axial_position = it%axial_position
-        other%bodies = new_bodies(crank_t(m%crank_length, it%crank_mass, it%crank_inertia, it%crank_com), &
+        call other%set_bodies(new_bodies(crank_t(m%crank_length, it%crank_mass, it%crank_inertia, it%crank_com), &
           rod_t(m%rod_length, it%rod_mass, it%rod_inertia, it%rod_com), piston_t(it%piston_mass), &
-          [gravity(1)*cos(other%bank) + gravity(2)*sin(other%bank), gravity(2)*cos(other%bank) - gravity(1)*sin(other%bank)])
+          [gravity(1)*cos(other%bank) + gravity(2)*sin(other%bank), gravity(2)*cos(other%bank) - gravity(1)*sin(other%bank)]))
       end associate
     end do
     call move_alloc(others, train%cylinders)

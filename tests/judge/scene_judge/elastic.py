@@ -210,11 +210,11 @@ class ElasticRod:
         return found
 
 
-def requested_columns(run: Run) -> dict[str, str]:
-    """The setting that adds to the trace the columns of elastic members that the judge needs."""
+def requested_columns(run: Run) -> list[str]:
+    """Names of the columns of elastic members on request that the judge needs."""
     names = []
     if "elastic_rod.section_area" in run.case:
         names += [f"{name}_{what}" for name in ElasticRod(run).names for what in ("rate", "acceleration")]
     if "crankshaft.flywheel_inertia" in run.case:
         names.append("flywheel_acceleration")
-    return {"output.columns": "'" + ", ".join(("standard", *names)) + "'"} if names else {}
+    return names

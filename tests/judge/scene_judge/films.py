@@ -76,7 +76,7 @@ class Film:
         self.viscosity, self.kinematic = viscosities(run)
         self.least = number("lubrication.least_film_ratio")
         self.scale = self.viscosity * self.length * self.radius**3 / self.clearance**2
-        self.lever = number("mechanism.crank_length") / number("mechanism.rod_length")
+        self.lever = number("mechanism.crank_length") / number("mechanism.rod_length", 1.0)
         self.is_solved = self.law == "finite_bearing" and self.variant != "short"
         self.table_error = min(float(run.summary.get("film_table_error", 0.0)), MOST_TABLE_ERROR)
 
@@ -357,14 +357,21 @@ def table_of_means():
     return mean
 
 
-def viscosities(run: Run) -> tuple[float, float]:
+def density_at(run: Run, temperature: float) -> float:
+    """Density of the oil [kg/m^3] by table 54D of ASTM D1250."""
+    rho = run.number("lubrication.density")
+    way = 0.6278 * (temperature - 288.15) / rho
+    return rho * math.exp(-way * (1 + 0.8 * way))
+
+
+def viscosities(run: Run, temperature: float | None = None) -> tuple[float, float]:
     """Dynamic [Pa s] and kinematic viscosity [m^2/s] of the oil: as the case has them, or by ASTM D341 or Vogel's equation from two
-    others at the film's temperature; the density at this temperature by table 54D of ASTM D1250."""
+    others at the film's temperature or another one."""
     law = run.text("lubrication.viscosity_law")
     if law in ("", "given"):
         return run.number("lubrication.viscosity"), run.number("lubrication.kinematic_viscosity")
     (t1, t2), (nu1, nu2) = run.pair("lubrication.known_temperatures"), run.pair("lubrication.known_viscosities")
-    t, rho = run.number("lubrication.temperature"), run.number("lubrication.density")
+    t = run.number("lubrication.temperature") if temperature is None else temperature
     if law == "vogel":
         pole = run.number("lubrication.vogel_temperature")
         share = (1 / (t - pole) - 1 / (t2 - pole)) / (1 / (t1 - pole) - 1 / (t2 - pole))
@@ -380,5 +387,4 @@ def viscosities(run: Run) -> tuple[float, float]:
             middle = math.sqrt(low * high)
             low, high = (middle, high) if sum_of(middle) < wanted else (low, middle)
         nu = low
-    way = 0.6278 * (t - 288.15) / rho
-    return rho * math.exp(-way * (1 + 0.8 * way)) * nu, nu
+    return density_at(run, t) * nu, nu

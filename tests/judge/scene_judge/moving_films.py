@@ -102,11 +102,15 @@ def film_rates(checks: RowChecks) -> dict[int, Vector]:
 
 
 def moving_film_drift(checks: RowChecks) -> tuple[float, float, str]:
-    """The largest distance of the film's place from the integral of its rate beyond the bound of the quadrature, over the clearance;
-    that bound, and the name; from the first row of each piece of rows with a film."""
-    rates = film_rates(checks)
+    """`drift` of the film's place."""
+    places = {name: checks.run.columns[name] for name in ("film_eccentricity_x", "film_eccentricity_y")}
+    return drift(checks.run.times, film_rates(checks), places, checks.film_law.clearance)
+
+
+def drift(times: list[float], rates: dict[int, Vector], places: dict[str, list[float]], size: float) -> tuple[float, float, str]:
+    """The largest distance of a place from the integral of its rate, which is known in some rows, beyond the bound of the quadrature, over a
+    size; that bound, and the name; from the first row of each piece of rows."""
     rows = sorted(rates)
-    times, columns = checks.run.times, checks.run.columns
     worst = (0.0, 0.0, "")
     if len(rows) < 2:
         return worst
@@ -118,9 +122,8 @@ def moving_film_drift(checks: RowChecks) -> tuple[float, float, str]:
         else:
             pieces.append([k])
     stencil = stencils([times[i] for i in rows], pieces, joined=False)
-    c = checks.film_law.clearance
-    for axis, name in enumerate(("film_eccentricity_x", "film_eccentricity_y")):
-        rate, place = [rates[i][axis] for i in rows], [columns[name][i] for i in rows]
+    for axis, (name, column) in enumerate(places.items()):
+        rate, place = [rates[i][axis] for i in rows], [column[i] for i in rows]
         for piece, ours in zip(pieces, stencil):
             first, moved, bound = piece[0], 0.0, 0.0
             for k, one in zip([k for k in piece if k > 0], ours):
@@ -129,10 +132,10 @@ def moving_film_drift(checks: RowChecks) -> tuple[float, float, str]:
                 by_rate = sum(rate[j] * w for j, w in zip(one.fine, one.by))
                 moved += by_rate
                 bound += SAFETY * abs(by_rate - sum(rate[j] * w for j, w in zip(one.coarse, one.coarse_by)))
-                if bound > BLURRED * c:   # the rows do not resolve the motion here
+                if bound > BLURRED * size:   # the rows do not resolve the motion here
                     first, moved, bound = k, 0.0, 0.0
                     continue
-                beyond = (abs(place[k] - place[first] - moved) - bound) / c
+                beyond = (abs(place[k] - place[first] - moved) - bound) / size
                 if not beyond <= worst[0]:
-                    worst = (beyond, bound / c, name)
+                    worst = (beyond, bound / size, name)
     return worst

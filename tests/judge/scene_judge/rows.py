@@ -6,7 +6,7 @@ import math
 
 from .contact import Contact
 from .drive import Drive
-from .films import Asperities, Film
+from .films import Asperities, Film, viscosities
 from .gas import gas_of
 from .guide import Guide
 from .laws import LANDING, ROUNDING, Friction
@@ -324,6 +324,8 @@ class RowChecks:
         if not 1e-3 < eps < 1 or law.is_solved and gap < LEAST_GAP:
             return
         turn = row.journal_turn + row.bearing_turn
+        if "film_temperature" in get:
+            share *= viscosities(self.run, get["film_temperature"])[0] / law.viscosity
         want = law.force(eps, gap, along, across, turn)
         others = [] if law.is_solved else [law.force(eps, gap, along + dx, across + dy, turn) for dx, dy in ((give, 0), (0, give))]
         blur = sum(math.hypot(other[0] - want[0], other[1] - want[1]) for other in others)

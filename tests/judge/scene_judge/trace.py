@@ -21,10 +21,12 @@ class Run:
     status: int
     message: str
     case: Values = dataclasses.field(default_factory=dict)
-    columns: Columns = dataclasses.field(default_factory=dict)
+    columns: Columns = dataclasses.field(default_factory=dict)   # without those of bearings that the mechanism does not feel
+    every: Columns = dataclasses.field(default_factory=dict)     # all columns
     events: list[dict[str, str]] = dataclasses.field(default_factory=list)
     summary: dict[str, str] = dataclasses.field(default_factory=dict)
     worn: list[dict[str, str]] = dataclasses.field(default_factory=list)
+    folder: Path = Path()      # of the case file
 
     def number(self, key: str, default: float = 0.0) -> float:
         """A value of the case; `default` if its group is absent."""
@@ -121,7 +123,8 @@ def read_run(folder: Path, name: str, status: int = 0, message: str = "") -> Run
         if not (folder / f"{name}{suffix}").exists():
             return run
     run.case = read_case((folder / f"{name}.resolved.nml").read_text())
-    run.columns = without_carried(run.case, read_columns(folder / f"{name}.csv"))
+    run.every = read_columns(folder / f"{name}.csv")
+    run.columns = without_carried(run.case, run.every)
     with (folder / f"{name}.summary.csv").open(newline="") as lines:
         run.summary = {row[0]: row[1] for row in csv.reader(lines)}
     for end, rows in ((".events.csv", run.events), (".wear.csv", run.worn)):
@@ -141,12 +144,13 @@ def run_case(program: Path, case: Path, settings: dict[str, str], limit: float =
             done = subprocess.run([*words, str(case)], capture_output=True, text=True, timeout=limit, check=False)
         except subprocess.TimeoutExpired:
             return Run(-1, f"more than {limit:g} s")
-        return read_run(Path(out), case.stem, done.returncode, done.stderr.strip())
+        return dataclasses.replace(read_run(Path(out), case.stem, done.returncode, done.stderr.strip()), folder=case.parent)
 
 
 def merged(one: Run, other: Run) -> Run:
     """The rows of two runs of the same motion, sorted by time; of two rows at the same time that of `one` is kept."""
     order = sorted([(t, 0, i) for i, t in enumerate(one.times)] + [(t, 1, i) for i, t in enumerate(other.times)])
     order = [here for k, here in enumerate(order) if k == 0 or here[0] > order[k - 1][0]]
-    sources = (one.columns, other.columns)
-    return dataclasses.replace(one, columns={name: [sources[k][name][i] for _, k, i in order] for name in one.columns})
+    sources = (one.every, other.every)
+    every = {name: [sources[k][name][i] for _, k, i in order] for name in one.every}
+    return dataclasses.replace(one, every=every, columns={name: every[name] for name in one.columns})

@@ -6,6 +6,7 @@ import math
 import zlib
 from pathlib import Path
 
+from .carried import judge_carried, requested_heat
 from .elastic import requested_columns
 from .energy import BLURRED, Balances, balances
 from .moving_films import moving_film_drift
@@ -34,6 +35,17 @@ class Verdict:
     states: Comparison | None = None
 
 
+def requested(run: Run) -> dict[str, str]:
+    """The setting that adds to the trace the columns on request that the judge needs."""
+    names = requested_columns(run) + requested_heat(run)
+    return {"output.columns": "'" + ", ".join(("standard", *names)) + "'"} if names else {}
+
+
+def has_no_mechanism(run: Run) -> bool:
+    """Whether the case is a bearing by itself."""
+    return "bearing_load.period_deg" in run.case
+
+
 def judge_rows(run: Run, verdict: Verdict) -> RowChecks:
     """Check mechanics and laws in every row."""
     checks = RowChecks(run)
@@ -43,13 +55,17 @@ def judge_rows(run: Run, verdict: Verdict) -> RowChecks:
     return checks
 
 
+def allowed_error(run: Run) -> float:
+    """Allowed error of the energy and of integrals."""
+    tolerance = min(run.number("integrator.relative_tolerance"), 1e-3)
+    angle = run.columns["crank_angle"]
+    return ENERGY * tolerance * max(1.0, abs(angle[-1] - angle[0]) / (2 * math.pi))
+
+
 def judge_energy(checks: RowChecks, verdict: Verdict) -> None:
     """Check the energy balance, and speeds and positions against the integrals of their rates."""
     run = checks.run
-    tolerance = min(run.number("integrator.relative_tolerance"), 1e-3)
-    angle = run.columns["crank_angle"]
-    whole = ENERGY * tolerance * max(1.0, abs(angle[-1] - angle[0]) / (2 * math.pi))
-    allowed, drifts = (max(FLOOR, min(ceiling, whole)) for ceiling in (CEILING, DRIFT))
+    allowed, drifts = (max(FLOOR, min(ceiling, allowed_error(run))) for ceiling in (CEILING, DRIFT))
     found = verdict.energy = balances(checks)
     if found.bound > BLURRED:
         verdict.notes.append(f"integrals not judged: the quadrature is only known to {found.bound:.1g}")
@@ -78,13 +94,16 @@ def judge_files(run: Run, resolved: bool = True) -> Verdict:
     if run.status or len(run.times) < 2:
         verdict.faults.append(f"no rows to judge: {run.summary.get('status', run.message)[:120]}")
         return verdict
-    checks = judge_rows(run, verdict)
+    checks = None if has_no_mechanism(run) else judge_rows(run, verdict)
     if resolved:
-        judge_energy(checks, verdict)
-        made, faults, notes = judge_wear(checks)
-        verdict.checks += made
-        verdict.faults += faults
-        verdict.notes += notes
+        judged = [judge_carried(run, max(FLOOR, min(DRIFT, allowed_error(run))))]
+        if checks:
+            judge_energy(checks, verdict)
+            judged.append(judge_wear(checks))
+        for made, faults, notes in judged:
+            verdict.checks += made
+            verdict.faults += faults
+            verdict.notes += notes
     else:
         verdict.notes.append("integrals not judged: too many steps for a row at each, and contacts between the rows of the grid")
     return verdict
@@ -98,7 +117,8 @@ def judge_scene(program: Path, case: Path, settings: dict[str, str], limit: floa
     first = run_case(program, case, {**plain, **rows}, limit)
     if first.status or not first.times:
         return Verdict(notes=[f"not judged: {first.summary.get('status', first.message)[:120]}"])
-    plain |= requested_columns(first)
+    more = requested(first)
+    plain |= more
     span = float(first.summary["simulated_time"])
     resolved = float(first.summary["steps_accepted"]) <= MOST_STEPS
 
@@ -112,8 +132,11 @@ def judge_scene(program: Path, case: Path, settings: dict[str, str], limit: floa
     verdict = judge_rows_on(GRID)
     if verdict.faults:   # faults of integrals over rows that are too far apart vanish with more rows
         verdict = judge_rows_on(CLOSER * GRID)
+    if has_no_mechanism(first):
+        verdict.notes.append("states not compared: there is no mechanism")
+        return verdict
     seed = zlib.crc32(repr(sorted(settings.items())).encode())
-    found = verdict.states = Reruns(program, case, settings | requested_columns(first), first, limit, seed).compare()
+    found = verdict.states = Reruns(program, case, settings | more, first, limit, seed).compare()
     if found.unjudged:
         verdict.notes.append(f"states not compared: {found.unjudged}")
     if not found.share <= 1:

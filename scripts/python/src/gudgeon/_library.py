@@ -79,7 +79,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
 }
 
 
-_LONG = ("run_new", "run_advance", "run_certify", "run_save")
+_LONG = ("run_new", "run_advance", "run_finish", "run_certify", "run_save")
 
 
 def path() -> Path:

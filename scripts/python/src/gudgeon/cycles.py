@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from scipy import fft, interpolate, signal
 
+from gudgeon.names import PLACES
 from gudgeon.results import MissingResult, Run
 
 TURN = 2 * np.pi
@@ -133,7 +134,8 @@ def spectrum(cycles: Cycles, column: str) -> tuple[np.ndarray, np.ndarray]:
     return frequency, np.sqrt(density)
 
 
-WORK_IN_CYCLE = re.compile(r"(?P<prefix>crank_pin_)?cycle_(work_(?P<part>\w+)|energy_change)")
+WORK_IN_CYCLE = re.compile(r"(?P<prefix>crank_pin_|small_end_)?cycle_(work_(?P<part>\w+)|energy_change)")
+NAMES = dict(PLACES.values())
 LABELS = {"gas": "gas", "drive": "drive", "damping": "damping", "guide": "guide", "elastic": "elastic members",
           "rest": "rest: error of the integration", None: "change of the energy"}
 
@@ -148,7 +150,7 @@ def work(run: Run) -> pd.DataFrame:
     for name, value in values.items():
         found = WORK_IN_CYCLE.fullmatch(name)
         part = found["part"]
-        label = LABELS.get(part) or f"{part}, {'crank pin' if found['prefix'] else 'piston pin'}"
+        label = LABELS.get(part) or f"{part}, {NAMES[found['prefix'] or '']}"
         row = {"quantity": label, "work[J]": value}
         if swept:
             row["mean_effective_pressure[Pa]"] = value / swept

@@ -11,10 +11,20 @@ import numpy as np
 from gudgeon.program import release_program
 from gudgeon.results import MissingResult
 
+#: Places of bearings: prefix of their columns and rows, and name.
+PLACES = {
+    "piston_pin": ("", "piston pin"),
+    "small_end": ("small_end_", "small end"),
+    "crank_pin": ("crank_pin_", "crank pin"),
+    "main_bearing": ("main_bearing_", "main bearing"),
+}
+
 #: Keys of a case whose names alone are not clear as labels.
 KEYS = {
     "joint.clearance": "radial clearance",
     "crank_pin.joint.clearance": "crank pin's radial clearance",
+    "small_end.joint.clearance": "radial clearance in the small end",
+    "asperities.roughness": "combined roughness",
     "initial.crank_speed": "crank speed",
     "lubrication.viscosity": "viscosity",
     "joint.bearing_length": "bearing length",
@@ -39,6 +49,10 @@ COLUMNS = {
     "rhs_evaluations": "evaluations",
     "period_revolutions": "period",
     "lyapunov_exponent": "Lyapunov exponent",
+    "small_end_min_film_thickness": "smallest film thickness in the small end",
+    "small_end_eccentricity_rate_x_max_abs": "speed of the pin across the small end",
+    "small_end_asperity_force_max": "force of asperities in the small end",
+    "pin_speed_rms": "speed of the pin, root mean square",
     "eccentricity_y": "eccentricity across the cylinder",
     "eccentricity_x": "eccentricity along the cylinder",
     "piston_velocity": "piston velocity",
@@ -92,6 +106,7 @@ def key_units() -> dict[str, str]:
         return {}
     units, group = {}, ""
     for line in text.splitlines():
+        line = line.removeprefix("!").strip()  # before groups that a case may have
         if line.startswith("&"):
             group = line[1:].strip()
         elif match := re.match(r"\s*(\w+) = .*?! ([^,:]+)[,:]", line):

@@ -7,7 +7,9 @@ import ctypes
 import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from . import _library
@@ -91,6 +93,7 @@ class Run:
         self.twin: Run | None = None
         self.certificate: Certificate | None = None
         self._resolved: str | None = None  # the complete case, if it was read from a file
+        self._files: Path | None = None  # that it was read from: their path without suffix
 
     # columns
 
@@ -211,6 +214,18 @@ class Run:
 
     def to_parquet(self, path: str | Path) -> None:
         self.to_pandas().to_parquet(path)
+
+    @cached_property
+    def tables(self) -> dict[str, pd.DataFrame]:
+        """What the run has beside rows and events, by the names of the files that the command line writes: `film` (fields of
+        pressure), `wear`, `film_history`."""
+        import pandas as pd
+
+        with TemporaryDirectory() as folder:
+            base = self._files or self.save(folder)
+            names = {path: path.name[len(base.name) + 1 : -4] for path in sorted(base.parent.glob(f"{base.name}.*.csv"))}
+            others = ("events", "summary", "certificate", "ideal")
+            return {name: pd.read_csv(path) for path, name in names.items() if name.split(".")[0] not in others}
 
     def save(self, folder: str | Path, name: str | None = None) -> Path:
         """Write the files of the command line: NAME.csv, NAME.events.csv, NAME.summary.csv, NAME.resolved.nml, ..."""
@@ -426,6 +441,7 @@ def load(path: str | Path, folder: str | Path | None = None) -> Run:
         case = Case.from_text(resolved.read_text(), base.name, folder or base.parent)
     run = Run(case, columns, rows, events, table.values.tolist(), base.name)
     run._resolved = resolved.read_text() if case else None
+    run._files = base
     if Path(f"{base}.ideal.csv").is_file():
         run.twin = load(f"{base}.ideal.csv", folder)
     return run

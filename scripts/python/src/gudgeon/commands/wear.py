@@ -12,6 +12,7 @@ import argparse
 
 from gudgeon import language
 from gudgeon.commands import Refused, add_output, add_results, save
+from gudgeon.names import PLACES
 from gudgeon.plots import wear as pictures
 from gudgeon.results import MissingResult, file_of
 
@@ -40,6 +41,6 @@ def run(options: argparse.Namespace) -> int:
         if not found:
             raise MissingResult(f"{path}: nothing has worn")
         worn += found
-        titles += [SHIPPED[name] if options.shipped else f"{language.current.keep(name)}: {pictures.JOINTS[joint]}" for joint, _ in found]
+        titles += [SHIPPED[name] if options.shipped else f"{language.current.keep(name)}: {PLACES[joint][1]}" for joint, _ in found]
     save(pictures.draw(worn, titles), options, path.parent, "wear" if options.shipped else f"{name}_wear")
     return 0

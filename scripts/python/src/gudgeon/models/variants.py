@@ -5,7 +5,9 @@ import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-PLACES = ("", "crank_pin.", "main_bearing.")  # prefix of a group: none (piston pin or all joints), or one place only
+from gudgeon.names import PLACES
+
+PREFIXES = ("", *(f"{place}." for place in PLACES))  # of a group: none (piston pin or all joints), or one place only
 LAWS = ("friction", "asperities", "lubrication", "contact")
 OTHER_GROUPS = ("guide", "elastic_rod", "crankshaft", "combustion", "cylinder_pressure")
 WORDS = {
@@ -63,7 +65,7 @@ def read_template(text: str) -> dict[str, dict[str, Key]]:
 
 def groups_named(case: Case, group: str) -> list[str]:
     """The groups of the case with that name, with their prefixes."""
-    return [place + group for place in PLACES if place + group in case]
+    return [place + group for place in PREFIXES if place + group in case]
 
 
 def loose_joints(case: Case) -> list[str]:
@@ -76,12 +78,12 @@ def carried_joints(case: Case) -> list[str]:
 
 def place_of(name: str) -> str:
     """' at the crank pin' for a group that belongs to one place alone, otherwise an empty text."""
-    return f" at the {pin_of(name)}" if name.startswith(PLACES[1:]) else ""
+    return f" at the {pin_of(name)}" if name.startswith(PREFIXES[1:]) else ""
 
 
 def pin_of(name: str) -> str:
     """The place of a joint in words."""
-    return next((place[:-1].replace("_", " ") for place in PLACES[1:] if name.startswith(place)), "piston pin")
+    return next((place[:-1].replace("_", " ") for place in PREFIXES[1:] if name.startswith(place)), "piston pin")
 
 
 def variants_of(case: Case, template: dict[str, dict[str, Key]]) -> list[Variant]:
@@ -247,7 +249,7 @@ def completed(variant: Variant, message: str, case: Case, template: dict[str, di
     completed."""
     if match := REQUIRED.search(message):
         group, key = match[1], match[3]
-        given = (name for name in PLACES if any(one.startswith(f"{name}{group}.") for one in variant.settings))
+        given = (name for name in PREFIXES if any(one.startswith(f"{name}{group}.") for one in variant.settings))
         place = f"{match[2]}." if match[2] else next(given, "")
         value = missing_value(f"{place}{group}", group, key, case, template)
         if value is None:

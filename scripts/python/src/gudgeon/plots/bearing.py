@@ -3,20 +3,19 @@
 import matplotlib.pyplot as plt
 import numpy as np
 from gudgeon import language
+from gudgeon.names import PLACES
 from gudgeon.plots.style import BLACK, BLUE, GREY, ORANGE, VERMILION, WIDTH
 from gudgeon.results import Run
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
-
-#: Places and the prefixes of their columns.
-PLACES = {"piston_pin": "", "crank_pin": "crank_pin_", "main_bearing": "main_bearing_"}
 
 #: The largest load in the picture, over the radius of the clearance circle.
 LOAD_RADIUS = 1.25
 
 
 def has_film(run: Run, place: str) -> bool:
-    return f"{PLACES[place]}film_force_x" in run and f"{PLACES[place]}eccentricity_x" in run
+    prefix, _ = PLACES[place]
+    return f"{prefix}film_force_x" in run and f"{prefix}eccentricity_x" in run
 
 
 def last_cycle(run: Run) -> np.ndarray:
@@ -32,7 +31,7 @@ def last_cycle(run: Run) -> np.ndarray:
 
 def orbit(run: Run, place: str, name: str) -> Drawing:
     """The orbit in fixed axes and in axes that turn with the load, over the clearance; x upwards, y to the right."""
-    prefix = PLACES[place]
+    prefix, _ = PLACES[place]
     rows = last_cycle(run)
     own = f"{prefix}film_eccentricity" if f"{prefix}film_eccentricity_x" in run else f"{prefix}eccentricity"
     x, y = run[f"{own}_x"][rows], run[f"{own}_y"][rows]

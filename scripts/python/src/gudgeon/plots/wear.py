@@ -17,8 +17,6 @@ SURFACES = (("pin", "pin", VERMILION), ("bore", "bore", BLUE))
 #: Deepest wear in the round picture, over the radius of the surface.
 EXAGGERATED = 0.35
 
-JOINTS = {"piston_pin": "piston pin", "crank_pin": "crank pin", "main_bearing": "main bearing"}
-
 
 def surfaces_of(path: Path) -> list[tuple[str, pd.DataFrame]]:
     """The joints of a file NAME.wear.csv, with their rows. Joints that have not worn are left out."""

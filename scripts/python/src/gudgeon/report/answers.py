@@ -4,13 +4,12 @@ Values of a cycle are those of the last whole cycle; a run without one has value
 """
 
 import html
+import math
 from collections.abc import Callable
 
 from gudgeon.language import Language
+from gudgeon.names import PLACES
 from gudgeon.results import Run
-
-#: Places of bearings: prefix of their rows, and name.
-PLACES = (("", "piston pin"), ("crank_pin_", "crank pin"), ("main_bearing_", "main bearing"))
 
 #: Shown together behind a value: the crank angle at which it occurs.
 ANGLE = "_angle"
@@ -92,13 +91,17 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
         if (change := rows("cycle_speed_fluctuation")) is not None and change > 1e-12:
             text += f", fluctuates by {100 * change:.3g} %"
         found.append(("Crank speed", text))
+    swing, drift = rows("pin_swing"), rows("pin_drift_per_revolution")
+    if swing is not None:
+        text = f"swings by {math.degrees(swing):.3g}°"
+        found.append(("Piston pin", text if drift is None else f"{text}, drifts by {math.degrees(drift):.3g}° a revolution"))
     return found
 
 
 def lines(run: Run) -> tuple[list[str], list[tuple[str, list[str]]], list[tuple[str, str]]]:
     """Names of the bearings; the lines of the bearings, with a text for each; and those of the machine. There are ten at most."""
     rows = Answers(run)
-    places = [(pre, name) for pre, name in PLACES if rows(f"{pre}min_film_thickness") is not None]
+    places = [(pre, name) for pre, name in PLACES.values() if rows(f"{pre}min_film_thickness") is not None]
     ours = [(name, [text(rows, pre) for pre, _ in places]) for name, text in OF_BEARINGS]
     ours = [(name, texts) for name, texts in ours if any(texts)]
     others = machine(rows)
@@ -110,7 +113,7 @@ def unsettled(run: Run) -> str:
     if run.summary.get("cycle_is_settled", ("", ""))[0] != "no":
         return ""
     rows, said = Answers(run), ""
-    for pre, name in PLACES:
+    for pre, name in PLACES.values():
         change = rows(f"{pre}film_thickness_change")
         if change is not None and abs(change) > 0.05:
             said = f": the film thickness at the {name} changes by {100 * abs(change):.2g} % from cycle to cycle"

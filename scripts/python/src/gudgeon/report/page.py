@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from gudgeon.language import Language
-from gudgeon.names import prefixed
+from gudgeon.names import PLACES, prefixed
 from gudgeon.plots import film_pressure
 from gudgeon.plots import wear as wear_pictures
 from gudgeon.plots.style import BLACK, BLUE, GREEN, PURPLE, VERMILION
@@ -59,6 +59,10 @@ MOTION = (
     "crank_pin_eccentricity_x",
     "crank_pin_eccentricity_y",
     "crank_pin_phase",
+    "small_end_eccentricity_x",
+    "small_end_eccentricity_y",
+    "small_end_phase",
+    "pin_angle",
     "piston_offset",
     "piston_tilt",
     *(f"guide_{corner}_force" for corner in CORNERS),
@@ -71,6 +75,10 @@ OVER_TIME = (
     ("normal_force", "Contact force", "kN", 1e-3),
     ("crank_pin_film_thickness", "Crank pin: film thickness (below 0: penetration)", "µm", 1e6),
     ("crank_pin_normal_force", "Crank pin: contact force", "kN", 1e-3),
+    ("small_end_film_thickness", "Small end: film thickness (below 0: penetration)", "µm", 1e6),
+    ("small_end_normal_force", "Small end: contact force", "kN", 1e-3),
+    ("pin_angle", "Angle of the pin", "°", 180 / np.pi),
+    ("pin_speed", "Speed of the pin", "rad/s", 1.0),
     ("crank_speed", "Crank speed", "rad/s", 1.0),
     ("crank_acceleration", "Crank angular acceleration", "10³ rad/s²", 1e-3),
     ("rod_acceleration", "Rod angular acceleration", "10³ rad/s²", 1e-3),
@@ -145,10 +153,10 @@ def over_time(columns: dict[str, np.ndarray], run: Run) -> list[tuple[str, str, 
     found = list(OVER_TIME)
     if "crankpin_force" in columns:
         found.insert(2, ("crankpin_force", "Crank pin force", "kN", 1e-3))
-    for pre, place in answers.PLACES:
-        named = "" if pre == "" and not any(other + "eccentricity_x" in columns for other, _ in answers.PLACES[1:]) else f"{place}: "
+    for pre, place in PLACES.values():
+        named = "" if pre == "" and not any(f"{other}eccentricity_x" in columns for other, _ in PLACES.values() if other) else f"{place}: "
         found += [(pre + name, (named + title).capitalize(), unit, factor) for name, title, unit, factor in OF_BEARINGS]
-        if pre not in ("", "crank_pin_"):
+        if pre == "main_bearing_":
             found.append((f"{pre}film_thickness", f"{place}: film thickness".capitalize(), "µm", 1e6))
     known = {name for name, *_ in found} | {name for name in columns if name.endswith(("_x", "_y")) and name[:-2] in columns}
     asked = [part.strip() for part in str(run.parameter("output", "columns", "")).split(",")]
@@ -234,17 +242,18 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
                 phase="phase",
             )
         )
-    if crank_pin := float(run.parameter("crank_pin.joint", "clearance", 0.0)) if "crank_pin_phase" in columns else 0.0:
-        found.append(
-            plane(
-                "Orbit of the crank pin",
-                *ECCENTRICITIES,
-                ("crank_pin_eccentricity_y", "crank_pin_eccentricity_x"),
-                (1 / crank_pin,) * 2,
-                circle=True,
-                phase="crank_pin_phase",
+    for place, title in (("small_end", "Orbit of the pin in the small end"), ("crank_pin", "Orbit of the crank pin")):
+        if f"{place}_phase" in columns:
+            found.append(
+                plane(
+                    title,
+                    *ECCENTRICITIES,
+                    (f"{place}_eccentricity_y", f"{place}_eccentricity_x"),
+                    (1 / float(run.parameter(f"{place}.joint", "clearance")),) * 2,
+                    circle=True,
+                    phase=f"{place}_phase",
+                )
             )
-        )
     found.append(
         plane(
             "Piston: velocity and acceleration",
@@ -431,7 +440,8 @@ def page(
         "rod": float(run.parameter("mechanism", "rod_length")),
         "bearing": drawn_bearing_radius(run),
         "bore": bore,
-        "crank_pin": crank_pin_of(run, columns),
+        "crank_pin": orbit_of(run, columns, "crank_pin"),
+        "small_end": orbit_of(run, columns, "small_end"),
         "engine": engine,
         "speed": float(run.parameter("initial", "crank_speed")),
         "modes": sum(name.startswith("rod_mode_") for name in used),
@@ -501,7 +511,7 @@ def page(
 def wear_section(worn: list[tuple[str, pd.DataFrame]], language: Language) -> str:
     """The section on worn surfaces as HTML."""
     heading = language.say("Wear of pin and bore")
-    drawing = wear_pictures.draw(worn, [wear_pictures.JOINTS[joint] for joint, _ in worn])
+    drawing = wear_pictures.draw(worn, [PLACES[joint][1] for joint, _ in worn])
     said = "Depth around each surface, exaggerated, and over the angle on it"
     return f'<section id="wear"><h2>{html.escape(heading)}</h2>{report_cycles.picture(drawing, said, language)}</section>'
 
@@ -567,12 +577,12 @@ def time_line(columns: dict[str, np.ndarray], run: Run) -> dict:
     }
 
 
-def crank_pin_of(run: Run, columns: dict[str, np.ndarray]) -> dict[str, float] | None:
-    """Clearance of the crank pin [m] and its largest eccentricity over the clearance; None if the crank pin has no clearance."""
-    if "crank_pin_eccentricity_x" not in columns:
+def orbit_of(run: Run, columns: dict[str, np.ndarray], place: str) -> dict[str, float] | None:
+    """Clearance of a joint [m] and its largest eccentricity over the clearance; None if it has no clearance."""
+    if f"{place}_eccentricity_x" not in columns:
         return None
-    clearance = float(run.parameter("crank_pin.joint", "clearance", 0.0))
-    largest = np.hypot(columns["crank_pin_eccentricity_x"], columns["crank_pin_eccentricity_y"]).max()
+    clearance = float(run.parameter(f"{place}.joint", "clearance"))
+    largest = np.hypot(columns[f"{place}_eccentricity_x"], columns[f"{place}_eccentricity_y"]).max()
     return {"clearance": clearance, "peak_ratio": float(largest) / clearance}
 
 

@@ -28,10 +28,14 @@
   const pressure = scene.angles ? new Int8Array(await unpack("pressure")) : null;
   const time = column.time, begin = time[0], end = time[scene.rows - 1];
   const joint = scene.clearance > 0;
-  const bore = scene.bore, crankPin = scene.crank_pin;
+  const bore = scene.bore, crankPin = scene.crank_pin, smallEnd = scene.small_end;
   document.body.classList.toggle("ideal", !joint);
   document.body.classList.toggle("boreless", !bore);
   document.body.classList.toggle("tight-crank-pin", !crankPin);
+  document.body.classList.toggle("tight-small-end", !smallEnd);
+  const beside = 2 * joint + Boolean(smallEnd) + Boolean(crankPin) + Boolean(bore);   // views beside that of the mechanism
+  document.body.classList.toggle("unmagnified", !beside);
+  document.body.style.setProperty("--beside", beside);
   document.body.classList.toggle("single", !scene.engine);
   document.body.classList.toggle("contactless", scene.contacts.length === 0);
   document.body.classList.toggle("filmless", !scene.angles);
@@ -123,7 +127,8 @@
   }
 
   // ---- magnification of the clearance, from 1 to 45 % of the bearing's radius; that of the bore to 20 % of the piston's
-  const largest = joint ? 0.45 * scene.bearing / scene.clearance : 1;
+  const pinClearance = Math.max(scene.clearance, smallEnd ? smallEnd.clearance : 0);
+  const largest = pinClearance ? 0.45 * scene.bearing / pinClearance : 1;
   const magnified = (most) => Math.pow(most, Number(byId("magnification").value));
   const magnification = () => magnified(largest);
   const atCrankPin = () => magnified(0.2 * scene.bearing / crankPin.clearance);   // at most 20 % of the piston pin's bearing
@@ -145,6 +150,8 @@
     const mc = crankPin ? atCrankPin() : 0;
     const bx = px - (crankPin ? mc * at("crank_pin_eccentricity_x") : 0), by = py - (crankPin ? mc * at("crank_pin_eccentricity_y") : 0);
     const ex = joint ? m * at("eccentricity_x") : 0, ey = (joint ? m * at("eccentricity_y") : 0) + pin;
+    // for a pin with clearance in the small end: the centre of the rod's eye is drawn at the magnified eccentricity from the pin's
+    const rx = ex - (smallEnd ? m * at("small_end_eccentricity_x") : 0), ry = ey - (smallEnd ? m * at("small_end_eccentricity_y") : 0);
     g.strokeStyle = COLOUR.ink; g.lineWidth = 2.5;
     for (const side of [-1, 1]) {
       g.beginPath();
@@ -164,9 +171,16 @@
     g.beginPath(); g.rect(-half * scale, -2.6 * bearing * scale, 2 * half * scale, 4.1 * bearing * scale); g.fill(); g.stroke();
     g.restore();
     circle(g, X(pin), Y(piston), bearing * scale, "#fff", COLOUR.ink, 1.2);
-    if (bending) bentBar(g, X, Y, [bx, by], [piston + ex, ey], 0.55 * bearing, bending);
-    else bar(g, X(by), Y(bx), X(ey), Y(piston + ex), 0.55 * bearing * scale);
-    circle(g, X(ey), Y(piston + ex), (bearing - m * scene.clearance) * scale * (joint ? 1 : 0.75), COLOUR.blue, COLOUR.ink, 1);
+    if (bending) bentBar(g, X, Y, [bx, by], [piston + rx, ry], 0.55 * bearing, bending);
+    else bar(g, X(by), Y(bx), X(ry), Y(piston + rx), 0.55 * bearing * scale);
+    const radius = bearing - m * pinClearance;   // of the pin
+    if (smallEnd) circle(g, X(ry), Y(piston + rx), (radius + m * smallEnd.clearance) * scale, "#fff", COLOUR.ink, 1);
+    circle(g, X(ey), Y(piston + ex), radius * scale * (joint || smallEnd ? 1 : 0.75), COLOUR.blue, COLOUR.ink, 1);
+    if (column.pin_angle) {   // a mark on the pin shows how it turns
+      const turn = at("pin_angle");
+      g.beginPath(); g.moveTo(X(ey), Y(piston + ex)); g.lineTo(X(ey + radius * Math.sin(turn)), Y(piston + ex + radius * Math.cos(turn)));
+      g.strokeStyle = "#fff"; g.lineWidth = 2; g.stroke();
+    }
     circle(g, X(0), Y(0), 0.45 * bearing * scale, "#fff", COLOUR.ink, 1);
     if (crankPin) circle(g, X(by), Y(bx), (0.45 * bearing + mc * crankPin.clearance) * scale, "#fff", COLOUR.ink, 1);
     circle(g, X(py), Y(px), 0.45 * bearing * scale, crankPin ? COLOUR.blue : "#fff", COLOUR.ink, 1);
@@ -212,7 +226,7 @@
     }
     circle(g, pinX, pinY, radius - gap, COLOUR.steel, COLOUR.ink, 1.2);
     circle(g, cx, cy, radius, null, COLOUR.ink, 2);
-    const turn = -at("rod_angle"), mark = radius - gap;   // a line on the pin shows that it turns with the rod
+    const turn = column.pin_angle ? Math.PI + at("pin_angle") : -at("rod_angle"), mark = radius - gap;   // a line on the pin shows how it turns
     g.beginPath(); g.moveTo(pinX, pinY); g.lineTo(pinX - mark * Math.sin(turn), pinY + mark * Math.cos(turn));
     g.strokeStyle = COLOUR.grey; g.lineWidth = 1; g.stroke();
     circle(g, pinX, pinY, 2.5, COLOUR.ink);
@@ -366,6 +380,7 @@
         + (force > 0 ? `, ${(force / 1e3).toFixed(2)} kN` : ""));
       if (pressure && near("phase") === 1) parts.push(`${W("film pressure up to")} ${(near("film_peak") / 1e6).toPrecision(3)} MPa`);
     }
+    if (column.pin_angle) parts.push(`${W("pin turned")} ${(at("pin_angle") * 180 / Math.PI).toFixed(2)}°`);
     if (bore) {
       const touching = [1, 2, 3, 4].filter((i) => near(`guide_${i}_force`) > 0);
       parts.push(`${W("piston offset")} ${(1e6 * at("piston_offset")).toFixed(1)} µm, ${W("tilt")} ${(1e3 * at("piston_tilt")).toFixed(2)} mrad`
@@ -388,6 +403,7 @@
   function draw() {
     drawMechanism();
     if (joint) { drawJoint(); drawOrbit("orbit", "", scene.clearance, scene.peak.eccentricity_ratio); }
+    if (smallEnd) drawOrbit("small-end-orbit", "small_end_", smallEnd.clearance, smallEnd.peak_ratio);
     if (crankPin) drawOrbit("crank-pin-orbit", "crank_pin_", crankPin.clearance, crankPin.peak_ratio);
     if (bore) drawBore();
     if (scene.engine) drawEngine();
@@ -400,7 +416,7 @@
   const turns = () => Math.pow(10, Number(byId("speed").value));   // revolutions a second
   function labels() {
     byId("speed-value").textContent = local(`${turns().toPrecision(2)} ${W("rev/s")}`);
-    byId("magnification-value").textContent = local(`× ${(joint || !(bore || crankPin) ? magnification() : crankPin ? atCrankPin() : inBore(bore.radius)).toPrecision(3)}`);
+    byId("magnification-value").textContent = local(`× ${(pinClearance || !(bore || crankPin) ? magnification() : crankPin ? atCrankPin() : inBore(bore.radius)).toPrecision(3)}`);
   }
 
   function frame(stamp) {

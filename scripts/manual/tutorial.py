@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""Runs the commands of a tutorial in their order, and compares what they print with what the page shows.
+
+    scripts/manual/tutorial.py PAGE [--program PROGRAM] [--write]     --write: puts what they print into the page
+
+A block after a line that ends with "`NAME`:" is a file. In a block that begins with "$ " each such line is a command, run in the folder of the files, and the lines behind it are its output; `...` stands for anything, and numbers may be off by
+2e-3 of their value, with ~ before them by a third.
+"""
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[2]
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
+
+
+def blocks(text: str) -> list[tuple[str, str, str]]:
+    """The indented blocks of a page, each with the line before it and its text as it stands."""
+    found = []
+    for block in re.finditer(r"^(\S[^\n]*)\n\n((?:    [^\n]*\n|\n(?=    ))+)", text, re.MULTILINE):
+        body = "".join(line[4:] if line.strip() else "\n" for line in block[2].splitlines(keepends=True))
+        found.append((block[1], body, block[2]))
+    return found
+
+
+def commands(text: str) -> list[str]:
+    """All commands of a page."""
+    return [line[2:] for _, body, _ in blocks(text) for line in body.splitlines() if line.startswith("$ ")]
+
+
+def alike(shown: str, printed: str) -> bool:
+    """Whether a printed line is the shown one."""
+    parts = [re.escape(NUMBER.sub("#", part)) for part in shown.split("...")]
+    if not re.fullmatch(".*".join(parts), NUMBER.sub("#", printed)):
+        return False
+    if "..." in shown:
+        return True
+    pairs = zip(NUMBER.finditer(shown), NUMBER.findall(printed))
+    return all(abs(float(a[0]) - float(b)) <= (0.33 if shown[: a.start()].endswith("~") else 2e-3) * max(abs(float(a[0])), abs(float(b))) for a, b in pairs)
+
+
+def run(page: Path, program: Path, write: bool = False) -> list[str]:
+    """What is wrong in the page, one line each."""
+    text = page.read_text(encoding="utf-8")
+    wrong = []
+    with tempfile.TemporaryDirectory() as folder:
+        work = Path(folder, "work")
+        work.mkdir()
+        (Path(folder) / "gudgeon").symlink_to(program)
+        path = f"{folder}:{TOP / '.venv/bin'}:{os.environ['PATH']}"
+        for before, body, block in blocks(text):
+            name = re.search(r"`([\w.]+\.\w+)`[^`]*:$", before)
+            if not body.startswith("$ "):
+                if name:
+                    with (work / name[1]).open("w", encoding="utf-8") as file:
+                        file.write(body)
+                continue
+            now = ""
+            for command, shown in re.findall(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", body, re.MULTILINE):
+                done = subprocess.run(command, shell=True, cwd=work, capture_output=True, text=True, env={**os.environ, "PATH": path})
+                printed = re.sub(r"(evaluations, )[\d.e-]+ s", r"\1... s", done.stdout.rstrip("\n"))
+                lines = shown.rstrip("\n").splitlines()
+                fresh = [line if line in lines or i >= len(lines) or not alike(lines[i], line) else lines[i] for i, line in enumerate(printed.splitlines())]
+                now += "".join(f"    {line}\n" for line in [f"$ {command}", *fresh])
+                if done.returncode:
+                    wrong.append(f"{command}: exit status {done.returncode}: {done.stderr[-300:]}")
+                elif len(lines) != len(printed.splitlines()) or not all(map(alike, lines, printed.splitlines())):
+                    wrong.append(f"{command} prints: {printed}")
+            text = text.replace(block, now)
+    if write:
+        page.write_text(text, encoding="utf-8")
+    return wrong
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("page", type=Path)
+    parser.add_argument("--program", type=Path)
+    parser.add_argument("--write", action="store_true")
+    options = parser.parse_args()
+    program = options.program or TOP / subprocess.run([TOP / "scripts/build.sh"], check=True, capture_output=True, text=True).stdout.strip()
+    wrong = run(options.page, program.resolve(), options.write)
+    print("\n".join(wrong))
+    return bool(wrong)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
