@@ -19,8 +19,10 @@ import tempfile
 from pathlib import Path
 from urllib.parse import unquote
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts/manual"))
+for folder in ("manual", "bench"):
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts" / folder))
 
+import tell_rungs
 import tutorial
 from test_faults import ROOT, assertions, check, program_built
 from test_report import Browser  # restarts in .venv
@@ -270,6 +272,13 @@ def check_tutorials(program: Path) -> None:
         check(len(ours) > 2 and ours == theirs, f"{other} has the same commands")
 
 
+def check_rungs() -> None:
+    """The table of rungs is that of the results of gudgeon-plot models that are kept."""
+    text = (ROOT / "data/measured/rungs.md").read_text(encoding="utf-8")
+    for question, asked in tell_rungs.QUESTIONS.items():
+        check(tell_rungs.section(question, *asked) in text, f"data/measured/rungs.md, {question}: is that of scripts/bench/tell_rungs.py")
+
+
 def check_symbols() -> None:
     """The table of symbols gives each letter one meaning."""
     letters = [letter for row in table_with(ROOT / "data/manual/symbols.md", "symbol") for letter in re.findall(r"\$([^$]+)\$", row[0])]
@@ -356,7 +365,7 @@ def names_of_engine(name: str) -> list[str]:
 def is_described(name: str, unit: str, known: set[tuple[str, str]]) -> bool:
     """Whether the reference has a column or quantity: by its name, without the prefix of a joint, or with capitals in place of a
     number or word."""
-    whole, name = name, re.sub(r"^(crank_pin_|main_bearing_(?!force)|guide_\d_(?!gap|force|friction))", "", name)
+    whole, name = name, re.sub(r"^(crank_pin_|small_end_|main_bearing_(?!force)|guide_\d_(?!gap|force|friction))", "", name)
     names = [whole, name, f"crank_pin_{name}", re.sub(r"^(rod_mode|rod_axial)_\d$", r"\1_2", name), re.sub(r"^steps_limited_by_\w+$", "steps_limited_by_NAME", name),
              re.sub(r"^(steps_of)_(order_)?\d+", r"\1_\2N", name), *names_of_engine(name),
              re.sub(r"^\w+_time_fraction_with_\w+$", "PHASE_time_fraction_with_NAME", name)]
@@ -466,6 +475,7 @@ def main() -> int:
     check_drawings()
     check_messages()
     check_symbols()
+    check_rungs()
     check_pictures()
     program = (options.program or program_built()).resolve()
     check_commands(program)

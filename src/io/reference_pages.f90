@@ -29,7 +29,7 @@ module reference_pages
     film = 'lubrication.viscosity=0.0117 '
 
   !> Kinds of scenes that together have every column.
-  type(scene_kind_t), parameter :: kinds(17) = [ &
+  type(scene_kind_t), parameter :: kinds(18) = [ &
     scene_kind_t('Every scene', ''), &
     scene_kind_t('Joint with clearance (the last three columns only with `&contact`)', play//contact), &
     scene_kind_t('Contact with `geometry = ''conformal''`', play//contact//'contact.geometry=conformal'), &
@@ -46,6 +46,8 @@ module reference_pages
     scene_kind_t('Wear', play//contact//'wear.rate=1e-15,1e-15'), &
     scene_kind_t('Crank pin with clearance', 'crank_pin.joint.kind=clearance crank_pin.joint.clearance=2e-5 '// &
       'crank_pin.joint.bearing_radius=0.02 crank_pin.contact.law=hertz'), &
+    scene_kind_t('Floating piston pin (`pin.kind`)', play//contact//'pin.kind=floating pin.mass=0.1 pin.inertia=1e-5 '// &
+      'small_end.joint.kind=clearance small_end.joint.clearance=2e-5 small_end.joint.bearing_radius=0.01'), &
     scene_kind_t('Guide (`kind = ''friction''` has the first column alone)', 'guide.kind=clearance '// &
       'guide.bore_clearance=1e-4 guide.skirt_top=0.02 guide.skirt_bottom=0.02 guide.piston_radius=0.035 '// &
       'guide.piston_inertia=1e-3 guide.stiffness=1e8 guide.coefficient=0'), &
@@ -172,8 +174,8 @@ contains
     if (.not. allocated(error)) call choose_columns(case, .false., list, error)
   end subroutine columns_of
 
-  !> Append a section with the columns of a scene that no earlier scene had. Columns of the crank pin that the piston pin has too
-  !> are left out.
+  !> Append a section with the columns of a scene that no earlier scene had. Columns of the crank pin and of the small end that the
+  !> piston pin has too are left out.
   subroutine add_columns(title, list, seen, text)
     character(len=*), intent(in) :: title
     type(column_list_t), intent(in) :: list
@@ -186,7 +188,7 @@ contains
     rows = ''
     do i = 1, size(list%names)
       if (any(seen == list%names(i))) cycle
-      if (index(list%names(i), 'crank_pin_') == 1 .and. any(seen == list%names(i)(11:))) cycle
+      if (any(list%names(i)(:10) == ['crank_pin_', 'small_end_']) .and. any(seen == list%names(i)(11:))) cycle
       seen = [character(len=name_length) :: seen, list%names(i)]
       name = list%names(i)
       bracket = index(name, '[')
