@@ -268,7 +268,7 @@ contains
     name = list%groups(at)%name
     n = 1
     do i = 1, at - 1
-      if (index(list%groups(i)%name, name//'_') == 1) n = n + 1
+      if (list%groups(i)%name == name//'_'//integer_text(n)) n = n + 1
     end do
     if (find_group(values%groups, name//'_'//integer_text(n)) > 0) then
       list%groups(at)%name = name//'_'//integer_text(n)

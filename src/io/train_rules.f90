@@ -32,7 +32,10 @@ contains
       call check_damper(i)
     end do
     if (values%problems%concerns('crankshaft')) return
-    if (n_cylinders > 0) call check_cylinders()
+    if (n_cylinders > 0) then
+      if (n_cylinders < size(c%cylinders)) return   ! a number is left out
+      call check_cylinders()
+    end if
     if (values%problems%concerns('mechanism') .or. any([(values%problems%concerns(trim(cylinder(i))), i=1, n_cylinders)])) return
     if (allocated(c%shaft) .and. .not. values%problems%concerns('crankshaft')) call check_inertias()
 

@@ -56,7 +56,8 @@ contains
     logical, intent(out) :: wanted(:)
     type(error_t), allocatable, intent(out) :: error
     character(len=name_length) :: known(size(names) + 1)   !! names without units
-    character(len=:), allocatable :: rest, name, near, message
+    integer, parameter :: longest = 500   !! list of columns in a message
+    character(len=:), allocatable :: rest, name, near, message, listed
     integer :: i, comma
     logical :: found
 
@@ -64,6 +65,8 @@ contains
     do i = 1, size(names)
       known(i + 1) = names(i)(:scan(names(i), '[') - 1)
     end do
+    listed = allowed(known)
+    if (len(listed) > longest) listed = listed(:index(listed(:longest), ',', back=.true.))//' ...)'
     message = ''
     near = ''
     wanted = .false.
@@ -84,7 +87,7 @@ contains
       if (message /= '') message = message//achar(10)
       near = nearest_word(name, known)
       if (near /= '') near = '; did you mean '//near//'?'
-      message = message//"&output columns = '"//name//"': no such column in this scene"//near//allowed(known)
+      message = message//"&output columns = '"//name//"': no such column in this scene"//near//listed
     end do
     if (message /= '') call fail(error, message, status_case_file)
   end subroutine read_names

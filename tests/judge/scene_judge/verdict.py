@@ -8,8 +8,8 @@ from pathlib import Path
 
 from .carried import judge_carried, requested_heat
 from .elastic import requested_columns
-from .engine import Engine
 from .energy import BLURRED, Balances, balances
+from .engine import Engine
 from .moving_films import drift, moving_film_drift
 from .reruns import Comparison, Reruns
 from .rows import RowChecks
