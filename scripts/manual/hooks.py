@@ -16,7 +16,8 @@ import latex2mathml.converter
 
 log = logging.getLogger("mkdocs.hooks")
 EQUATION = re.compile(r'<(span|div) class="arithmatex">\\[(\[](.*?)\\[)\]]</\1>', re.DOTALL)
-printed: dict[str, str] = {}   # content of each page, in the order of the build
+printed: dict[str, str] = {}   # content of each page
+titles: dict[str, str] = {}
 
 
 def bold(letter: str) -> str:
@@ -39,6 +40,7 @@ def on_page_content(text: str, page, **_) -> str:
 
     text = EQUATION.sub(math, text)
     printed[page.file.name] = text
+    titles[page.file.name] = page.title
     return text
 
 
@@ -58,6 +60,8 @@ def on_post_build(config, **_) -> None:
         text = re.sub(r'href="(\w+)\.html(?:#([^"]*))?"', lambda m: f'href="#{m[1]}{"-" + m[2] if m[2] else ""}"' if m[1] in printed else m[0], text)
         parts.append(f'<section id="{name}">\n{text}\n</section>')
     style = "".join(f'<link rel="stylesheet" href="{sheet}">' for sheet in config.extra_css)
+    contents = "".join(f'<li><a href="#{name}">{html.escape(titles[name])}</a></li>' for name in on_nav.pages[1:])
+    parts.insert(1, f"<section><h1>Contents</h1><ol>{contents}</ol></section>")
     page = (f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{config.site_name}</title>{style}</head>'
             f'<body class="print">{"".join(parts)}</body></html>')
     (site / "print.html").write_text(page, encoding="utf-8")

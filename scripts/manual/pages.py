@@ -68,6 +68,13 @@ def reference(program: str, subject: str) -> str:
     return subprocess.run([program, "--reference", subject], check=True, capture_output=True, text=True).stdout
 
 
+def rungs(question: str, page: Path, wanted: set[Path]) -> str:
+    """The measured effect and cost of each rung of a question, as a section of its page."""
+    path = MEASURED / "rungs.md"
+    found = re.search(rf"^## {question}\n(.*?)(?=^## |\Z)", path.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    return f"\n## Effect and cost\n{relinked(found[1], path, page, wanted)}"
+
+
 def collect(program: str) -> None:
     shutil.rmtree(PAGES, ignore_errors=True)
     wanted = {path for folder in (SOURCE, MEASURED) for path in folder.glob("*.md")} | {TOP / name for name in OTHERS}
@@ -84,6 +91,8 @@ def collect(program: str) -> None:
             text = relinked(path.read_text(encoding="utf-8"), path, page, wanted)
             if path.parent == SOURCE and path.stem in REFERENCE:
                 text += reference(program, REFERENCE[path.stem])
+            if path.stem.startswith("which_"):
+                text += rungs(path.stem.removeprefix("which_").capitalize(), page, wanted)
             if path == SOURCE / "messages.md":
                 text += messages.page()
             if path == SOURCE / "measured.md":
