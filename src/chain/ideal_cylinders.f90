@@ -69,8 +69,8 @@ contains
     end associate
   end subroutine set_bodies
 
-  !> Inertia I, half of its slope I'/2 [kg m^2], moment of gravity G [N m] and speed of the piston p [m] at the sine and the cosine of
-  !> a crank angle.
+  !> Inertia I, half of its slope I'/2 [kg m^2], moment of gravity G [N m] and speed of the piston p [m] at the sine and the cosine
+  !> of a crank angle.
   pure subroutine find_terms(self, sine, cosine, inertia, half_slope, weight, rate)
     class(ideal_cylinder_t), intent(in) :: self
     real(dp), intent(in) :: sine, cosine

@@ -208,8 +208,8 @@ contains
     end associate
   end function pressure
 
-  !> Largest pressure [Pa] of (5.20); a long film has no side flow. By the Reynolds equation u^3 dp/da is proportional to eps W (cos a
-  !> + 3 eps/(2 + eps^2)) + 2 eps_dot sin a; the pressure is largest where this falls through 0.
+  !> Largest pressure [Pa] of (5.20); a long film has no side flow. By the Reynolds equation u^3 dp/da is proportional to
+  !> eps W (cos a + 3 eps/(2 + eps^2)) + 2 eps_dot sin a; the pressure is largest where this falls through 0.
   pure subroutine peak_and_flow(self, motion, most, flow)
     class(pinkus_sternlicht_t), intent(in) :: self
     type(film_motion_t), intent(in) :: motion

@@ -62,8 +62,8 @@ contains
     if (.not. allocated(error)) call parse_values(text, path, overrides, values, is_bearing)
   end subroutine read_case_values
 
-  !> The values of a case file's text and of overrides; see `read_case_values`. `path` gives its name in messages. Groups that may be
-  !> repeated have more than one number only if the case has such a group, or `all_groups` is present and true.
+  !> The values of a case file's text and of overrides; see `read_case_values`. `path` gives its name in messages. Groups that may
+  !> be repeated have more than one number only if the case has such a group, or `all_groups` is present and true.
   subroutine parse_values(text, path, overrides, values, is_bearing, all_groups)
     character(len=*), intent(in) :: text, path, overrides(:)
     type(case_values_t), intent(out) :: values

@@ -51,8 +51,8 @@ module case_schema
 
 contains
 
-  !> Groups and keys of a case file, in the order of the template and of the resolved case. Without `repeats` only the first of groups
-  !> that may be repeated.
+  !> Groups and keys of a case file, in the order of the template and of the resolved case. Without `repeats` only the first of
+  !> groups that may be repeated.
   subroutine case_schema_of(table, repeats)
     type(key_table_t), intent(out) :: table
     logical, intent(in), optional :: repeats
