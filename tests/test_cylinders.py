@@ -288,6 +288,15 @@ def refusals(run: Runner) -> None:
         check(says in message and message.count("\n") == 1, f"refused with one line: {' '.join(changes)[:60]}", message[:300])
 
 
+    # a gas group before the cylinders is none of them
+    text = six.read_text()
+    gas = text[text.index("&cylinder_pressure"):text.index("&run")]
+    moved = run.folder / "gas_first.nml"
+    moved.write_text(text.replace(gas, "").replace("&cylinder station = 3", gas.replace("mwm_pressure.csv", str(CASES / "mwm_pressure.csv")) + "&cylinder station = 3", 1))
+    found = subprocess.run([run.program, "--check", moved], capture_output=True, text=True, check=False)
+    check(found.returncode == 0 and "cylinders: 6" in found.stdout, "a gas group before the cylinders", found.stderr[:200])
+
+
 def resumes(run: Runner) -> None:
     """A run that goes on from a state at a bound of two cylinders ends as the whole run."""
     whole = run(CASES / "inline_four.nml", *FINE, "integrator.revolutions=3", "drive.kind=free", "drive.flywheel_inertia=0.5")
