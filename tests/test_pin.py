@@ -265,6 +265,48 @@ def coulomb(run: Runner) -> None:
           f"{spin.max():.3g}")
 
 
+def spin_down(run: Runner) -> None:
+    """Crank at rest, the piston on the pin and the pin in the rod: equal friction forces slow a spinning pin evenly, w = w_0 - M t/I, without moving it, until
+    both surfaces stick in the same instant. The contacts begin at their static penetrations (N/K)^(2/3), and the rod is too heavy to turn."""
+    piston, pin, mu, g, stiffness, inertia, start, radius, c = 0.4, 0.05, 0.06, 9.80665, 1e10, 2.6e-6, 20.0, 0.01, (4e-5, 3e-5)
+    load = (piston * g, (piston + pin) * g)
+    force = mu * load[0]
+    e = [clearance + (n / stiffness) ** (2 / 3) for clearance, n in zip(c, load)]
+    text = f"""&mechanism crank_length = 0.05, crank_mass = 0.3, crank_inertia = 0.002, rod_length = 0.12, rod_mass = 0.21, rod_inertia = 1e6,
+  rod_com = 0.06, 0.0, piston_mass = {piston} /
+&drive kind = 'constant_speed' /
+&initial crank_speed = 0.0, pin_speed = {start}, eccentricity = {e[0]!r}, 0.0, small_end_eccentricity = {-e[1]!r}, 0.0 /
+{PIN.format(pin, inertia)}
+&joint place = 'piston_pin', kind = 'clearance', clearance = {c[0]}, bearing_radius = {radius} /
+&joint place = 'small_end', kind = 'clearance', clearance = {c[1]}, bearing_radius = {radius} /
+&contact law = 'hertz', stiffness = {stiffness} /
+&friction place = 'piston_pin', law = 'coulomb', coefficient = {mu} /
+&friction place = 'small_end', law = 'coulomb', coefficient = {force / load[1]!r} /
+&integrator end_time = 0.015, relative_tolerance = 1e-9 /
+&output interval = 1e-4, digits = 17 /
+"""
+    rows = run(text)[0]
+    want = np.maximum(start - force * (2 * radius - sum(c)) / inertia * rows["time"], 0)
+    check((np.abs(rows["pin_speed"] - want) < 1e-7).all(), "a pin that friction stops in both bearings at once", f"{np.abs(rows['pin_speed'] - want).max():.3g}")
+    stands = rows["time"] > inertia * start / (force * (2 * radius - sum(c))) + 1e-5
+    largest = max(np.abs(rows[prefix + "friction_force"][stands]).max() for prefix in ("", PREFIX))
+    check(stands.sum() > 30 and largest < 1e-7, "nothing turns it then", f"{largest:.3g}")
+
+
+def wear(run: Runner) -> None:
+    """Both surfaces of both bearings wear by rate times force times sliding path, wherever on them."""
+    rate, pressed = 1e-14, TOP / "cases" / "pin" / "ticking.nml"
+    rows = run(pressed, f"wear.rate={rate}, {2 * rate}", "integrator.revolutions=1", "output.samples_per_revolution=20000", "joint.bearing_length=0.03",
+               "small_end.joint.bearing_length=0.024")[0]
+    worn = pd.read_csv(run.folder / str(run.number) / "ticking.wear.csv").rename(columns=lambda column: column.partition("[")[0])
+    for place, prefix, length, c in (("piston_pin", "", 0.03, 30e-6), ("small_end", PREFIX, 0.024, 40e-6)):
+        path = np.trapezoid(rows[prefix + "normal_force"] * np.abs(rows[prefix + "sliding_speed"]), rows["time"])
+        own = worn[worn["joint"] == place]
+        for surface, radius, factor in (("pin", 0.011 - c, 1), ("bore", 0.011, 2)):
+            volume = own[f"{surface}_depth"].sum() * radius * length * 2 * np.pi / len(own)
+            check(abs(volume / (factor * rate * path) - 1) < 1e-3, f"wear of the {surface} at the {place}", f"{volume!r} {factor * rate * path!r}")
+
+
 def energies(run: Runner) -> None:
     """Combinations that no reference has: no energy is lost."""
     rod = ("elastic_rod.youngs_modulus=2.07e11", "elastic_rod.section_area=2e-4", "elastic_rod.section_inertia=4e-9")
@@ -359,7 +401,7 @@ def results(run: Runner) -> None:
     check(abs(float(summary["pin_drift_per_revolution"]) - angle[-1] / 3) < 1e-8, "pin_drift_per_revolution is its mean", summary["pin_drift_per_revolution"])
     check(abs(float(summary["pin_swing"]) - np.ptp(angle[-2001:])) < 1e-6, "pin_swing is that of the last revolution", summary["pin_swing"])
     for name, relative in (("turning_in_piston", rows["pin_speed"]), ("turning_in_rod", rows["pin_speed"] + rows["rod_speed"])):
-        turned = np.trapezoid(np.abs(relative), rows["time"]) if hasattr(np, "trapezoid") else np.trapz(np.abs(relative), rows["time"])
+        turned = np.trapezoid(np.abs(relative), rows["time"]) if hasattr(np, "trapezoid") else np.trapezoid(np.abs(relative), rows["time"])
         check(abs(float(summary[name]) / turned - 1) < 1e-5, f"{name} is the integral of the speed", f"{summary[name]} {turned!r}")
     share = float(summary["turning_in_rod"]) / (float(summary["turning_in_rod"]) + float(summary["turning_in_piston"]))
     check(abs(float(summary["small_end_turning_share"]) - share) < 1e-9, "small_end_turning_share")
@@ -439,7 +481,7 @@ def main() -> int:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         run = Runner(options.program or str(release_program()), Path(folder))
-        for part in (references, tolerances, either_body, identities, nothing_turns_it, limits, squeeze, ring, coulomb, energies, elements, random_scenes,
+        for part in (references, tolerances, either_body, identities, nothing_turns_it, limits, squeeze, ring, coulomb, spin_down, wear, energies, elements, random_scenes,
                      results, periodic, twin, resumes, refusals):
             part(run)
     return assertions.report()
