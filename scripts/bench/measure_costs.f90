@@ -26,7 +26,7 @@ program measure_costs
   implicit none
 
   integer, parameter :: n_states = 64, blocks = 31, calls = 6400, steps_in_block = 2000
-  integer, parameter :: name_length = 32, n_scenes = 42, n_quantities = 8
+  integer, parameter :: name_length = 32, n_scenes = 43, n_quantities = 8
   character(len=name_length), parameter :: scenes(n_scenes) = [character(len=name_length) :: 'ideal', 'ideal+gas', 'free', &
     'free+gas', 'contact_hertz', 'contact', 'contact_johnson', 'contact_conformal', 'contact_wear', &
     'contact_conformal_wear', 'contact+quadrature', 'contact+ambrosio', &
@@ -34,6 +34,7 @@ program measure_costs
     'closed_form', 'closed_form+quadrature', 'closed_form+gas', 'as_printed', 'half_film', 'oscillating', &
     'oscillating_as_printed', 'finite_short', 'finite_table', 'finite_mixed', 'closed_form+rod_0_1', 'closed_form+rod_0_4', &
     'closed_form+rod_2_4', 'closed_form+rod_4_8', 'closed_form+shaft', 'closed_form+rubbing_guide', 'closed_form+loose_piston', &
+    'closed_form+floating_pin', &
     'finite_table+heat', 'ideal+carried_short', 'ideal+carried_table', 'ideal+carried_table+heat', 'finite_table+gas', &
     'finite_table+gas+9_stations', 'finite_table+gas+6_cylinders', 'finite_table+gas+6_on_9_stations']
   character(len=name_length), parameter :: quantities(n_quantities) = [character(len=name_length) :: 'rhs', &
@@ -79,6 +80,7 @@ contains
       'friction.transition_speed=1e-3', 'friction.stribeck_speed=1e-2', 'friction.bristle_stiffness=2e4']
     character(len=40) :: law, friction_law, at_rest, wear
     logical :: dry
+    integer :: i
 
     law = 'contact.law=lankarani_nikravesh'
     if (index(name, 'hertz') > 0) law = 'contact.law=hertz'
@@ -109,7 +111,9 @@ contains
     if (allocated(error)) error stop 'measure_costs: run it from the top of the checkout'
     if (index(name, '+gas') == 0 .and. allocated(case%combustion)) deallocate (case%combustion)
     if (index(name, 'contact+') /= 1 .or. index(name, 'quadrature') > 0) then
-      if (allocated(case%joints(piston_pin)%friction)) deallocate (case%joints(piston_pin)%friction)
+      do i = 1, size(case%joints)
+        if (allocated(case%joints(i)%friction)) deallocate (case%joints(i)%friction)
+      end do
     end if
     if (dry .or. index(name, 'free') == 1 .or. index(name, 'ideal') == 1 .and. index(name, 'carried') == 0) then
       if (allocated(case%joints(piston_pin)%film)) deallocate (case%joints(piston_pin)%film)
@@ -140,6 +144,9 @@ contains
     if (index(name, '+loose_piston') > 0) settings(:7) = [character(len=40) :: 'guide.kind=clearance', &
       'guide.bore_clearance=1e-4', 'guide.skirt_top=0.03', 'guide.skirt_bottom=0.03', 'guide.piston_radius=0.035', &
       'guide.piston_inertia=1e-3', 'guide.stiffness=1e8']
+    if (index(name, '+floating_pin') > 0) settings(:7) = [character(len=40) :: 'pin.kind=floating', 'pin.mass=0.1', &
+      'pin.inertia=6e-6', 'small_end.joint.kind=clearance', 'small_end.joint.clearance=20e-6', &
+      'small_end.joint.bearing_radius=0.01', 'small_end.joint.bearing_length=0.015']
     if (index(name, '+carried') > 0) settings(1) = 'joint.kind=quasi_static'
     if (index(name, '+heat') > 0) settings(2:6) = [character(len=40) :: 'heat.heat_capacity=60.0', 'heat.inlet_temperature=350', &
       'lubrication.viscosity=0.0', 'lubrication.oil=SAE 30', 'lubrication.temperature=350']
