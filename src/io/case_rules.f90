@@ -463,20 +463,34 @@ contains
         short_text(speed)//' m/s: must be > 0')
     end subroutine check_friction
 
-    !> Check that a law for all joints acts in one of them, where joints have laws of their own.
+    !> Check that a law for all joints acts in one of them, where joints have laws of their own. A law of the file may give way to one
+    !> that an override sets.
     subroutine check_shared_laws()
-      logical :: lacks_own(n_places)
+      character(len=:), allocatable :: name, own
+      logical :: acts, gives_way
       integer :: k, i
       if (.not. any(c%joints%has_bearing())) return
       do k = 1, size(values%groups)
         if (.not. (values%groups(k)%is_law .and. values%is_present(k))) cycle
+        name = trim(values%groups(k)%name)
+        acts = .false.
+        gives_way = .false.
         do i = 1, n_places
-          lacks_own(i) = c%joints(i)%has_bearing() .and. law_group(trim(values%groups(k)%name), i) == values%groups(k)%name
+          if (.not. c%joints(i)%has_bearing()) cycle
+          own = law_group(name, i)
+          acts = acts .or. own == name
+          gives_way = gives_way .or. is_overridden(own)
         end do
-        if (.not. any(lacks_own)) call values%refuse_group(trim(values%groups(k)%name), &
+        if (.not. acts .and. (is_overridden(name) .or. .not. gives_way)) call values%refuse_group(name, &
           'acts nowhere, since every joint has a group of its own (place = ...): set that one')
       end do
     end subroutine check_shared_laws
+
+    !> Whether an override sets a key of a group.
+    pure logical function is_overridden(group)
+      character(len=*), intent(in) :: group
+      is_overridden = any(values%values%is_override .and. values%keys%group == group)
+    end function is_overridden
 
     !> Whether the case has a law for the joint at this place alone.
     logical function has_own_law(place)
