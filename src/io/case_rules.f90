@@ -466,22 +466,22 @@ contains
     !> Check that a law for all joints acts in one of them, where joints have laws of their own. A law of the file may give way to one
     !> that an override sets.
     subroutine check_shared_laws()
-      character(len=:), allocatable :: name, own
+      character(len=len(values%groups%name)) :: name, own
       logical :: acts, gives_way
       integer :: k, i
       if (.not. any(c%joints%has_bearing())) return
       do k = 1, size(values%groups)
         if (.not. (values%groups(k)%is_law .and. values%is_present(k))) cycle
-        name = trim(values%groups(k)%name)
+        name = values%groups(k)%name
         acts = .false.
         gives_way = .false.
         do i = 1, n_places
           if (.not. c%joints(i)%has_bearing()) cycle
-          own = law_group(name, i)
+          own = law_group(trim(name), i)
           acts = acts .or. own == name
           gives_way = gives_way .or. is_overridden(own)
         end do
-        if (.not. acts .and. (is_overridden(name) .or. .not. gives_way)) call values%refuse_group(name, &
+        if (.not. acts .and. (is_overridden(name) .or. .not. gives_way)) call values%refuse_group(trim(name), &
           'acts nowhere, since every joint has a group of its own (place = ...): set that one')
       end do
     end subroutine check_shared_laws
