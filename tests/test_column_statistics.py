@@ -57,7 +57,7 @@ def against_traces(program: Path, folder: Path) -> None:
         ("film/heat", columns, 2, ("run.until=end", "integrator.revolutions=6"), 2e-5),
         ("joints/both_pins_lubricated", (*plain, "crank_pin_eccentricity_ratio"), 1, ("integrator.revolutions=3",), 1e-4),   # rows at even times
         ("flores/friction_050", plain, 1, (), 2e-3),   # rows do not resolve its impacts
-        ("film/heat", columns[:2], 0, ("run.until=end", "integrator.revolutions=0.7", "lubrication.report=F"), 2e-5),
+        ("film/heat", columns[:2], 0, ("run.until=end", "integrator.revolutions=0.7", "crank_pin.lubrication.report=F"), 2e-5),
     ):
         wanted = [(word, name) for word in OF for name in names]
         asked = ", ".join(f"{word} {name}" for word, name in wanted)

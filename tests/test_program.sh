@@ -44,7 +44,7 @@ refused "bad override" 3 "joint.clearance" --set joint.clearance=-1 cases/sim_I.
 refused "override without value" 2 "GROUP.KEY=VALUE" --set joint.clearance cases/sim_I.nml
 
 refused "a study without sweep" 3 "map_I.nml:[0-9]*: &study: .*gudgeon sweep cases/studies/map_I.nml" cases/studies/map_I.nml
-refused "a law that acts in no joint" 3 "ticking.nml: &friction: acts nowhere, since every joint has a group of its own" -s friction.coefficient=0.1 cases/pin/ticking.nml
+refused "a law that acts in no joint" 3 "ticking.nml: &friction: acts nowhere, since every joint has a group of its own" -s friction.law=coulomb -s friction.coefficient=0.1 cases/pin/ticking.nml
 refused "two ends of a run" 3 "end_time = 1: .*integrator.revolutions=0" -s integrator.revolutions=3 -s integrator.end_time=1 cases/sim_I.nml
 refused "decimal comma" 3 "0,05 has a decimal comma" -s joint.clearance=0,05 cases/sim_I.nml
 refused "an unknown group to be removed" 3 "lubricaton: unknown group; did you mean lubrication" -s lubricaton=none cases/sim_I.nml

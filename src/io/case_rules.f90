@@ -463,8 +463,8 @@ contains
         short_text(speed)//' m/s: must be > 0')
     end subroutine check_friction
 
-    !> Check that a law for all joints acts in one of them, where joints have laws of their own. A law of the file may give way to one
-    !> that an override sets.
+    !> Check that a law for all joints acts in one of them, where joints have laws of their own. A law of the file may give way to
+    !> one that an override sets.
     subroutine check_shared_laws()
       character(len=len(values%groups%name)) :: name, own
       logical :: acts, gives_way
