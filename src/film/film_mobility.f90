@@ -15,16 +15,16 @@ contains
 
   !> v* [m/s] at an eccentricity e, |e| < c, such that the film's force balances a load on the pin [N]. The direction is described
   !> by beta, v* = (w cos beta, sin beta) with w = sqrt(1 - eps^2); the direction of the load then varies evenly with beta up to the
-  !> wall. Beta is found between 0 and pi by regula falsi in the form of Anderson and Björck, up to rounding; for a load in the
-  !> opposite sense the problem is mirrored.
+  !> wall. Beta is found between 0 and pi by regula falsi in the form of Anderson and Björck; a last secant, between two close
+  !> trials, gives beta and the force up to rounding. For a load in the opposite sense the problem is mirrored.
   pure subroutine driven_velocity(film, e, load, velocity)
     class(film_law_t), intent(in) :: film
     real(dp), intent(in) :: e(2)          !! [m]
     real(dp), intent(in) :: load(2)       !! [N]
     real(dp), intent(out) :: velocity(2)
     integer, parameter :: most_trials = 60
-    real(dp), parameter :: close_enough = 1e-14_dp
-    real(dp) :: size_of_load, distance, n(2), t(2), w, target(2), beta, strength
+    real(dp), parameter :: narrow = 1e-14_dp, close = 1e-9_dp   !! [rad]; the trial before a close one is some 1e-5 away
+    real(dp) :: size_of_load, distance, n(2), t(2), w, target(2), beta, strength, last_strength, part
     real(dp) :: end, f_end, last, f_last, f   ! of the bracket: the end that is kept, and the last trial
     integer :: i
     velocity = 0
@@ -44,10 +44,11 @@ contains
     f_end = -atan2(target(2), target(1))
     last = pi
     f_last = pi + f_end
+    last_strength = 0
     do i = 1, most_trials
       beta = last - f_last*(last - end)/(f_last - f_end)
       call try(beta, f, strength)
-      if (abs(f) <= close_enough .or. abs(last - end) <= close_enough) exit
+      if (abs(f) <= close .or. abs(last - end) <= narrow) exit
       if (f > 0 .neqv. f_last > 0) then
         end = last
         f_end = f_last
@@ -56,7 +57,13 @@ contains
       end if
       last = beta
       f_last = f
+      last_strength = strength
     end do
+    if (last_strength > 0 .and. abs(f) <= close .and. abs(f - f_last) > 0) then
+      part = f/(f - f_last)
+      beta = beta - part*(beta - last)
+      strength = strength - part*(strength - last_strength)
+    end if
     velocity = size_of_load/strength*unit_velocity(beta)
 
   contains
@@ -75,7 +82,7 @@ contains
       v = film%clearance*(w*cos(beta)*n + sin(beta)*t)
     end function unit_velocity
 
-    !> Angle between the load for a direction and the given load, and magnitude of the former.
+    !> Twice the tangent of half the angle between the load for a direction and the given load, and magnitude of the former.
     pure subroutine try(beta, f, strength)
       real(dp), intent(in) :: beta
       real(dp), intent(out) :: f, strength
@@ -88,7 +95,7 @@ contains
       along = -dot_product(n, force)
       across = -dot_product(t, force)
       strength = sqrt(along**2 + across**2)
-      f = atan2(across*target(1) - along*target(2), along*target(1) + across*target(2))
+      f = 2*(across*target(1) - along*target(2))/max(strength + along*target(1) + across*target(2), epsilon(1.0_dp)*strength)
     end subroutine try
   end subroutine driven_velocity
 end module film_mobility

@@ -138,8 +138,9 @@ contains
     real(dp), intent(in) :: gap    !! 1 - eps
     real(dp) :: parts(2)
     integer, parameter :: terms = 13   !! of the series
-    real(dp) :: delta, sine, both, square, fourth, term, power
     integer :: k
+    real(dp), parameter :: ratio(2:terms) = [(1/real(2*k*(2*k + 1), dp), k=2, terms)]   !! of factorials of successive terms
+    real(dp) :: delta, sine, both, square, fourth, term, power
     delta = 2*atan2(y, x)
     if (delta >= 1) then
       sine = 2*x*y/(x**2 + y**2)
@@ -154,7 +155,7 @@ contains
       fourth = 0
       parts(2) = -term*power
       do k = 2, terms
-        term = -term*delta**2/(2*k*(2*k + 1))
+        term = -term*delta**2*ratio(k)
         power = 4*power
         square = square - term
         fourth = fourth + (power - 2)*term

@@ -124,10 +124,18 @@ contains
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     logical, intent(in) :: has_cycles   !! results of revolutions are wanted
+    if (self%is_present) call follow(self, scene, t, now, has_cycles)
+  end subroutine search
+
+  subroutine follow(self, scene, t, now, has_cycles)
+    type(train_record_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: has_cycles   !! results of revolutions are wanted
     type(point_t) :: next
     real(dp) :: h
     integer :: j
-    if (.not. self%is_present) return
     associate (train => scene%chain%train, turn => self%present)
       call find_point(train, t, now%motion, now%accelerations, next)
       h = t - self%last%t
@@ -153,7 +161,7 @@ contains
     end associate
     self%last = next
     self%has_jumped = .false.
-  end subroutine search
+  end subroutine follow
 
   !> Account for the values of one evaluation.
   pure subroutine record_values(self, scene, now)

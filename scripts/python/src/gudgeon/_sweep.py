@@ -145,6 +145,7 @@ def _chunk(
             raise InterruptedError
 
     case = base.copy()
+    names = {"status", *(QUANTITIES if keep is None else keep)}
     for row, its in zip(rows, values):
         try:
             for name, value in zip(columns, its):
@@ -155,7 +156,7 @@ def _chunk(
             continue
         owner = _Owner(number)
         advance(number, 1e300, look, None)
-        summary = summary_of(number)
+        summary = summary_of(number, names)
         result: dict[str, Any] = {"status": summary["status"]}
         if keep is None:
             result.update({name: summary[name] for name in QUANTITIES if name in summary})

@@ -6,7 +6,7 @@ import csv
 import ctypes
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -352,16 +352,18 @@ def _events(number: int) -> list[list[Any]] | None:
     return found
 
 
-def summary_of(number: int) -> Summary:
-    """The summary of a handle, whose run is finished here."""
+def summary_of(number: int, names: Container[str] | None = None) -> Summary:
+    """The summary of a handle, whose run is finished here, or these of its rows."""
     library().run_finish(number)
-    return Summary(_quantities(number))
+    return Summary(_quantities(number, names))
 
 
-def _quantities(number: int) -> list[tuple[str, str, str]]:
+def _quantities(number: int, names: Container[str] | None = None) -> list[tuple[str, str, str]]:
     """The rows of the summary of a handle: name, text, unit."""
-    text = _library.text_from(library().summary, number, guess=20000)
-    return [(name, value, unit) for name, value, unit in csv.reader(text.splitlines()[1:])]
+    lines = _library.text_from(library().summary, number, guess=20000).splitlines()[1:]
+    if names is not None:
+        lines = [line for line in lines if line.partition(",")[0] in names]
+    return [(name, value, unit) for name, value, unit in csv.reader(lines)]
 
 
 def carry_out(
