@@ -25,6 +25,7 @@ use_virtual_environment()
 import numpy as np
 import pandas as pd
 from assertions import Assertions
+from case_runner import Runner, bare
 from gudgeon.program import release_program
 
 assertions = Assertions()
@@ -33,41 +34,6 @@ CASES = TOP / "cases" / "cylinders"
 DATA = TOP / "data" / "cylinders"
 FINE = ("output.digits=17", "integrator.relative_tolerance=1e-11")
 STATES = ("crank_angle", "rod_angle", "piston_position", "crank_speed", "rod_speed", "piston_velocity", "twist", "station", "damper_1_speed")
-
-
-class Runner:
-    """Runs cases of the program in a folder of its own."""
-
-    def __init__(self, program: str, folder: Path) -> None:
-        self.program, self.folder, self.number = program, folder, 0
-
-    def __call__(self, case: str | Path, *changes: str) -> tuple[pd.DataFrame, dict[str, str]]:
-        self.number += 1
-        out = self.folder / str(self.number)
-        options = [part for change in changes for part in ("--set", change)]
-        done = subprocess.run([self.program, "-q", "-o", out, *options, str(self.file(case))], capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
-        name = self.file(case).stem
-        summary = pd.read_csv(out / f"{name}.summary.csv", dtype=str).set_index("quantity")["value"].to_dict()
-        return pd.read_csv(out / f"{name}.csv"), summary
-
-    def file(self, case: str | Path) -> Path:
-        """The file of a case, or of the text of one."""
-        if isinstance(case, Path):
-            return case
-        path = self.folder / f"case_{abs(hash(case))}.nml"
-        path.write_text(case)
-        return path
-
-    def refused(self, case: str | Path, *changes: str) -> str:
-        """The message of a case that is wrong; empty if it is not."""
-        options = [part for change in changes for part in ("--set", change)]
-        done = subprocess.run([self.program, "--check", *options, str(self.file(case))], capture_output=True, text=True, check=False)
-        return done.stderr if done.returncode == 3 else ""
-
-
-def bare(frame: pd.DataFrame) -> pd.DataFrame:
-    return frame.rename(columns=lambda name: name.partition("[")[0])
 
 
 def order(values: np.ndarray, h: float, cycles: int = 1) -> float:
@@ -301,13 +267,13 @@ def resumes(run: Runner) -> None:
     """A run that goes on from a state at a bound of two cylinders ends as the whole run."""
     whole = run(CASES / "inline_four.nml", *FINE, "integrator.revolutions=3", "drive.kind=free", "drive.flywheel_inertia=0.5")
     run(CASES / "inline_four.nml", *FINE, "integrator.revolutions=1.5", "drive.kind=free", "drive.flywheel_inertia=0.5")
-    state = run.folder / str(run.number) / "inline_four.state.nml"
+    state = run.result(CASES / "inline_four.nml", "state.nml")
     rest = run(CASES / "inline_four.nml", *FINE, "integrator.revolutions=3", "drive.kind=free", "drive.flywheel_inertia=0.5", f"initial.from={state}")
     a, b = bare(whole[0]).iloc[-1], bare(rest[0]).iloc[-1]
     check(abs(a["crank_speed"] - b["crank_speed"]) < 1e-8 and abs(a["time"] - b["time"]) < 1e-12, "a run goes on across a bound of two cylinders",
           f"{a['crank_speed']!r} {b['crank_speed']!r}")
     run(CASES / "four_dry.nml", *FINE, "integrator.revolutions=0", "integrator.end_time=0.006")
-    state = run.folder / str(run.number) / "four_dry.state.nml"
+    state = run.result(CASES / "four_dry.nml", "state.nml")
     rest = run(CASES / "four_dry.nml", *FINE, "integrator.revolutions=0", "integrator.end_time=0.012", f"initial.from={state}")
     whole = run(CASES / "four_dry.nml", *FINE, "integrator.revolutions=0", "integrator.end_time=0.012")
     a, b = bare(whole[0]).iloc[-1], bare(rest[0]).iloc[-1]

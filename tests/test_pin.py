@@ -22,9 +22,11 @@ from measured import use_virtual_environment
 
 use_virtual_environment()
 
+import case_runner
 import numpy as np
 import pandas as pd
 from assertions import Assertions
+from case_runner import bare
 from gudgeon.program import release_program
 
 assertions = Assertions()
@@ -35,43 +37,16 @@ STATES = ("crank_angle", "rod_angle", "piston_position", "crank_speed", "rod_spe
 PREFIX = "small_end_"
 
 
-class Runner:
-    """Runs cases of the program in a folder of its own."""
+class Runner(case_runner.Runner):
+    """Rows and events have names without units."""
 
-    def __init__(self, program: str, folder: Path) -> None:
-        self.program, self.folder, self.number = program, folder, 0
-
-    def __call__(self, case: str | Path, *changes: str, expects: int = 0) -> tuple[pd.DataFrame, dict[str, str]]:
-        self.number += 1
-        out = self.folder / str(self.number)
-        options = [part for change in changes for part in ("--set", change)]
-        done = subprocess.run([self.program, "-q", "-o", out, *options, str(self.file(case))], capture_output=True, text=True, check=False)
-        assert done.returncode == expects, done.stderr
-        name = self.file(case).stem
-        summary = pd.read_csv(out / f"{name}.summary.csv", dtype=str).set_index("quantity")["value"].to_dict()
-        return pd.read_csv(out / f"{name}.csv").rename(columns=lambda column: column.partition("[")[0]), summary
+    def __call__(self, case: str | Path, *changes: str) -> tuple[pd.DataFrame, dict[str, str]]:
+        rows, summary = super().__call__(case, *changes)
+        return bare(rows), summary
 
     def events(self, case: str | Path) -> pd.DataFrame:
         """The events of the last run."""
-        frame = pd.read_csv(self.folder / str(self.number) / f"{self.file(case).stem}.events.csv")
-        return frame.rename(columns=lambda column: column.partition("[")[0])
-
-    def state(self, case: str | Path) -> Path:
-        return self.folder / str(self.number) / f"{self.file(case).stem}.state.nml"
-
-    def file(self, case: str | Path) -> Path:
-        """The file of a case, or of the text of one."""
-        if isinstance(case, Path):
-            return case
-        path = self.folder / f"case_{abs(hash(case))}.nml"
-        path.write_text(case)
-        return path
-
-    def refused(self, case: str | Path, *changes: str) -> str:
-        """The message of a case that is wrong; empty if it is not."""
-        options = [part for change in changes for part in ("--set", change)]
-        done = subprocess.run([self.program, "--check", *options, str(self.file(case))], capture_output=True, text=True, check=False)
-        return done.stderr if done.returncode == 3 else ""
+        return bare(pd.read_csv(self.result(case, "events.csv")))
 
 
 def off(a: pd.Series, b: pd.Series) -> float:
@@ -84,7 +59,7 @@ def off(a: pd.Series, b: pd.Series) -> float:
 def references(run: Runner) -> None:
     """The references ask for 1e-6 in states, 1e-3 in other columns and 1e-8 s in events; a hundredth of that is demanded."""
     for name in ("dry_both", "film_both_engine", "dry_small_end"):
-        wanted = pd.read_csv(DATA / f"{name}.csv").rename(columns=lambda column: column.partition("[")[0])
+        wanted = bare(pd.read_csv(DATA / f"{name}.csv"))
         found, summary = run(DATA / f"{name}.nml", "output.digits=17", "output.columns=" + ", ".join(wanted.columns))
         check(len(found) == len(wanted), f"{name}: every row is there")
         for column in wanted.columns[1:]:
@@ -92,7 +67,7 @@ def references(run: Runner) -> None:
             difference = np.abs(found[column] - wanted[column]).max() / scale if np.ptp(wanted[column]) > 0 else 0
             check(difference < (1e-8 if column in STATES else 1e-7), f"{name}: {column} is that of the reference", f"{difference:.2g}")
         check(float(summary["max_energy_residual_relative"]) < 1e-10, f"{name}: no energy is lost", summary["max_energy_residual_relative"])
-        events = pd.read_csv(DATA / f"{name}.events.csv").rename(columns=lambda column: column.partition("[")[0])
+        events = bare(pd.read_csv(DATA / f"{name}.events.csv"))
         if len(events):
             own = run.events(DATA / f"{name}.nml")
             check(list(own["joint"]) == list(events["joint"]) and list(own["event"]) == list(events["event"]), f"{name}: the same contacts")
@@ -102,7 +77,7 @@ def references(run: Runner) -> None:
 
 def tolerances(run: Runner) -> None:
     """A run is nearer to the reference at a closer tolerance."""
-    wanted = pd.read_csv(DATA / "film_both_engine.csv").rename(columns=lambda column: column.partition("[")[0])
+    wanted = bare(pd.read_csv(DATA / "film_both_engine.csv"))
     errors = [off(run(DATA / "film_both_engine.nml", "output.digits=17", f"integrator.relative_tolerance={t}")[0]["pin_speed"],
                   wanted["pin_speed"]) for t in ("1e-6", "1e-8", "1e-10")]
     check(errors[0] < 1e-4 and errors[1] < 1e-5 and errors[2] < 1e-7, "the pin's speed converges on the reference", str(errors))
@@ -298,7 +273,7 @@ def wear(run: Runner) -> None:
     rate, pressed = 1e-14, TOP / "cases" / "pin" / "ticking.nml"
     rows = run(pressed, f"wear.rate={rate}, {2 * rate}", "integrator.revolutions=1", "output.samples_per_revolution=20000", "joint.bearing_length=0.03",
                "small_end.joint.bearing_length=0.024")[0]
-    worn = pd.read_csv(run.folder / str(run.number) / "ticking.wear.csv").rename(columns=lambda column: column.partition("[")[0])
+    worn = bare(pd.read_csv(run.result(pressed, "wear.csv")))
     for place, prefix, length, c in (("piston_pin", "", 0.03, 30e-6), ("small_end", PREFIX, 0.024, 40e-6)):
         path = np.trapezoid(rows[prefix + "normal_force"] * np.abs(rows[prefix + "sliding_speed"]), rows["time"])
         own = worn[worn["joint"] == place]
@@ -432,7 +407,7 @@ def twin(run: Runner) -> None:
     text = floating(OCVIRK, LONG)
     run(text, "output.ideal_twin=T")
     name = run.file(text).stem
-    frame = pd.read_csv(run.folder / str(run.number) / f"{name}.ideal.csv").rename(columns=lambda column: column.partition("[")[0])
+    frame = bare(pd.read_csv(run.folder / str(run.number) / f"{name}.ideal.csv"))
     ideal = run(BODIES.format(drive="free", pin="", joints=""), "mechanism.piston_mass=0.19")[0]
     check(off(frame["crank_speed"], ideal["crank_speed"]) < 1e-12, "the twin is the ideal mechanism with piston and pin as one", f"{off(frame['crank_speed'], ideal['crank_speed']):.2g}")
 
@@ -443,7 +418,7 @@ def resumes(run: Runner) -> None:
         end = 0.006
         whole = run(case, "output.digits=17", f"integrator.end_time={2 * end}")
         run(case, "output.digits=17", f"integrator.end_time={end}")
-        state = run.state(case)
+        state = run.result(case, "state.nml")
         rest = run(case, "output.digits=17", f"integrator.end_time={2 * end}", f"initial.from={state}")
         a, b = whole[0].iloc[-1], rest[0].iloc[-1]
         for column in ("pin_angle", "pin_speed", "eccentricity_x", PREFIX + "eccentricity_y"):
