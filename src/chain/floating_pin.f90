@@ -32,7 +32,7 @@ module floating_pin
     procedure :: chain_loads
     procedure :: accelerate
     procedure :: split_loads
-    procedure :: split_reactions
+    procedure, nopass :: split_reactions
     procedure :: energy
   end type floating_pin_t
 
@@ -123,58 +123,48 @@ contains
     type(accelerations_t), intent(inout) :: accelerations
     real(dp) :: apart(2)   ! S'' - C''
     apart = accelerations%pin(:, piston_pin)
-    accelerations%pin(:, piston_pin) = (loads%force(:, piston_pin) - loads%force(:, small_end))/self%mass + bodies%gravity
-    if (bodies%piston%is_loose) then
-      accelerations%pin(:, piston_pin) = accelerations%pin(:, piston_pin) - bearing_acceleration(motion, accelerations)
-    else
-      accelerations%pin(1, piston_pin) = accelerations%pin(1, piston_pin) - accelerations%piston
-    end if
+    accelerations%pin(:, piston_pin) = (loads%force(:, piston_pin) - loads%force(:, small_end))/self%mass + bodies%gravity &
+      - in_piston(bodies, motion, accelerations)
     accelerations%pin(:, small_end) = apart - accelerations%pin(:, piston_pin)
     accelerations%pin_turn = (loads%moment(piston_pin) &
       + bearing_moment(motion%small_end, loads%force(:, small_end), loads%moment(small_end)))/self%inertia
   end subroutine accelerate
 
-  !> Force that accelerates the pin, beside its weight [N].
-  pure function inertia_force(self, bodies, motion, accelerations) result(force)
-    type(floating_pin_t), intent(in) :: self
+  !> Acceleration C'' of the bearing in the piston [m/s^2].
+  pure function in_piston(bodies, motion, accelerations) result(a)
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(in) :: accelerations
-    real(dp) :: force(2)
-    force = accelerations%pin(:, piston_pin) + [accelerations%piston, 0.0_dp]
-    if (bodies%piston%is_loose) force = accelerations%pin(:, piston_pin) + bearing_acceleration(motion, accelerations)
-    force = self%mass*(force - bodies%gravity)
-  end function inertia_force
+    real(dp) :: a(2)
+    a = [accelerations%piston, 0.0_dp]
+    if (bodies%piston%is_loose) a = bearing_acceleration(motion, accelerations)
+  end function in_piston
 
-  !> The loads of a chain with the pin fixed in the piston, from which the reactions follow: `split_reactions` completes them.
-  pure subroutine split_loads(self, bodies, motion, accelerations, loads, acting)
+  !> The loads of a chain with the pin fixed in the piston, from which the reactions follow: `split_reactions` completes them with
+  !> the force that accelerates the pin, beside its weight [N].
+  pure subroutine split_loads(self, bodies, motion, accelerations, loads, acting, force)
     class(floating_pin_t), intent(in) :: self
     type(bodies_t), intent(in) :: bodies
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(in) :: accelerations
     type(loads_t), intent(in) :: loads
     type(loads_t), intent(out) :: acting
-    real(dp) :: force(2)
-    force = inertia_force(self, bodies, motion, accelerations)
+    real(dp), intent(out) :: force(2)
+    force = self%mass*(accelerations%pin(:, piston_pin) + in_piston(bodies, motion, accelerations) - bodies%gravity)
     acting = loads
     acting%moment(piston_pin) = loads%moment(small_end)
     acting%axial_force = loads%axial_force + force(1)
   end subroutine split_loads
 
   !> Set the reactions on both sides of the pin, from those of the chain with the loads of `split_loads`.
-  pure subroutine split_reactions(self, bodies, motion, accelerations, loads, reactions)
-    class(floating_pin_t), intent(in) :: self
-    type(bodies_t), intent(in) :: bodies
-    type(motion_t), intent(in) :: motion
-    type(accelerations_t), intent(in) :: accelerations
-    type(loads_t), intent(in) :: loads
+  pure subroutine split_reactions(axial_force, force, reactions)
+    real(dp), intent(in) :: axial_force   !! on the piston, as in `loads_t` [N]
+    real(dp), intent(in) :: force(2)      !! by `split_loads`
     type(reactions_t), intent(inout) :: reactions
-    real(dp) :: force(2)
-    force = inertia_force(self, bodies, motion, accelerations)
     reactions%small_end = reactions%pin
     reactions%pin = reactions%pin - force
     reactions%guide = reactions%guide - force(2)
-    reactions%frame = reactions%crank_bearing - [loads%axial_force, reactions%guide]
+    reactions%frame = reactions%crank_bearing - [axial_force, reactions%guide]
   end subroutine split_reactions
 
   !> Kinetic and potential energy [J]. The motion of the piston must be known.

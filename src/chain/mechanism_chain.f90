@@ -341,10 +341,11 @@ contains
     type(loads_t), intent(in) :: loads
     type(reactions_t) :: reactions
     type(loads_t) :: acting
+    real(dp) :: force(2)
     if (allocated(self%floating)) then
-      call self%floating%split_loads(self%bodies, motion, accelerations, loads, acting)
+      call self%floating%split_loads(self%bodies, motion, accelerations, loads, acting, force)
       reactions = reactions_beside(self, motion, accelerations, acting)
-      call self%floating%split_reactions(self%bodies, motion, accelerations, loads, reactions)
+      call self%floating%split_reactions(loads%axial_force, force, reactions)
     else
       reactions = reactions_beside(self, motion, accelerations, loads)
     end if
