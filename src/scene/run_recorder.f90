@@ -201,22 +201,27 @@ contains
     has_rows = size(self%values) > 0 .or. allocated(self%histories)
   end function has_rows
 
-  !> Write the rows that are due in the last step, up to t_to.
-  subroutine write_rows(self, method, scene, t_to)
+  !> Write the rows that are due in the last step, up to t_end. If the state of one is outside the model, the run ends at the row
+  !> before, to which t_end is moved.
+  subroutine write_rows(self, method, scene, t_end)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t_to
+    real(dp), intent(inout) :: t_end
     type(evaluation_t) :: now
-    real(dp) :: t
+    real(dp) :: t, t_inside
     logical :: in_domain, is_found
-    call self%rows%enter_step(method, scene, t_to, self%y)
+    t_inside = method%t_old
+    call self%rows%enter_step(method, scene, t_end, self%y)
     do
       call self%rows%find_next(method, scene, self%y, t, is_found)
       if (.not. is_found) exit
       call evaluate_inside(scene, method, t, self%y, now, in_domain, self%extremes%figures%evaluations)
       if (in_domain) call self%extremes%add_elastic(scene, now)
       call write_row(self, scene, t, self%y, now, in_domain)
+      if (self%has_left) t_end = t_inside
+      if (self%has_left) exit
+      t_inside = t
     end do
   end subroutine write_rows
 

@@ -325,7 +325,10 @@ contains
     associate (recorder => self%recorder, t => self%integration%t, y => self%integration%y, status => self%status)
       status = self%integration%status
       if (.not. self%integration%is_over) status = integration_interrupted
-      if (recorder%periods%has_ended) then
+      if (recorder%has_left) then
+        t = recorder%extremes%figures%time
+        call self%method%interpolate(t, y)
+      else if (recorder%periods%has_ended) then
         status = integration_done
         t = recorder%periods%t
         y = recorder%state_at_end

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import sys
 
 from .trace import Run
 
@@ -119,6 +120,11 @@ class Engine:
                 of_inertia, of_energy = other.slopes(q)
                 found += [0.5 * of_inertia * speed**2, -of_energy, -get[f"cylinder_{other.number}_gas_force"] * other.energies(q)[2]]
         return found
+
+    def rounding(self, get: dict[str, float], j: int) -> float:
+        """Rounding error of the torques of the segments at a station, which are differences of its speeds and angles [N m]."""
+        beside = [k for k in (j - 1, j) if 0 <= k < len(self.stiffness)] if self.is_chain else []
+        return sum(sys.float_info.epsilon * (self.stiffness[k] * abs(self.twist(get, j)) + self.damping[k] * abs(self.speed(get, j))) for k in beside)
 
     def moving(self, get: dict[str, float], j: int) -> float:
         """Inertia of a station with its other cylinders [kg m^2]."""

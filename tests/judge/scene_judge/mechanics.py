@@ -352,8 +352,9 @@ class Row:
                 abs(math.fsum((b.inertia[0] * self.turn_rate, -self.crank_drive(), cross(arm, on_crank), cross(pin, on_rod), -crank_pin_moment))),
                 abs(b.inertia[0] * self.turn_rate) + abs(get["crank_moment"]) + abs(b.damping * self.turn) + abs(self.crank_drive()) + abs(crank_pin_moment)
                 + math.hypot(*arm) * math.hypot(*on_crank) + math.hypot(*pin) * math.hypot(*on_rod))
+            if b.engine:
+                found["Euler, crank"].size += DIFFERENCES * math.fsum(map(abs, b.engine.on_crank(get, b.damping)))
         if b.engine:
-            found["Euler, crank"].size += DIFFERENCES * math.fsum(map(abs, b.engine.on_crank(get, b.damping)))
             found |= {name: balance(*terms) for name, terms in b.engine.segment_terms(get).items()}
         if b.shaft:
             twisting = b.shaft[1] * get["crankshaft_twist"], b.shaft[2] * get["flywheel_speed"], -b.shaft[2] * self.turn

@@ -100,7 +100,8 @@ def judge_stations(checks: RowChecks, allowed: float) -> tuple[int, list[str], l
             continue   # the crank's law, and a speed that is held
         momentum = [engine.moving(get, j) * engine.speed(get, j) for get in gets]
         rates = {i: (math.fsum(engine.torques(get, j, checks.bodies.damping)), 0.0) for i, get in enumerate(gets)}
-        size = max(max(map(abs, momentum)), 1e-300)
+        rounding = max(engine.rounding(get, j) for get in gets) * (times[-1] - times[0])
+        size = max(max(map(abs, momentum)), rounding / allowed, 1e-300)
         made += 1
         far, _, _ = drift(times, rates, {"momentum": momentum}, size)
         if not far <= allowed:
