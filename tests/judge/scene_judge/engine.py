@@ -1,18 +1,19 @@
 """Several cylinders on one crankshaft: the others than that of the mechanism, the stations of the shaft and the rings of its dampers.
 
-The bodies of another cylinder are followed from the angle of its throw; its inertia is that of their speeds, the slopes of inertia and
-potential energy are differences. A station j turns so that ((J + sum I) q_j')' = sum (I'/2 q_j'^2 + G - F p) + torques of the shaft, of rings, of
+The bodies of another cylinder are followed from the angle of its throw; its inertia is that of their speeds; the slopes of inertia and
+potential energy are imaginary parts at a complex angle. A station j turns so that ((J + sum I) q_j')' = sum (I'/2 q_j'^2 + G - F p) + torques of the shaft, of rings, of
 its own damping and of the drive.
 """
 from __future__ import annotations
 
+import cmath
 import dataclasses
 import math
-import sys
 
 from .trace import Run
 
-STEP = 2e-3   # of the angle in differences of fourth order [rad]
+INTERPOLATED = 2e-14   # rounding error of a state in a row, relative
+STEP = 1e-30   # imaginary part of an angle from which derivatives follow [rad]
 
 
 @dataclasses.dataclass
@@ -28,28 +29,31 @@ class Other:
     inertia_about: tuple[float, float]  # crank, rod, about their centres of mass
     com: tuple[list[float], list[float]]
 
-    def energies(self, q: float) -> tuple[float, float, float]:
+    def of_angle(self, q: complex) -> tuple[complex, complex, complex]:
         """Twice the kinetic energy at a speed of 1 rad/s, the potential energy, and dx/dq of the piston."""
         r, length = self.length
-        a = math.asin(r / length * math.sin(q))
-        k = r * math.cos(q) / (length * math.cos(a))
+        a = cmath.asin(r / length * cmath.sin(q))
+        k = r * cmath.cos(q) / (length * cmath.cos(a))
         (u, v), (uc, vc) = self.com[1], self.com[0]
-        along, normal = (math.cos(a), -math.sin(a)), (math.sin(a), math.cos(a))
-        pin, pin_rate = (r * math.cos(q), r * math.sin(q)), (-r * math.sin(q), r * math.cos(q))
+        along, normal = (cmath.cos(a), -cmath.sin(a)), (cmath.sin(a), cmath.cos(a))
+        pin, pin_rate = (r * cmath.cos(q), r * cmath.sin(q)), (-r * cmath.sin(q), r * cmath.cos(q))
         rod = [pin[i] + u * along[i] + v * normal[i] for i in (0, 1)]
         rod_rate = [pin_rate[i] + k * (v * along[i] - u * normal[i]) for i in (0, 1)]
-        crank = uc * math.cos(q) - vc * math.sin(q), uc * math.sin(q) + vc * math.cos(q)
-        rate = -r * math.sin(q) - length * math.sin(a) * k
-        moving = (self.inertia_about[0] + self.mass[0] * math.hypot(uc, vc)**2 + self.inertia_about[1] * k**2
+        crank = uc * cmath.cos(q) - vc * cmath.sin(q), uc * cmath.sin(q) + vc * cmath.cos(q)
+        rate = -r * cmath.sin(q) - length * cmath.sin(a) * k
+        moving = (self.inertia_about[0] + self.mass[0] * (uc**2 + vc**2) + self.inertia_about[1] * k**2
                   + self.mass[1] * (rod_rate[0]**2 + rod_rate[1]**2) + self.mass[2] * rate**2)
         high = [self.mass[0] * crank[i] + self.mass[1] * rod[i] for i in (0, 1)]
-        high[0] += self.mass[2] * (pin[0] + length * math.cos(a))
+        high[0] += self.mass[2] * (pin[0] + length * cmath.cos(a))
         return moving, -(self.gravity[0] * high[0] + self.gravity[1] * high[1]), rate
 
-    def slopes(self, q: float) -> tuple[float, float]:
-        """Derivatives of the first two with respect to the angle."""
-        near = [self.energies(q + side * STEP) for side in (-2, -1, 1, 2)]
-        return tuple((near[0][i] - 8 * near[1][i] + 8 * near[2][i] - near[3][i]) / (12 * STEP) for i in (0, 1))
+    def energies(self, q: float) -> list[float]:
+        """The real quantities of an angle."""
+        return [one.real for one in self.of_angle(q)]
+
+    def slopes(self, q: float) -> list[float]:
+        """Their derivatives with respect to the angle, to rounding, since they are analytic in it."""
+        return [one.imag / STEP for one in self.of_angle(complex(q, STEP))]
 
 
 class Engine:
@@ -117,14 +121,14 @@ class Engine:
         for other in self.others:
             if other.station == j:
                 q = get["crank_angle"] + self.twist(get, j) + other.shift
-                of_inertia, of_energy = other.slopes(q)
+                of_inertia, of_energy, _ = other.slopes(q)
                 found += [0.5 * of_inertia * speed**2, -of_energy, -get[f"cylinder_{other.number}_gas_force"] * other.energies(q)[2]]
         return found
 
     def rounding(self, get: dict[str, float], j: int) -> float:
         """Rounding error of the torques of the segments at a station, which are differences of its speeds and angles [N m]."""
         beside = [k for k in (j - 1, j) if 0 <= k < len(self.stiffness)] if self.is_chain else []
-        return sum(sys.float_info.epsilon * (self.stiffness[k] * abs(self.twist(get, j)) + self.damping[k] * abs(self.speed(get, j))) for k in beside)
+        return sum(INTERPOLATED * (self.stiffness[k] * abs(self.twist(get, j)) + self.damping[k] * abs(self.speed(get, j))) for k in beside)
 
     def moving(self, get: dict[str, float], j: int) -> float:
         """Inertia of a station with its other cylinders [kg m^2]."""

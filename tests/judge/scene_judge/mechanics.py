@@ -15,7 +15,6 @@ from .engine import Engine
 from .trace import Run
 
 Vector = tuple[float, float]
-DIFFERENCES = 10.0     # allowed error of torques of other cylinders, whose slopes are differences, over that of other terms
 LAST_DIGITS = 1e-13   # rounding, relative to the forces whose difference a force is
 
 
@@ -353,7 +352,7 @@ class Row:
                 abs(b.inertia[0] * self.turn_rate) + abs(get["crank_moment"]) + abs(b.damping * self.turn) + abs(self.crank_drive()) + abs(crank_pin_moment)
                 + math.hypot(*arm) * math.hypot(*on_crank) + math.hypot(*pin) * math.hypot(*on_rod))
             if b.engine:
-                found["Euler, crank"].size += DIFFERENCES * math.fsum(map(abs, b.engine.on_crank(get, b.damping)))
+                found["Euler, crank"].size += math.fsum(map(abs, b.engine.on_crank(get, b.damping)))
         if b.engine:
             found |= {name: balance(*terms) for name, terms in b.engine.segment_terms(get).items()}
         if b.shaft:

@@ -94,14 +94,15 @@ def judge_stations(checks: RowChecks, allowed: float) -> tuple[int, list[str], l
     """Number of checks, faults and notes on the stations of a crankshaft: their angular momentum against the integral of their torques."""
     engine, columns, times = checks.bodies.engine, checks.run.columns, checks.run.times
     gets = [{name: column[i] for name, column in columns.items()} for i in range(len(times))]
-    made, faults = 0, []
+    made, faults, span = 0, [], times[-1] - times[0]
     for j in range(len(engine.inertia)):
         if j == engine.full or j == engine.driven and checks.run.text("drive.kind") != "free":
             continue   # the crank's law, and a speed that is held
         momentum = [engine.moving(get, j) * engine.speed(get, j) for get in gets]
         rates = {i: (math.fsum(engine.torques(get, j, checks.bodies.damping)), 0.0) for i, get in enumerate(gets)}
-        rounding = max(engine.rounding(get, j) for get in gets) * (times[-1] - times[0])
-        size = max(max(map(abs, momentum)), rounding / allowed, 1e-300)
+        rounding = max(engine.rounding(get, j) for get in gets) * span
+        at_scale = max(engine.moving(get, j) for get in gets) * (abs(checks.run.number("initial.crank_speed")) or 1 / span)   # of the absolute tolerance
+        size = max(*map(abs, momentum), at_scale, rounding / allowed, 1e-300)
         made += 1
         far, _, _ = drift(times, rates, {"momentum": momentum}, size)
         if not far <= allowed:
