@@ -85,6 +85,7 @@ module clearance_joint
     procedure :: declare
     procedure :: set_own_rates
     procedure :: set_heat_rates
+    procedure, non_overridable :: read_place
     procedure, non_overridable :: read_temperature
     procedure, non_overridable :: admits_temperature
     procedure :: reset_states
@@ -346,8 +347,17 @@ contains
     end do
   end function work_of_friction
 
-  !> Read the eccentricity and its rate from the state vector, and set the discrete state of the contact.
+  !> Read the state of the joint from the state vector, and set the discrete state of the contact.
   pure subroutine read_state(self, y, joint)
+    class(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: y(*)
+    type(joint_evaluation_t), intent(inout) :: joint
+    call self%read_place(y, joint)
+    if (allocated(self%heat)) call self%read_temperature(y, joint)
+  end subroutine read_state
+
+  !> The same without the temperature of the film.
+  pure subroutine read_place(self, y, joint)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
     type(joint_evaluation_t), intent(inout) :: joint
@@ -358,8 +368,7 @@ contains
     joint%touches = self%phase == phase_contact
     joint%impact_speed = self%impact_speed
     joint%viscosity_ratio = 1
-    if (allocated(self%heat)) call self%read_temperature(y, joint)
-  end subroutine read_state
+  end subroutine read_place
 
   !> Set the temperature of the film, which heats up, and its viscosity where that is admissible.
   pure subroutine read_temperature(self, y, joint)
@@ -378,22 +387,29 @@ contains
     if (allocated(self%heat)) admits_temperature = joint%temperature > coldest .and. joint%temperature < hottest
   end function admits_temperature
 
-  !> Whether the state is admissible: the eccentricity within its reach, and the states of the elements within theirs.
+  !> Whether the state is admissible but for the temperature: the eccentricity within its reach, and the states of the elements
+  !> within theirs.
   pure logical function admits(self, y, joint)
     class(clearance_joint_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
     type(joint_evaluation_t), intent(in) :: joint
-    integer :: k
     admits = joint%eccentricity(1)**2 + joint%eccentricity(2)**2 < self%reach(self%phase)**2
-    if (allocated(self%heat)) admits = admits .and. self%admits_temperature(joint)
-    if (.not. self%limits_states) return
+    if (self%limits_states) admits = admits .and. admits_states(self, y)
+  end function admits
+
+  !> Whether the states of the elements are within their reach.
+  pure logical function admits_states(self, y)
+    type(clearance_joint_t), intent(in) :: self
+    real(dp), intent(in) :: y(*)
+    integer :: k
+    admits_states = .true.
     do k = 1, self%n_elements
       associate (element => self%slots(k)%element)
-        if (element%state_reach > 0) &
-          admits = admits .and. sum(y(element%states%first:element%states%last)**2) < element%state_reach**2
+        if (element%state_reach > 0) admits_states = admits_states .and. &
+          sum(y(element%states%first:element%states%last)**2) < element%state_reach**2
       end associate
     end do
-  end function admits
+  end function admits_states
 
   !> Compute the loads of the element that acts and their power on the bodies, and add them to the loads of the chain. Components
   !> that the element does not have are not set.

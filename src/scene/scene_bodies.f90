@@ -17,6 +17,7 @@ contains
     call move_bodies(self, joints, t, y, now, in_domain)
     if (.not. in_domain) return
     call self%find_loads(self%n_joints, joints, y, now)
+    if (allocated(self%gas)) call self%load_gas(now)
     if (allocated(self%chain%train)) call load_train(self, now)
     call load_guide(self, now)
     call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment, solvable)
@@ -31,6 +32,7 @@ contains
   module procedure move_bodies
     call self%read_crank(t, y, now%motion)
     call self%place_pins(self%n_joints, joints, y, now, in_domain)
+    if (self%has_heat) call self%read_temperatures(self%n_joints, joints, y, now, in_domain)
     if (in_domain) call place_more_bodies(self, t, y, now, in_domain)
     if (in_domain) call self%chain%move_rod(now%motion, in_domain)
   end procedure move_bodies
@@ -52,7 +54,13 @@ contains
       in_domain = self%guide%admits(now%motion%tilting)
       if (in_domain) call place_piston(self%chain%bodies%piston, now%motion)
     end if
-    if (allocated(self%chain%floating)) call self%chain%floating%read_state(y, now%motion)
+    if (allocated(self%chain%floating)) then
+      associate (joint => self%joints(self%joint_at(small_end)), relative => now%joint(self%joint_at(small_end)))
+        now%motion%small_end = joint%site%sense*relative%eccentricity
+        now%motion%small_end_rate = joint%site%sense*relative%eccentricity_rate
+      end associate
+      call self%chain%floating%read_state(y, now%motion)
+    end if
     if (allocated(self%chain%elastic)) call self%chain%elastic%read_state(t, y, now%motion)
     if (allocated(self%chain%train)) call self%chain%train%read_state(t, y, now%motion)
   end subroutine place_more_bodies

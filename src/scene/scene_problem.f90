@@ -93,6 +93,7 @@ module scene_problem
     logical :: measures_loss = .false.   !! the last of them is the energy taken by the joints
     type(work_part_t), allocatable :: parts(:)   !! parts of the work, if they are told apart
     integer :: n_works = 0          !! number of them; the following ones are works in carried bearings, which no body feels
+    logical :: has_heat = .false.   !! the film of a joint heats up
     logical :: clears_loads = .false.       !! the right-hand side needs all loads of a joint, also those that do not act
     integer :: other_part = 0       !! the part that is the whole work without that of the others; 0: none
     logical :: is_plain = .true.    !! rigid bodies, an ideal guide and a drive that does not vary
@@ -106,7 +107,9 @@ module scene_problem
     procedure :: claim
     procedure, non_overridable :: read_crank
     procedure, non_overridable :: place_pins
+    procedure, non_overridable :: read_temperatures
     procedure, non_overridable :: find_loads
+    procedure, non_overridable :: load_gas
     procedure :: derivatives
     procedure :: evaluate
     procedure :: jacobian
@@ -398,13 +401,15 @@ contains
       call find_general_accelerations(self, joints, t, y, now, in_domain)
       return
     end if
-    call self%read_crank(t, y, now%motion)
+    call read_plain_crank(self, t, y, now%motion)
     call self%place_pins(n, joints, y, now, in_domain)
+    if (self%has_heat) call self%read_temperatures(n, joints, y, now, in_domain)
     if (.not. in_domain) return
     associate (bodies => self%chain%bodies, drive => self%chain%drive, motion => now%motion)
       call follow_rod(bodies%crank%length, bodies%per_rod_length, motion, in_domain)
       if (.not. in_domain) return
       call self%find_loads(n, joints, y, now)
+      if (allocated(self%gas)) call self%load_gas(now)
       if (n == 0) then
         call accelerate_ideal_chain(bodies, drive, motion, now%loads, now%accelerations, now%crank_moment)
       else if (.not. self%chain%is_loose(crank_pin)) then
@@ -429,13 +434,25 @@ contains
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: t, y(self%n)
     type(motion_t), intent(inout) :: motion
+    if (self%runs_up .and. .not. self%crank_moves) then
+      call turn_crank(motion, crank_angle(self, t, y), crank_speed(self, t, y))
+      motion%held_acceleration = self%chain%varying%acceleration(t)
+    else
+      call read_plain_crank(self, t, y, motion)
+    end if
+  end subroutine read_crank
+
+  !> The same without a run-up.
+  pure subroutine read_plain_crank(self, t, y, motion)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    type(motion_t), intent(inout) :: motion
     if (self%crank_moves) then
       call turn_crank(motion, y(self%crank%position), y(self%crank%rate))
     else
-      call turn_crank(motion, crank_angle(self, t, y), crank_speed(self, t, y))
-      if (self%runs_up) motion%held_acceleration = self%chain%varying%acceleration(t)
+      call turn_crank(motion, self%start_angle + self%start_speed*t, self%start_speed)
     end if
-  end subroutine read_crank
+  end subroutine read_plain_crank
 
   !> Set the eccentricities of the joints, also in the motion of the chain. `in_domain` is false if one is not admissible.
   pure subroutine place_pins(self, n, joints, y, now, in_domain)
@@ -445,7 +462,7 @@ contains
     real(dp), intent(in) :: y(self%n)
     type(evaluation_t), intent(inout) :: now
     logical, intent(out) :: in_domain
-    real(dp) :: offset(2), offset_rate(2), shift(2), shift_rate(2)
+    real(dp) :: offset(2), offset_rate(2)
     logical :: admitted
     integer :: i
     admitted = .true.
@@ -453,20 +470,13 @@ contains
     offset_rate = 0
     do i = 1, n
       associate (joint => joints(i), relative => now%joint(i))
-        call joint%read_state(y, relative)
+        call joint%read_place(y, relative)
         admitted = admitted .and. joint%admits(y, relative)
-        shift = joint%site%sense*relative%eccentricity
-        shift_rate = joint%site%sense*relative%eccentricity_rate
-        offset = offset + shift
-        offset_rate = offset_rate + shift_rate
-        if (joint%site%pin == piston_pin) cycle
-        if (joint%site%pin == small_end) then
-          now%motion%small_end = shift
-          now%motion%small_end_rate = shift_rate
-        else
-          now%motion%crank_pin = shift
-          now%motion%crank_pin_rate = shift_rate
-        end if
+        offset = offset + joint%site%sense*relative%eccentricity
+        offset_rate = offset_rate + joint%site%sense*relative%eccentricity_rate
+        if (joint%site%pin /= crank_pin) cycle
+        now%motion%crank_pin = joint%site%sense*relative%eccentricity
+        now%motion%crank_pin_rate = joint%site%sense*relative%eccentricity_rate
       end associate
     end do
     now%motion%offset = offset
@@ -474,7 +484,23 @@ contains
     in_domain = admitted
   end subroutine place_pins
 
-  !> The loads of joints and gas, and the power of the joints.
+  !> Set the temperatures of the films of the joints. `in_domain` becomes false if one is not admissible.
+  pure subroutine read_temperatures(self, n, joints, y, now, in_domain)
+    class(scene_t), intent(in) :: self
+    integer, intent(in) :: n
+    type(clearance_joint_t), intent(in) :: joints(n)
+    real(dp), intent(in) :: y(self%n)
+    type(evaluation_t), intent(inout) :: now
+    logical, intent(inout) :: in_domain
+    integer :: i
+    do i = 1, n
+      if (.not. allocated(joints(i)%heat)) cycle
+      call joints(i)%read_temperature(y, now%joint(i))
+      in_domain = in_domain .and. joints(i)%admits_temperature(now%joint(i))
+    end do
+  end subroutine read_temperatures
+
+  !> The loads and the power of the joints; the gas has none yet.
   pure subroutine find_loads(self, n, joints, y, now)
     class(scene_t), intent(in) :: self
     integer, intent(in) :: n
@@ -488,10 +514,15 @@ contains
       now%power = now%power + now%joint(i)%power
     end do
     now%loads%axial_force = 0
-    if (.not. allocated(self%gas)) return
+  end subroutine find_loads
+
+  !> The load of the gas.
+  pure subroutine load_gas(self, now)
+    class(scene_t), intent(in) :: self
+    type(evaluation_t), intent(inout) :: now
     now%cylinder_pressure = self%gas%pressure(now%motion%crank_angle)
     now%loads%axial_force = self%gas%force(now%cylinder_pressure)
-  end subroutine find_loads
+  end subroutine load_gas
 
   !> Let all parts claim their states and number the events, after everything else has been set.
   subroutine claim(self)
@@ -509,7 +540,8 @@ contains
     call claim_states(self)
     call self%layout%count_again()
     call claim_states(self)
-    self%clears_loads = any([(allocated(self%joints(i)%heat), i=1, self%n_joints)])
+    self%has_heat = any([(allocated(self%joints(i)%heat), i=1, self%n_joints)])
+    self%clears_loads = self%has_heat
     self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying) &
       .or. allocated(self%chain%train) .or. allocated(self%chain%floating) .or. allocated(self%given_load))
     self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide) &
