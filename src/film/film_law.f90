@@ -65,6 +65,7 @@ module film_law
     procedure, nopass :: gives_pressure => no
     procedure :: conserves_oil
     procedure, nopass :: gives_side_flow => no
+    procedure :: longest_bearing => of_any_length
     procedure, non_overridable :: drag_moment
     procedure, non_overridable :: neglects_shear
     procedure :: pressure => nowhere
@@ -244,6 +245,12 @@ contains
   pure logical function yes()
     yes = .true.
   end function yes
+
+  !> Largest length over diameter of a bearing for which the equation of the law can be solved.
+  pure real(dp) function of_any_length(self)
+    class(film_law_t), intent(in) :: self
+    of_any_length = huge(of_any_length)
+  end function of_any_length
 
   !> Whether the shear of a film with a pressure has a moment that the case neglects.
   pure logical function neglects_shear(self)

@@ -35,6 +35,7 @@ module finite_bearing
     procedure :: reduced_force
     procedure, nopass :: gives_pressure => yes
     procedure, nopass :: gives_side_flow => yes
+    procedure :: longest_bearing
     procedure :: peak_and_flow
     procedure :: reduced_peak_and_flow
     procedure :: pressure_field
@@ -120,6 +121,12 @@ contains
     if (tolerance < 1e-8_dp) film_points = 192
     if (self%film_points > 0) film_points = self%film_points
   end subroutine choose_points
+
+  !> In longer bearings the flow along the axis is lost in the rounding of that round the film.
+  pure real(dp) function longest_bearing(self)
+    class(finite_bearing_t), intent(in) :: self
+    longest_bearing = merge(huge(longest_bearing), 1e3_dp, self%variant == 'short')
+  end function longest_bearing
 
   pure logical function conserves_oil(self)
     class(finite_bearing_t), intent(in) :: self
