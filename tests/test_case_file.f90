@@ -373,7 +373,7 @@ contains
     call refused(check, bodies//run//'&joint kind=''clearance'' clearance=1e-5 bearing_radius=0.01 bearing_length=21 /'// &
                  '&lubrication law=''finite_bearing'' viscosity=0.01 /', &
                  'x.nml: &joint bearing_length = 21: must be <= 1000 times the diameter with this film; that of a long '// &
-                 'bearing is law = ''pinkus_sternlicht'' (m)')
+                 'bearing is law = ''pinkus_sternlicht'' (m): millimetres?')
     call refused_with(check, 'friction.coefficient=0.1', no_speeds(len(n) + 1:))
     call refused_with(check, 'friction.v1=0.001', 'x.nml: &friction v1 = 0.001: must be >= v0 = 0.01 (m/s)', &
                       '&friction coefficient=0.1 v0=0.01 v1=1 /')

@@ -185,9 +185,10 @@ contains
       if (joint%bearing_radius > 0) call forbid(joint%bearing_radius <= joint%clearance, group, 'clearance', &
         'must be < bearing_radius = '//short_text(joint%bearing_radius)//': the pin''s radius is the difference')
       call values%demand(joint%bearing_length > 0 .or. .not. allocated(joint%film), group, 'bearing_length', 'with lubrication')
-      if (allocated(joint%film)) call forbid(joint%bearing_length > 2*joint%bearing_radius*joint%film%longest_bearing(), group, &
-        'bearing_length', 'must be <= '//short_text(joint%film%longest_bearing())//' times the diameter with this film; that '// &
-        'of a long bearing is law = ''pinkus_sternlicht''')
+      if (allocated(joint%film) .and. joint%bearing_radius > 0) call forbid( &
+        joint%bearing_length/joint%bearing_radius/2 > joint%film%longest_bearing(), group, 'bearing_length', &
+        'must be <= '//short_text(joint%film%longest_bearing())//' times the diameter with this film; that of a long '// &
+        'bearing is law = ''pinkus_sternlicht''')
       if (joint%is_carried()) call check_carried(joint, place)
       call forbid(joint%has_clearance() .and. .not. (allocated(joint%contact) .or. allocated(joint%film)), group, 'kind', &
         'needs contact or lubrication: without them no force would act on the pin')
