@@ -124,6 +124,7 @@ contains
       force = law%geometry%elastic_force(depth)
       call check%relative(force, pi*e_star*length*c*x, 6e-5_dp, 'conformal force against the collocation')
       row%n = 0
+      row%is_naming = .false.
       row%wanted = .true.
       call law%geometry%add_columns(depth, force, row)
       call check%relative(row%values(1), angle*pi/180, 4e-5_dp, 'contact half-angle against the collocation')

@@ -20,12 +20,13 @@ module trace_row
     integer, allocatable :: id(:)                         !! columns of the trace, as indices into the names
   end type column_list_t
 
+  !> A row, begun by `collect_names` or `choose`: an initial value of one component would be a copy of all in every row.
   type :: trace_row_t
-    integer :: n = 0                            !! number of columns so far
-    logical :: is_naming = .false.              !! names are being collected
-    character(len=13) :: place = ''             !! prefix of the following names, separated by an underscore
+    integer :: n                                !! number of columns so far
+    logical :: is_naming                        !! names are being collected
+    character(len=13) :: place                  !! prefix of the following names, separated by an underscore
     logical :: wanted(most_columns)             !! columns whose values are in the trace
-    real(dp) :: values(most_columns)            !! values of the columns so far (not initialised, to save time)
+    real(dp) :: values(most_columns)            !! values of the columns so far
     character(len=name_length), allocatable :: names(:)   !! while names are collected
     character(len=meaning_length), allocatable :: meanings(:)   !! while names are collected
     logical, allocatable :: on_request(:)       !! while names are collected: columns that are not standard
@@ -45,6 +46,7 @@ contains
     class(trace_row_t), intent(inout) :: self
     self%n = 0
     self%is_naming = .true.
+    self%place = ''
     self%wanted = .false.
     allocate (self%names(most_columns), self%meanings(most_columns))
     allocate (self%on_request(most_columns), source=.false.)
@@ -56,6 +58,8 @@ contains
     type(column_list_t), intent(in) :: list
     integer :: i
     self%n = 0
+    self%is_naming = .false.
+    self%place = ''
     self%wanted(:size(list%names)) = .false.
     do i = 1, size(list%id)
       self%wanted(list%id(i)) = .true.
