@@ -233,6 +233,13 @@ def settled(runs: Runs) -> None:
     check(abs(gap) < 3e-6 * slow["crank_pin_cycle_heat_to_housing"], "heat of a settled cycle balances", f"{gap:.1e} J")
     check(abs(slow["crank_pin_heat_residual"]) < 1e-6 * slow["crank_pin_heat_in"], "the ledger closes over jumps",
           str(slow["crank_pin_heat_residual"]))
+    for tolerance in (1e-3, 1e-4, 1e-5):   # the first slope alone: it cannot be told better within these tolerances
+        _, loose = runs.run(ENGINE, "loose", *quick[1:], f"integrator.relative_tolerance={tolerance}", "run.until=periodic",
+                            "integrator.revolutions=0", "crank_pin.heat.heat_capacity=60")
+        check(loose["motion"] == "periodic" and loose["periodic_after"] <= 80, f"a slow film settles at {tolerance:g}",
+              f"{loose['motion']}")
+        wrong = abs(loose["crank_pin_cycle_mean_film_temperature"] - slow["crank_pin_cycle_mean_film_temperature"])
+        check(wrong < 1e-3, f"its temperature at {tolerance:g}", f"{wrong:.1e} K")
     both = ENGINE.replace("place='crank_pin', ", "").replace("&lubrication", "&joint place='crank_pin', kind='clearance', "
                           "clearance=2.5e-05, bearing_radius=0.024025, bearing_length=0.02 /\n&lubrication")
     quick += ("joint.clearance=1.5e-5", "joint.bearing_radius=0.011")

@@ -14,7 +14,7 @@ module period_watch
   use run_length, only: longest_period
   implicit none
   private
-  public :: period_watch_t
+  public :: period_watch_t, noise
 
   integer, parameter :: repeats_needed = 3                                !! consecutive periods that must agree
   integer, parameter :: depth = (repeats_needed + 1)*longest_period       !! number of revolutions that are stored

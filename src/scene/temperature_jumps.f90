@@ -5,13 +5,14 @@
 !> The first jump follows from the heat that leaves for each kelvin, u = rho c_p Q + G: over a cycle T' = -u (T - T_s)/C with mean u
 !> gives T_s = T + dT/(1 - exp(-Int u dt/C)). Later ones follow by the secant through the last two changes. The settled temperature
 !> does not depend on the jumps, since the motion must repeat over plain cycles after the last one. Of jumps that the tolerance of
-!> the integration may explain only a few are made.
+!> the integration may explain only a few are made; more only while each is smaller than half the one before and the temperature
+!> still changes by more than these errors.
 module temperature_jumps
   use kinds, only: dp
   use film_heat, only: uptake
   use clearance_joint, only: most_bearings
   use scene_problem, only: scene_t
-  use period_watch, only: period_watch_t
+  use period_watch, only: period_watch_t, noise
   use run_length, only: longest_period
   implicit none
   private
@@ -20,6 +21,7 @@ module temperature_jumps
   real(dp), parameter :: fast_repeats = 1e-3_dp    !! change of the other states in a cycle, relative to their ranges
   real(dp), parameter :: farthest = 25             !! longest jump [K]
   integer, parameter :: most_small_jumps = 3
+  real(dp), parameter :: shrunk = 0.5_dp
   integer, parameter :: depth = longest_period + 1
 
   !> The film of one joint.
@@ -28,6 +30,7 @@ module temperature_jumps
     real(dp) :: temperature = 0         !! at the beginning of a former cycle [K]
     real(dp) :: change = 0              !! of it in that cycle [K]
     integer :: small_jumps = 0          !! number of jumps below the error of the settled temperature
+    real(dp) :: last_jump = 0           !! size of the last one [K]
     real(dp) :: slope = 0               !! of this change over the temperature; 0: not known [-]
     real(dp) :: begin(0:depth - 1) = 0, sum(0:depth - 1) = 0   !! temperature [K] and integral of u [J/K] at the end of revolution
                                                                !! k, in element mod(k, depth)
@@ -78,7 +81,10 @@ contains
             scene%joints(i)%heat%given%heat_capacity, tolerances(at), target, error)
           target = target - film%begin(now)
           if (abs(target) <= error) film%small_jumps = film%small_jumps + 1
-          if (abs(target) > periods%tolerance*periods%range_of(at) .and. film%small_jumps <= most_small_jumps) self%jump(i) = target
+          if (film%small_jumps > most_small_jumps .and. (abs(target) >= shrunk*film%last_jump .or. &
+            abs(film%change) <= noise*periods%tolerance*periods%range_of(at))) cycle
+          if (abs(target) > periods%tolerance*periods%range_of(at)) self%jump(i) = target
+          film%last_jump = abs(target)
         end associate
       end do
       exit
