@@ -276,6 +276,16 @@ contains
     report%figures%max_energy = 1
     report%figures%max_energy_residual = 1e-3_dp
     call check%that(index(notes_on_results(case, report), 'the energy is conserved only to 0.001') > 0, 'energy that is lost')
+    report%status = 'done'
+    report%periods%is_on = .true.
+    case%run%periodic_tolerance = 9*case%integrator%relative_tolerance
+    call check%that(index(notes_on_results(case, report), 'the motion may repeat only to the errors of its integration') > 0, &
+      'periods told by a tolerance that is too small')
+    report%periods%period = 2
+    call check%that(index(notes_on_results(case, report), 'may repeat') == 0, 'a period that is found')
+    report%periods%period = 0
+    case%run%periodic_tolerance = 11*case%integrator%relative_tolerance
+    call check%that(index(notes_on_results(case, report), 'may repeat') == 0, 'no period by a tolerance that is large enough')
   end subroutine implausible_results
 
   !> The change of a film from cycle to cycle, of thicknesses that are known, and the text about it on the line of a driven crank.

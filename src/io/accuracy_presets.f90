@@ -10,13 +10,14 @@ module accuracy_presets
   character(len=*), parameter :: accuracy_levels = 'draft, standard, reference, dissertation'
 
   integer, parameter :: n_keys = 6, preset_length = 40
+  character(len=*), parameter :: draft_period = 'run.periodic_tolerance=1e-3'
 
 contains
 
   !> The keys of an accuracy level, followed by the overrides of the command line, so that explicit values take precedence. The
   !> method does not depend on that of the case; otherwise the cost of a level would depend more on this than on the level. The
-  !> accuracy of quadratures inside the models (the oscillating film, the gas tables) follows the tolerance. An empty level adds
-  !> nothing.
+  !> accuracy of quadratures inside the models (the oscillating film, the gas tables) follows the tolerance. The periods of
+  !> a draft differ by its errors: it has a larger tolerance for them. An empty level adds nothing.
   pure function with_preset(level, overrides) result(all)
     character(len=*), intent(in) :: level           !! one of `accuracy_levels`, or empty
     character(len=*), intent(in) :: overrides(:)    !! GROUP.KEY=VALUE
@@ -38,5 +39,6 @@ contains
         'integrator.contact_entry=root', 'integrator.max_penetration=0']
     end if
     all(n_keys + 1:) = overrides
+    if (level == 'draft') all = [character(len=len(all)) :: draft_period, all]
   end function with_preset
 end module accuracy_presets

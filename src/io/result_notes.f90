@@ -18,6 +18,7 @@ module result_notes
   real(dp), parameter :: thinnest_film = 10e-9_dp      !! below this oil is no continuous fluid, and no surface is smooth [m]
   character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: '
   real(dp), parameter :: least_cells_per_gap = 4       !! with fewer cells the thinnest part of a film is not resolved
+  real(dp), parameter :: least_period_tolerance = 10   !! of a periodic motion, over the relative tolerance of its integration
   real(dp), parameter :: largest_pressure = 5e9_dp     !! beyond the strength of every bearing [Pa]
 
 contains
@@ -41,6 +42,7 @@ contains
       end do
     end if
     if (report%energy_is_poor) call add_line(energy_warning(case, report))
+    call note_period()
     if (report%figures%floating%is_present .and. pin_is_undecided(case)) call add_line(undecided_pin)
     if (.not. report%exponent%is_known .and. allocated(report%exponent%reason)) &
       call add_line(no_exponent//report%exponent%reason)
@@ -52,6 +54,16 @@ contains
       character(len=*), intent(in) :: text
       notes = notes//text//achar(10)
     end subroutine add_line
+
+    !> A motion that does not repeat, since its periods differ by the errors of the integration.
+    subroutine note_period()
+      associate (allowed => case%run%periodic_tolerance, tolerance => case%integrator%relative_tolerance)
+        if (.not. report%periods%is_on .or. report%periods%period > 0 .or. report%status /= 'done') return
+        if (allowed >= least_period_tolerance*tolerance) return
+        call add_line('the motion may repeat only to the errors of its integration: &run periodic_tolerance = '// &
+          short_text(allowed)//' is less than 10 times the &integrator relative_tolerance, '//short_text(tolerance))
+      end associate
+    end subroutine note_period
 
     subroutine note_joint(joint, pin, name)
       type(joint_case_t), intent(in) :: joint
