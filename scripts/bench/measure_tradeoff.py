@@ -37,6 +37,8 @@ from gudgeon.plots import style
 from gudgeon.results import MissingResult, Run, load_run, read_summary
 from tradeoff import Reference, Settings
 
+REVOLUTIONS = 8  # of a run that would end when its motion is periodic: at another time with each setting
+
 COLUMNS = (
     *("variant", "method", "max_order", "contact_entry", "max_penetration", "tolerance", "points", "status", "seconds"),
     *("evaluations", "state_error", "agrees_until", "digits_3_until", "digits_6_until"),
@@ -109,7 +111,7 @@ def arguments() -> argparse.Namespace:
     options = parser.parse_args()
     if options.presets and not options.cases:
         options.cases = sorted(TOP.glob("cases/*.nml")) + sorted(TOP.glob("cases/*/*.nml"))
-        options.cases = [case for case in options.cases if "&mechanism" in case.read_text(encoding="utf-8")]
+        options.cases = [case for case in options.cases if "&integrator" in case.read_text(encoding="utf-8")]
     if not options.cases:
         parser.error("a CASE.nml is needed")
     if options.timeout is None:
@@ -124,12 +126,15 @@ class Study:
         self.case, self.variant, self.program, self.options = case.resolve(), variant, program, options
         self.name = case.stem + (f"_{variant}" if variant else "")
         self.table = options.out / f"{self.name}.csv"
+        text = self.case.read_text(encoding="utf-8")
+        whole = ["run.until=end", f"integrator.revolutions={REVOLUTIONS}", "output.window=all", "output.sampling=time"]
+        self.length = whole if "'periodic'" in text else []
         made_of = [program.read_bytes(), self.case.read_bytes(), repr((options.horizon, options.reference)).encode()]
         self.made_of = hashlib.sha1(b"".join(made_of)).hexdigest()[:10]
 
     def run(self, settings: Settings, out: str, *more: str) -> str:
         """Run the case once with its results in the directory `out`, and return the status."""
-        values = [*settings.overrides(), "output.ideal_twin=.false.", *more]
+        values = [*settings.overrides(), *self.length, "output.ideal_twin=.false.", *more]
         overrides = [part for value in values for part in ("-s", value)]
         command = [str(self.program), "-q", "-o", out, *overrides, str(self.case)]
         try:
@@ -248,7 +253,8 @@ def preset_row(study: Study) -> str:
     cells = [f"`{study.case.relative_to(TOP / 'cases').with_suffix('')}`", f"{1e3 * run['time'][-1]:.3g} ms", known]
     for level, promise in tradeoff.LEVELS.items():
         with tempfile.TemporaryDirectory() as out:
-            command = [str(study.program), "-q", "-a", level, "-o", out, "-s", "output.ideal_twin=F", "-s", "output.digits=17"]
+            values = [*study.length, "output.ideal_twin=F", "output.digits=17"]
+            command = [str(study.program), "-q", "-a", level, "-o", out, *(part for value in values for part in ("-s", value))]
             outcome = subprocess.run([*command, str(study.case)], capture_output=True, text=True, check=False)
             done = outcome.returncode == 0
             cells.append(tradeoff.level_cell(reference, study.load(out), promise) if done else "failed")
@@ -292,7 +298,8 @@ def main() -> int:
             print(
                 "Largest error of the states (coordinates, speeds) in the run, relative to their ranges, and number of evaluations.",
                 "`E for T ms`: the motion is chaotic, and the error stays below E up to the time T. `reference known to`: the same",
-                "error of the reference run, with which the others are compared.\n",
+                "error of the reference run, with which the others are compared. Cases whose run ends when the motion is periodic make",
+                f"{REVOLUTIONS} revolutions here.\n",
                 sep="\n",
             )
             print("| case | length | reference known to | draft | standard | reference |", "|---|---|---|---|---|---|", sep="\n")

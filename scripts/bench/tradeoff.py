@@ -4,6 +4,7 @@ Errors are measured up to the horizon: the time up to which the reference and it
 other method) agree within REFERENCE_AGREEMENT of each state's range. Beyond the horizon the true motion is not known.
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -19,16 +20,9 @@ from matplotlib.ticker import NullFormatter
 #: The horizon ends where the checks differ from the reference by more than this share of a state's range.
 REFERENCE_AGREEMENT = 1e-7
 
-#: Columns of a trace that are states of a scene; those that the scene has and that change are compared.
-STATES = (
-    "crank_angle",
-    "rod_angle",
-    "piston_position",
-    "crank_speed",
-    "rod_speed",
-    "piston_velocity",
-    "eccentricity_x",
-    "eccentricity_y",
+#: Columns of a trace that are states of a scene, in any joint or station; those that the scene has and that change are compared.
+STATES = re.compile(
+    r"crank_angle|rod_angle|crank_speed|rod_speed|piston_position|piston_velocity|pin_speed|(.*_)?(eccentricity_[xy]|twist|film_temperature)"
 )
 
 COLOURS = {"adams": BLUE, "radau": VERMILION, "auto": GREEN}
@@ -102,7 +96,7 @@ class Reference:
 
 
 def moving_states(run: Run) -> list[str]:
-    return [column for column in STATES if column in run and np.ptp(run[column]) > 0]
+    return [column for column in run.trace.columns if STATES.fullmatch(column) and np.ptp(run[column]) > 0]
 
 
 def state_error(reference: Run, run: Run, until: float) -> float:
