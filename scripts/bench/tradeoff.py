@@ -158,11 +158,17 @@ def impact_times(run: Run) -> np.ndarray:
     return run.events.loc[run.events["event"] == "contact_begins", "time"].to_numpy(dtype=float)
 
 
+def pin_force(run: Run) -> np.ndarray:
+    """Force on the pin [N]; of a bearing by itself, that of its film."""
+    force = "pin_force" if "pin_force_x" in run else "film_force"
+    return np.hypot(run[f"{force}_x"], run[f"{force}_y"])
+
+
 def peak_force(run: Run, until: float) -> float:
     """Largest pin force up to a time [N]: of the rows, and of the contacts that have ended, whose largest force may lie between
     rows."""
     inside = run["time"] <= until
-    peaks = [np.hypot(run["pin_force_x"][inside], run["pin_force_y"][inside]).max()]
+    peaks = [pin_force(run)[inside].max()]
     ended = run.events[(run.events["event"] == "contact_ends") & (run.events["time"].astype(float) <= until)]
     return float(np.nanmax([*peaks, *ended["max_normal_force"].astype(float)]))
 
@@ -183,7 +189,7 @@ def turn_statistics(run: Run, after: float) -> dict[str, float]:
     if inside.sum() < 2:
         inside = run["time"] >= 0  # the run is too short: use all of it
     time = run["time"][inside]
-    force = np.hypot(run["pin_force_x"][inside], run["pin_force_y"][inside])
+    force = pin_force(run)[inside]
     impacts = impact_times(run)
     turns = max(float(np.ptp(run["crank_angle"][inside])) / (2 * np.pi), 1e-9)
     found = {
