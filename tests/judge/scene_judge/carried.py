@@ -184,7 +184,8 @@ def judge_heat(one: Bearing, figures: dict[int, tuple[float, float]], allowed: f
         out = density_at(one.run, t) * number("heat.specific_heat") * flow * (t - number("heat.inlet_temperature")) \
             + number("heat.conductance") * (t - housing)
         rates[i] = ((heating[i] - out) / number("heat.heat_capacity"), 0.0)
-    if float(one.run.summary.get("temperature_jumps", 0)):   # it is no integral
+    prefixes = [PLACES[one.name]] if one.name in PLACES else PLACES.values()
+    if any(float(one.run.summary.get(f"{prefix}temperature_jumps", 0)) for prefix in prefixes):   # it is no integral
         return 2, faults
     far, _, _ = drift(one.run.times, rates, {"film_temperature": columns["film_temperature"]}, HOTTEST)
     if not far <= allowed:
