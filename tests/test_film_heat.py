@@ -233,7 +233,7 @@ def settled(runs: Runs) -> None:
     check(abs(gap) < 3e-6 * slow["crank_pin_cycle_heat_to_housing"], "heat of a settled cycle balances", f"{gap:.1e} J")
     check(abs(slow["crank_pin_heat_residual"]) < 1e-6 * slow["crank_pin_heat_in"], "the ledger closes over jumps",
           str(slow["crank_pin_heat_residual"]))
-    for tolerance in (1e-3, 1e-4, 1e-5):   # the first slope alone: it cannot be told better within these tolerances
+    for tolerance in (1e-3, 1e-4, 1e-5):   # too loose to improve the first estimate of the jumps' slope
         _, loose = runs.run(ENGINE, "loose", *quick[1:], f"integrator.relative_tolerance={tolerance}", "run.until=periodic",
                             "integrator.revolutions=0", "crank_pin.heat.heat_capacity=60")
         check(loose["motion"] == "periodic" and loose["periodic_after"] <= 80, f"a slow film settles at {tolerance:g}",

@@ -119,6 +119,11 @@ def arguments() -> argparse.Namespace:
     return options
 
 
+def overrides(values: list[str]) -> list[str]:
+    """Options of the program that set these values, GROUP.KEY=VALUE."""
+    return [part for value in values for part in ("-s", value)]
+
+
 class Study:
     """One case and film variant: its runs, reference and table."""
 
@@ -129,14 +134,13 @@ class Study:
         text = self.case.read_text(encoding="utf-8")
         whole = ["run.until=end", f"integrator.revolutions={REVOLUTIONS}", "output.window=all", "output.sampling=time"]
         self.length = whole if "'periodic'" in text else []
-        made_of = [program.read_bytes(), self.case.read_bytes(), repr((options.horizon, options.reference)).encode()]
+        made_of = [program.read_bytes(), self.case.read_bytes(), repr((options.horizon, options.reference, self.length)).encode()]
         self.made_of = hashlib.sha1(b"".join(made_of)).hexdigest()[:10]
 
     def run(self, settings: Settings, out: str, *more: str) -> str:
         """Run the case once with its results in the directory `out`, and return the status."""
         values = [*settings.overrides(), *self.length, "output.ideal_twin=.false.", *more]
-        overrides = [part for value in values for part in ("-s", value)]
-        command = [str(self.program), "-q", "-o", out, *overrides, str(self.case)]
+        command = [str(self.program), "-q", "-o", out, *overrides(values), str(self.case)]
         try:
             outcome = subprocess.run(command, capture_output=True, text=True, check=False, timeout=self.options.timeout)
         except subprocess.TimeoutExpired:
@@ -254,7 +258,7 @@ def preset_row(study: Study) -> str:
     for level, promise in tradeoff.LEVELS.items():
         with tempfile.TemporaryDirectory() as out:
             values = [*study.length, "output.ideal_twin=F", "output.digits=17"]
-            command = [str(study.program), "-q", "-a", level, "-o", out, *(part for value in values for part in ("-s", value))]
+            command = [str(study.program), "-q", "-a", level, "-o", out, *overrides(values)]
             outcome = subprocess.run([*command, str(study.case)], capture_output=True, text=True, check=False)
             done = outcome.returncode == 0
             cells.append(tradeoff.level_cell(reference, study.load(out), promise) if done else "failed")

@@ -16,8 +16,9 @@ contains
 
   !> The keys of an accuracy level, followed by the overrides of the command line, so that explicit values take precedence. The
   !> method does not depend on that of the case; otherwise the cost of a level would depend more on this than on the level. The
-  !> accuracy of quadratures inside the models (the oscillating film, the gas tables) follows the tolerance. The periods of
-  !> a draft differ by its errors: it has a larger tolerance for them. An empty level adds nothing.
+  !> accuracy of quadratures inside the models (the oscillating film, the gas tables) follows the tolerance. Periods of a
+  !> periodic motion differ by the errors of the integration, which exceed the usual `periodic_tolerance` in a draft: it gets a
+  !> larger one. An empty level adds nothing.
   pure function with_preset(level, overrides) result(all)
     character(len=*), intent(in) :: level           !! one of `accuracy_levels`, or empty
     character(len=*), intent(in) :: overrides(:)    !! GROUP.KEY=VALUE

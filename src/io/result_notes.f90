@@ -55,12 +55,12 @@ contains
       notes = notes//text//achar(10)
     end subroutine add_line
 
-    !> A motion that does not repeat, since its periods differ by the errors of the integration.
+    !> No period was found, and errors of the integration may be the reason.
     subroutine note_period()
       associate (allowed => case%run%periodic_tolerance, tolerance => case%integrator%relative_tolerance)
         if (.not. report%periods%is_on .or. report%periods%period > 0 .or. report%status /= 'done') return
         if (allowed >= least_period_tolerance*tolerance) return
-        call add_line('the motion may repeat only to the errors of its integration: &run periodic_tolerance = '// &
+        call add_line('no period was found, perhaps since errors of the integration hide it: &run periodic_tolerance = '// &
           short_text(allowed)//' is less than 10 times the &integrator relative_tolerance, '//short_text(tolerance))
       end associate
     end subroutine note_period

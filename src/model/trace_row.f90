@@ -20,7 +20,8 @@ module trace_row
     integer, allocatable :: id(:)                         !! columns of the trace, as indices into the names
   end type column_list_t
 
-  !> A row, begun by `collect_names` or `choose`: an initial value of one component would be a copy of all in every row.
+  !> A row, begun by `collect_names` or `choose`. No component has an initial value: with one, every new row would be filled by a
+  !> copy of all components.
   type :: trace_row_t
     integer :: n                                !! number of columns so far
     logical :: is_naming                        !! names are being collected

@@ -5,8 +5,8 @@
 !> The first jump follows from the heat that leaves for each kelvin, u = rho c_p Q + G: over a cycle T' = -u (T - T_s)/C with mean u
 !> gives T_s = T + dT/(1 - exp(-Int u dt/C)). Later ones follow by the secant through the last two changes. The settled temperature
 !> does not depend on the jumps, since the motion must repeat over plain cycles after the last one. Of jumps that the tolerance of
-!> the integration may explain only a few are made; more only while each is smaller than half the one before and the temperature
-!> still changes by more than these errors.
+!> the integration may explain ("small") only a few are made; more only while each is smaller than half the one before and the
+!> temperature still changes from cycle to cycle by more than the errors of the integration.
 module temperature_jumps
   use kinds, only: dp
   use film_heat, only: uptake
@@ -21,7 +21,7 @@ module temperature_jumps
   real(dp), parameter :: fast_repeats = 1e-3_dp    !! change of the other states in a cycle, relative to their ranges
   real(dp), parameter :: farthest = 25             !! longest jump [K]
   integer, parameter :: most_small_jumps = 3
-  real(dp), parameter :: shrunk = 0.5_dp
+  real(dp), parameter :: shrunk = 0.5_dp           !! largest size of a further small jump, relative to the jump before
   integer, parameter :: depth = longest_period + 1
 
   !> The film of one joint.
@@ -30,7 +30,7 @@ module temperature_jumps
     real(dp) :: temperature = 0         !! at the beginning of a former cycle [K]
     real(dp) :: change = 0              !! of it in that cycle [K]
     integer :: small_jumps = 0          !! number of jumps below the error of the settled temperature
-    real(dp) :: last_jump = 0           !! size of the last one [K]
+    real(dp) :: last_jump = 0           !! size of the last jump, small or not [K]
     real(dp) :: slope = 0               !! of this change over the temperature; 0: not known [-]
     real(dp) :: begin(0:depth - 1) = 0, sum(0:depth - 1) = 0   !! temperature [K] and integral of u [J/K] at the end of revolution
                                                                !! k, in element mod(k, depth)
