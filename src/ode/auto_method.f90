@@ -4,11 +4,16 @@
 !> If Adams is limited by stability for a number of steps, Radau continues from the same point. The evaluations that Radau then uses
 !> in this mode are compared with those that Adams would need, which are proportional to the rate of the fastest mode. If Radau uses
 !> more, Adams continues, and the number of steps required for the next change is increased.
+!>
+!> At loose tolerances a fast mode without damping, such as the axial vibration of a rod, never seems to have decayed: the errors
+!> that Adams itself may make at the limit of its stability keep it in motion, and the error estimate limits every step. There Radau
+!> also takes over after many steps near this limit, whatever limited them, and may lose more until this vibration has decayed.
 module auto_method
   use kinds, only: dp
   use ode_problem, only: ode_problem_t
   use ode_method, only: step_statistics_t, step_done, limit_stability, with_adams, with_radau
   use adams, only: adams_t
+  use adams_coefficients, only: stability_limit
   use radau, only: radau_t
   implicit none
   private
@@ -17,6 +22,9 @@ module auto_method
   integer, parameter :: first_excess = 40    !! excess of steps limited by stability over other steps after which Radau takes over
   integer, parameter :: largest_excess = 2560   !! largest such excess after repeated changes back to Adams: a motion whose start
                                                !! Adams follows at less cost may be stiff later
+  integer, parameter :: first_near = 400     !! the same of steps near the limit of stability, at loose tolerances
+  real(dp), parameter :: near_limit = 0.4_dp !! h times the rate of the fastest mode in such a step, over the limit of its order
+  real(dp), parameter :: loose = 1.5e-5_dp   !! relative tolerance
   real(dp), parameter :: adams_price = 1.3_dp  !! evaluations of Adams limited by stability, per 1/rate of the fastest mode
   real(dp), parameter :: step_overhead = 5     !! cost of Jacobian and linear algebra of a Radau step, in evaluations
 
@@ -29,7 +37,9 @@ module auto_method
     logical, allocatable :: stiff_in(:)   !! the last phase of this mode ended with Radau, (0:highest mode)
     integer :: mode = 0                   !! mode of the present phase
     integer :: excess = 0                 !! excess of Adams steps limited by stability over other steps
-    integer, allocatable :: required_excess(:)   !! number of such steps required, for each mode
+    integer :: near = 0                   !! the same of steps near the limit of stability, whatever limited them
+    logical :: decays = .false.           !! Radau has taken over for these: a vibration must decay first
+    integer, allocatable :: required_excess(:), required_near(:)   !! numbers of such steps required, for each mode
     real(dp), allocatable :: loss(:)      !! evaluations by Radau minus those that Adams would have needed, for each mode
   contains
     procedure :: start
@@ -60,24 +70,27 @@ contains
       call self%prepare(problem)
     end if
     self%mode = problem%mode
+    self%near = 0
     call begin_with(self, problem, self%stiff_in(self%mode), t, y, first, status)
   end subroutine start
 
   !> Largest number of additional evaluations by Radau in a mode before Adams takes over again. It is larger at tight tolerances,
-  !> where the steps of Radau's highest formula grow slowly after a start (data/manual/choices.md).
+  !> where the steps of Radau's highest formula grow slowly after a start, and where a vibration must decay (see the manual).
   pure real(dp) function most_loss(self)
     class(auto_t), intent(in) :: self
     real(dp), parameter :: tight = 5e-9_dp   !! relative tolerance
     most_loss = merge(320, 80, self%nominal_tolerance() < tight)
+    if (self%decays) most_loss = 640
   end function most_loss
 
   !> Discard what is known about the modes.
   pure subroutine forget_modes(self, highest)
     class(auto_t), intent(inout) :: self
     integer, intent(in) :: highest
-    if (allocated(self%stiff_in)) deallocate (self%stiff_in, self%required_excess, self%loss, self%time_with)
+    if (allocated(self%stiff_in)) deallocate (self%stiff_in, self%required_excess, self%required_near, self%loss, self%time_with)
     allocate (self%stiff_in(0:highest), source=.false.)
     allocate (self%required_excess(0:highest), source=first_excess)
+    allocate (self%required_near(0:highest), source=first_near)
     allocate (self%loss(0:highest), source=0.0_dp)
     allocate (self%time_with(2, 0:highest), source=0.0_dp)
   end subroutine forget_modes
@@ -111,9 +124,15 @@ contains
     status = step_done
     associate (mode => self%mode)
       if (self%stiff .and. self%loss(mode) > most_loss(self)) then
-        self%required_excess(mode) = min(4*self%required_excess(mode), largest_excess)
+        if (self%decays) then
+          self%required_near(mode) = 4*self%required_near(mode)
+        else
+          self%required_excess(mode) = min(4*self%required_excess(mode), largest_excess)
+        end if
         call change_over(self, problem, .false., status)
-      else if (.not. self%stiff .and. self%excess >= self%required_excess(mode)) then
+      else if (.not. self%stiff .and. (self%excess >= self%required_excess(mode) .or. &
+        self%near >= self%required_near(mode))) then
+        self%decays = self%near >= self%required_near(mode)
         self%loss(mode) = 0
         call change_over(self, problem, .true., status)
       end if
@@ -134,6 +153,8 @@ contains
     else
       self%excess = max(0, self%excess - 1)
     end if
+    if (self%nominal_tolerance() < loose) return
+    self%near = max(0, self%near + merge(1, -1, self%stiffness_done > near_limit*stability_limit(self%order)))
   end subroutine step
 
   !> Continue with the other method from the present point.

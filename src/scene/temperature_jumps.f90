@@ -94,17 +94,17 @@ contains
   end subroutine consider
 
   !> The settled temperature and its error [K] by the change d of the temperature t in a cycle. The slope of the change over the
-  !> temperature is only taken from temperatures that differ by much more than this error.
+  !> temperature is only taken from temperatures that differ by much more than this error, or by so much that errors hardly matter.
   subroutine find_settled(film, t, d, exponent, tolerance, settled, error)
     type(film_t), intent(inout) :: film
     real(dp), intent(in) :: t, d, tolerance   !! [K]; tolerance of d
     real(dp), intent(in) :: exponent          !! Int u dt/C over the cycle
     real(dp), intent(out) :: settled, error
-    real(dp), parameter :: apart = 10
+    real(dp), parameter :: apart = 10, far = 0.5_dp   ! over that error; [K]
     real(dp) :: first_slope, slope
     first_slope = exp(-max(exponent, tiny(1.0_dp))) - 1
     if (.not. film%slope < 0) film%slope = first_slope
-    if (film%is_known .and. abs(t - film%temperature) > apart*tolerance/abs(film%slope)) then
+    if (film%is_known .and. abs(t - film%temperature) > min(apart*tolerance/abs(film%slope), far)) then
       slope = (d - film%change)/(t - film%temperature)
       if (slope < 0) film%slope = slope
     end if
