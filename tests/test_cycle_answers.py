@@ -106,6 +106,12 @@ def test_ledger(program: Path, work: Path) -> None:
             left = summary["cycle_imep"] - summary["cycle_bmep"] - summary["cycle_fmep"]
             check(abs(left*swept - (summary["cycle_energy_change"] - rest)) <= 1e-8*size, "IMEP - BMEP - FMEP is the change of energy",
                   case.name)
+            moves = abs(summary["cycle_energy_change"]) > 0.02*abs(summary["cycle_work_gas"])
+            noted = any(name.startswith("note_") and "not that of a settled motion" in str(value) for name, value in summary.items())
+            check(noted == moves, "a note where the energy changes by more than 2 % of the work", case.name)
+            if case.stem == "v_twin":
+                check(not moves and abs(summary["cycle_brake_power"]/summary["cycle_indicated_power"] - 1) < 0.02,
+                      "the V twin is settled: brake power and indicated power are alike but for its film")
 
 
 def integral(rows: list[dict[str, float]], column, begins: float, ends: float) -> float:

@@ -17,7 +17,7 @@ module gas_cycle
   use hermite_table, only: hermite_table_t, new_hermite_table
   implicit none
   private
-  public :: gas_cycle_t, heat_release_t, new_gas_cycle
+  public :: gas_cycle_t, heat_release_t, new_gas_cycle, released_share
   public :: n_parts, part_compression, part_combustion, part_expansion, part_open
 
   integer, parameter :: n_parts = 4
@@ -88,6 +88,12 @@ contains
       if (allocated(error)) return
     end do
   end subroutine new_gas_cycle
+
+  !> Share of its heat that Wiebe's function has released when it ends, 1 - exp(-a).
+  pure real(dp) function released_share(efficiency) result(share)
+    real(dp), intent(in) :: efficiency   !! a [-]
+    share = 1 - exp(-efficiency)
+  end function released_share
 
   !> Compute the table of one closed part that begins at pressure p; on return p is the pressure at its end. The number of intervals
   !> is doubled until the table agrees with the solution half way between its points.

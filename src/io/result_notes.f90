@@ -3,6 +3,7 @@ module result_notes
   use kinds, only: dp
   use film_history, only: film_history_t
   use simulation, only: run_report_t
+  use cycle_answers, only: cycle_quantities
   use run_figures, only: pin_figures_t
   use joint_places, only: places, n_places, in_order, piston_pin, small_end
   use case_definition, only: case_t
@@ -16,10 +17,12 @@ module result_notes
   character(len=*), parameter :: undecided_pin = 'the friction of both dry bearings of the floating pin has the same moment: '// &
     'nothing decides in which one it turns, and its drift follows from inertia and the friction law near rest alone'
   real(dp), parameter :: thinnest_film = 10e-9_dp      !! below this oil is no continuous fluid, and no surface is smooth [m]
+  real(dp), parameter :: smoothest = 0.1e-6_dp         !! roughness of polished surfaces [m]
   character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: '
   real(dp), parameter :: least_cells_per_gap = 4       !! with fewer cells the thinnest part of a film is not resolved
   real(dp), parameter :: least_period_tolerance = 10   !! of a periodic motion, over the relative tolerance of its integration
   real(dp), parameter :: largest_pressure = 5e9_dp     !! beyond the strength of every bearing [Pa]
+  real(dp), parameter :: most_energy_change = 0.02_dp  !! in a cycle, of the work of the gas: more is no settled motion
 
 contains
 
@@ -43,6 +46,7 @@ contains
     end if
     if (report%energy_is_poor) call add_line(energy_warning(case, report))
     call note_period()
+    call note_power()
     if (report%figures%floating%is_present .and. pin_is_undecided(case)) call add_line(undecided_pin)
     if (.not. report%exponent%is_known .and. allocated(report%exponent%reason)) &
       call add_line(no_exponent//report%exponent%reason)
@@ -65,6 +69,25 @@ contains
       end associate
     end subroutine note_period
 
+    !> The brake power of the last cycle: losses that the motion does not feel, and a speed that is not settled.
+    subroutine note_power()
+      real(dp) :: work, change, lost   ! in the cycle [J]
+      character(len=:), allocatable :: power, share, way
+      work = machine_answer(report, 'cycle_work_gas')
+      if (.not. abs(work) > 0) return
+      lost = machine_answer(report, 'cycle_one_way_fmep')*work/machine_answer(report, 'cycle_imep')
+      power = quantity_text(lost/machine_answer(report, 'cycle_duration'), 'W')
+      share = short_text(100*lost/abs(work), 2)
+      if (lost > 0) call add_line('the losses of the quasi-static bearings, '//power//' or '//share//' % of the work of the '// &
+        'gas, are counted in the brake power and not fed back: the motion does not feel them')
+      change = machine_answer(report, 'cycle_energy_change')
+      share = short_text(100*change/abs(work), 2)
+      way = 'slows down'
+      if (change > 0) way = 'speeds up'
+      if (abs(change) > most_energy_change*abs(work)) call add_line('the machine still '//way//': its energy changes by '//share// &
+        ' % of the work of the gas in the last cycle, and its brake power is not that of a settled motion')
+    end subroutine note_power
+
     subroutine note_joint(joint, pin, name)
       type(joint_case_t), intent(in) :: joint
       type(pin_figures_t), intent(in) :: pin
@@ -72,9 +95,15 @@ contains
       character(len=*), parameter :: too_much = ': no bearing carries it'
       real(dp) :: length, area, limit
       if (.not. joint%has_bearing()) return
-      if (allocated(joint%film) .and. pin%min_film_thickness > 0 .and. pin%min_film_thickness < thinnest_film) &
-        call add_line(name//'a film of '//quantity_text(pin%min_film_thickness, 'm')//' is thinner than 10 nm, where oil is '// &
-        'not a continuous fluid')
+      if (allocated(joint%film) .and. pin%min_film_thickness > 0) then
+        if (pin%min_film_thickness < thinnest_film) then
+          call add_line(name//'a film of '//quantity_text(pin%min_film_thickness, 'm')//' is thinner than 10 nm, where oil is '// &
+            'not a continuous fluid')
+        else if (pin%min_film_thickness < smoothest .and. .not. allocated(joint%asperities)) then
+          call add_line(name//'a film of '//quantity_text(pin%min_film_thickness, 'm')//' is thinner than the roughness of '// &
+            'polished surfaces, 0.1 um: &asperities')
+        end if
+      end if
       length = joint%bearing_length
       if (.not. length > 0) length = 2*joint%bearing_radius
       area = joint%bearing_radius*length
@@ -90,6 +119,19 @@ contains
       end if
     end subroutine note_joint
   end function notes_on_results
+
+  !> An answer of the machine; 0 if the run has not given it.
+  pure real(dp) function machine_answer(report, name) result(value)
+    type(run_report_t), intent(in) :: report
+    character(len=*), intent(in) :: name
+    integer :: i
+    value = 0
+    if (.not. allocated(report%answers)) return
+    do i = 1, size(report%answers)
+      if (report%answers(i)%place == 0 .and. cycle_quantities(report%answers(i)%quantity)%name == name) &
+        value = report%answers(i)%value
+    end do
+  end function machine_answer
 
   !> Whether a floating pin is between dry bearings whose friction has the same moment: while it slides in both of them the moments
   !> cancel at every speed of the pin.

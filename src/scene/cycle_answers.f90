@@ -14,6 +14,7 @@ module cycle_answers
   use run_extremes, only: run_extremes_t
   use archard_wear, only: of_pin, of_bore
   use run_length, only: longest_period
+  use gas_cycle, only: released_share
   use film_heat, only: temperature_sum, heat_to_oil, heat_to_housing
   implicit none
   private
@@ -79,12 +80,14 @@ module cycle_answers
     quantity_t('cycle_max_cylinder_pressure', 'Pa', 'largest pressure of the gas in the cycle'), &
     quantity_t('cycle_max_cylinder_pressure_angle', 'deg', 'crank angle then, from 0 to the length of the cycle'), &
     quantity_t('cycle_indicated_power', 'W', 'work of the gas on the piston in the cycle over its duration'), &
-    quantity_t('cycle_brake_power', 'W', 'power that leaves through the shaft, by drive and damping; negative: it is driven'), &
+    quantity_t('cycle_brake_power', 'W', &
+      'power through the shaft, by drive and damping, less the losses of quasi-static bearings; negative: it is driven'), &
     quantity_t('cycle_imep', 'Pa', 'work of the gas in a cycle of the gas over the displacement'), &
-    quantity_t('cycle_bmep', 'Pa', 'the same of the work that leaves through the shaft'), &
+    quantity_t('cycle_heat_released', 'J', 'heat that combustion releases in one cylinder in a cycle of the gas'), &
+    quantity_t('cycle_bmep', 'Pa', 'the same of the brake power'), &
     quantity_t('cycle_fmep', 'Pa', 'the same of the losses in joints, guide and elastic members'), &
     quantity_t('cycle_one_way_fmep', 'Pa', &
-      'the same of the losses in bearings of kind quasi_static, which the mechanism does not feel'), &
+      'the part of it in bearings of kind quasi_static, which is not fed back: the motion does not feel it'), &
     quantity_t('cycle_work_gas', 'J', 'work of the gas on the piston in the cycle'), &
     quantity_t('cycle_work_drive', 'J', 'work of the driving torque, or of the moment that holds the speed'), &
     quantity_t('cycle_work_damping', 'J', 'work of the damping of the drive'), &
@@ -108,7 +111,7 @@ contains
     type(answer_t), allocatable :: answers(:)
     type(cycle_t) :: cycle
     real(dp) :: displacement   !! swept in all cycles of the gas in this cycle [m^3]
-    real(dp) :: loss, shaft
+    real(dp) :: loss, shaft, one_way
     integer :: revolutions, i, forced
     allocate (answers(0))
     forced = scene%forced_revolutions()
@@ -226,15 +229,19 @@ contains
       call add('cycle_max_cylinder_pressure', cycle%max_pressure)
       call add('cycle_max_cylinder_pressure_angle', degrees(cycle%max_pressure_angle))
       shaft = -work_of(by_drive) - work_of(by_damping)
-      loss = work_of(by_gas) - shaft - sum(cycle%work(:scene%n_works))   ! by what is neither gas nor shaft
+      one_way = -sum(cycle%work(scene%n_works + 1:size(scene%parts)))    ! by bearings that the mechanism does not feel
+      loss = work_of(by_gas) - shaft - sum(cycle%work(:scene%n_works)) + one_way   ! by what is neither gas nor shaft
+      shaft = shaft - one_way
       call add('cycle_indicated_power', work_of(by_gas)/cycle%duration)
       call add('cycle_brake_power', shaft/cycle%duration)
       if (allocated(scene%chain%train)) displacement = displacement*(1 + size(scene%chain%train%cylinders))
       call add('cycle_imep', work_of(by_gas)/displacement)
+      if (allocated(scene%gas%cycle)) call add('cycle_heat_released', &
+        scene%gas%cycle%release%heat*released_share(scene%gas%cycle%release%efficiency))
       call add('cycle_bmep', shaft/displacement)
       call add('cycle_fmep', loss/displacement)
       if (scene%n_works < size(scene%parts)) &
-        call add('cycle_one_way_fmep', -sum(cycle%work(scene%n_works + 1:size(scene%parts)))/displacement)
+        call add('cycle_one_way_fmep', one_way/displacement)
     end subroutine add_machine
 
     !> A crank angle [rad] in degrees, from 0 to the length of the cycle.
