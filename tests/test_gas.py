@@ -10,6 +10,7 @@ N failed".
 from __future__ import annotations
 
 import argparse
+import re
 import subprocess
 import sys
 import tempfile
@@ -286,6 +287,59 @@ def measured_pressure(program: Path) -> None:
         check(np.all((p >= lowest * (1 - 1e-9) - 1e-12) & (p <= highest * (1 + 1e-9))), "a measured pressure is between its neighbours")
 
 
+def said(program: Path, case: Path, *settings: str) -> str:
+    """All that --check says of a case."""
+    words = [word for setting in settings for word in ("--set", setting)]
+    made = subprocess.run([program, "--check", *words, case], capture_output=True, text=True, check=False)
+    check(made.returncode == 0, f"--check of {case.name}", made.stderr)
+    return made.stdout + made.stderr
+
+
+def what_check_says(program: Path) -> None:
+    """Pressures, work and firing of a case that is only read, and the note on a table in another unit, against the table itself."""
+    text = (GAS / "indicator.csv").read_text()
+    rows = [line for line in text.splitlines() if line[:1].isdigit()]
+    degrees, bar = np.array([[float(number) for number in row.split(",")] for row in rows]).T
+    crank, rod = 0.0508, 0.2032   # of measured.nml
+    q = np.deg2rad(np.append(degrees, 720))
+    p = np.append(bar, bar[0])
+    lift = crank - crank * np.cos(q) + rod - np.sqrt(rod**2 - (crank * np.sin(q)) ** 2)
+    imep = np.trapezoid(p, lift) / (2 * crank)
+    plain = said(program, GAS / "measured.nml")
+    found = re.search(r"; (\S+) to (\S+) bar, largest at (\S+) degrees, IMEP (\S+) bar", plain)
+    check(bool(found), "--check shows the pressures", plain)
+    if found:
+        least, peak, angle, work = map(float, found.groups())
+        check(abs(least / bar.min() - 1) < 1e-3 and abs(peak / bar.max() - 1) < 1e-3, "least and largest pressure of the table", plain)
+        check(abs(angle - degrees[bar.argmax()]) <= 1, "their angle", plain)
+        check(abs(work / imep - 1) < 5e-3, "mean effective pressure of the table", f"{work}, trapezoids over whole degrees {imep}")
+    check("gives" not in plain and "has pressures" not in plain, "no note on the pressures of the shipped table", plain)
+    with tempfile.TemporaryDirectory() as folder:
+        case = Path(folder) / "measured.nml"
+        case.write_text((GAS / "measured.nml").read_text())
+        for unit, factor, offset, hint in (("bar", 1e5, 0, "pascals under [bar]"), ("Pa", 1, 0, "bar under [Pa]"), ("bar", 0.1, 0, "MPa under [bar]"),
+                                           ("bar", 1, -1.01325, "gauge pressure")):
+            changed = "".join(f"{angle},{max(0.0, factor * value + offset)}\n" for angle, value in zip(degrees, bar))
+            (Path(folder) / "indicator.csv").write_text(f"crank_angle[deg],pressure[{unit}]\n{changed}")
+            check(hint in said(program, case), f"a table with {hint}", said(program, case))
+    for name, order in (("inline_four", "order 1-3-4-2, every 180 degrees"), ("v_twin", "order 1-2, after 450 and 270 degrees")):
+        check(order in said(program, TOP / "cases" / "cylinders" / f"{name}.nml"), f"firing order of {name}",
+              said(program, TOP / "cases" / "cylinders" / f"{name}.nml"))
+    plain = said(program, TOP / "cases" / "sim_IV.nml", "joint.clearance=25 um", "combustion.heat=800", "combustion.wiebe_efficiency=2")
+    check("clearance 25 um (diametral 50 um)" in plain, "both clearances", plain)
+    check("800 J a cycle (692 J released)" in plain, "what is released", plain)   # 800 (1 - exp(-2)) = 691.73
+    check("long bearing" in plain and "two spheres" in plain, "models that the manual advises against", plain)
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([program, "-q", "-o", folder, "-s", "combustion.heat=800", "-s", "combustion.wiebe_efficiency=2", TOP / "cases" / "sim_IV.nml"],
+                       check=True, capture_output=True)
+        answers = pd.read_csv(Path(folder) / "sim_IV.summary.csv", index_col="quantity")["value"]
+        check(abs(float(answers["cycle_heat_released"]) / 691.7317734107 - 1) < 1e-9, "the heat that a cycle releases", answers["cycle_heat_released"])
+        case = Path(folder) / "default.nml"
+        case.write_text((TOP / "cases" / "sim_I.nml").read_text().replace("geometry = 'hertz_sphere', ", "").replace("law = 'pinkus_sternlicht', ", ""))
+        plain = said(program, case)
+        check("gives by default the contact of two spheres" in plain and "by default that of a long bearing" in plain, "notes on defaults", plain)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path)
@@ -308,6 +362,7 @@ def main() -> int:
     crank_receives_the_work(program, GAS / "compressor.nml", "compressor with a free crank", "integrator.crank_revolutions=2")
     pressure_of_the_angle(program)
     measured_pressure(program)
+    what_check_says(program)
     return assertions.report()
 
 

@@ -126,6 +126,15 @@ check "a case on standard input under another name" cmp "$work/kinds/film.csv" "
 run --reference joint
 check "reference of one group" [ "$(grep -c '^## ' "$work/out")" = 1 -a "$(grep -c '^| `clearance` | m ' "$work/out")" = 1 ]
 
+# a level of accuracy costs no more than the next one: an undamped vibration of an elastic rod, a film that heats up
+for case in "$work/elastic.nml" cases/film/heat.nml; do
+  for level in draft standard; do
+    run -q -a $level -o "$work/$level" -s output.ideal_twin=F "$case"
+    evaluations="$evaluations $(sed -n 's/^rhs_evaluations,\([0-9]*\),1/\1/p' "$work/$level/$(basename "$case" .nml).summary.csv")"
+  done
+done
+check "evaluations of drafts and standards: $evaluations" [ "$(echo $evaluations | awk '{ print $1 <= $2 && $3 <= $4 && NF == 4 }')" = 1 ]
+
 # the first command of the README prints its result alone: one line on the physics, one on the cost
 run -o "$work/first" cases/sim_I.nml
 check "the first run prints its result alone" [ "$status" = 0 -a ! -s "$work/err" -a "$(wc -l <"$work/out")" = 2 ]

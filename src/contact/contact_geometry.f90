@@ -22,6 +22,7 @@ module contact_geometry
     procedure(slope), deferred :: slope
     procedure :: elastic_energy => integral_of_force
     procedure, nopass :: needs_length => needs_it
+    procedure :: is_of_spheres => of_cylinders
     procedure :: bearing_conflict => fits_every_bearing
     procedure :: foundation => no_foundation
     procedure, nopass :: has_foundation => has_none
@@ -100,6 +101,12 @@ contains
       share = penetration*root*self%elastic_force(penetration*root**2)
     end function share
   end function integral_of_force
+
+  !> Whether the elastic force is that of two spheres, which are softer than a pin in its bearing. The default is no.
+  pure logical function of_cylinders(self)
+    class(contact_geometry_t), intent(in) :: self
+    of_cylinders = .false.
+  end function of_cylinders
 
   !> Whether the force is proportional to the length of the bearing. The default is yes.
   pure logical function needs_it()

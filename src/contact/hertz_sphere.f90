@@ -20,6 +20,7 @@ module hertz_sphere
     procedure :: slope
     procedure :: elastic_energy
     procedure, nopass :: needs_length
+    procedure :: is_of_spheres
   end type hertz_sphere_t
 
 contains
@@ -73,6 +74,12 @@ contains
   end function elastic_energy
 
   !> The force does not depend on the length of the bearing.
+  !> Whether the stiffness is Hertz's, and not given.
+  pure logical function is_of_spheres(self)
+    class(hertz_sphere_t), intent(in) :: self
+    is_of_spheres = .not. self%given_stiffness > 0
+  end function is_of_spheres
+
   pure logical function needs_length()
     needs_length = .false.
   end function needs_length

@@ -63,6 +63,7 @@ module film_law
     procedure, non_overridable :: shear_moment_slopes
     procedure :: is_quasi_static
     procedure, nopass :: gives_pressure => no
+    procedure, nopass :: is_of_long_bearings => no
     procedure :: conserves_oil
     procedure, nopass :: gives_side_flow => no
     procedure :: longest_bearing => of_any_length

@@ -34,6 +34,7 @@ module pinkus_sternlicht
     procedure :: force_derivatives
     procedure :: is_quasi_static
     procedure, nopass :: gives_pressure => yes
+    procedure, nopass :: is_of_long_bearings => yes
     procedure :: pressure
     procedure :: peak_and_flow
   end type pinkus_sternlicht_t

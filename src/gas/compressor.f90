@@ -23,6 +23,7 @@ module compressor
     procedure :: conflict
     procedure :: prepare
     procedure :: fastest_piston
+    procedure :: filling_pressure
     procedure :: description
   end type compressor_t
 
@@ -71,6 +72,11 @@ contains
     class(compressor_t), intent(in) :: self
     fastest_piston = 12
   end function fastest_piston
+
+  pure real(dp) function filling_pressure(self)
+    class(compressor_t), intent(in) :: self
+    filling_pressure = self%suction_pressure
+  end function filling_pressure
 
   function description(self) result(text)
     class(compressor_t), intent(in) :: self

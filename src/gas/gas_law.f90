@@ -15,6 +15,7 @@ module gas_law
     procedure :: revolutions => one_revolution
     procedure :: fastest_piston
     procedure :: heat_of_cycle
+    procedure :: filling_pressure
     procedure :: description
     procedure :: add_bore
     procedure :: add_crankcase_pressure
@@ -52,6 +53,12 @@ contains
     class(gas_law_t), intent(in) :: self
     heat_of_cycle = 0
   end function heat_of_cycle
+
+  !> Pressure at which a machine fills that takes gas in from a pipe [Pa]; 0: that is not known.
+  pure real(dp) function filling_pressure(self)
+    class(gas_law_t), intent(in) :: self
+    filling_pressure = 0
+  end function filling_pressure
 
   !> The gas in a few words, for the user.
   function description(self) result(text)

@@ -6,7 +6,7 @@ module wiebe_law
   use number_text, only: short_text, quantity_text
   use model_parameters, only: parameter_list_t
   use cylinder, only: new_cylinder
-  use gas_cycle, only: gas_cycle_t, heat_release_t, new_gas_cycle
+  use gas_cycle, only: gas_cycle_t, heat_release_t, new_gas_cycle, released_share
   use gas_law, only: gas_law_t
   use working_gas, only: working_gas_t
   implicit none
@@ -50,10 +50,13 @@ contains
       example='9.0', usual='2 to 30')
     call list%add('heat_capacity_ratio', self%heat_capacity_ratio, &
       'ratio of the heat capacities of the gas', range='> 1 and <= 10', example='1.4', usual='1.05 to 1.67')
-    call list%add('heat', self%heat, 'heat released in each cycle', 'J', '>= 0 and <= 1e12', example='165.0', usual='0.1 to 1e7')
-    call list%add('wiebe_efficiency', self%efficiency, 'parameter a of the Wiebe function', range='> 0 and <= 1000', &
+    call list%add('heat', self%heat, 'heat of each cycle, of which 1 - exp(-wiebe_efficiency) is released', 'J', &
+      '>= 0 and <= 1e12', example='165.0', usual='0.1 to 1e7')
+    call list%add('wiebe_efficiency', self%efficiency, &
+      'parameter a of the Wiebe function: 1 - exp(-a) of the heat is released', range='> 0 and <= 1000', &
       example='5.0', usual='2 to 15')
-    call list%add('wiebe_form', self%form, 'parameter n of the Wiebe function', range='>= 0.05 and <= 100', example='3.0', &
+    call list%add('wiebe_form', self%form, &
+      'exponent n of the Wiebe function 1 - exp(-a z^n); most books write it as m + 1', range='>= 0.05 and <= 100', example='3.0', &
       usual='0.3 to 10')
     call list%add('start_deg', self%start_deg, 'crank angle at which combustion starts; the firing dead centre is 360', 'degrees', &
       '>= 180 and < 540', example='340.0', usual='270 to 400')
@@ -102,7 +105,8 @@ contains
   function description(self) result(text)
     class(wiebe_law_t), intent(in) :: self
     character(len=:), allocatable :: text
-    text = trim(self%name)//', compression ratio '//short_text(self%compression_ratio, 3)//', '//quantity_text(self%heat, 'J')// &
-      ' a cycle from '//short_text(self%start_deg)//' to '//short_text(self%start_deg + self%duration_deg)//' degrees'
+    text = trim(self%name)//', compression ratio '//short_text(self%compression_ratio, 3)//', '// &
+      quantity_text(self%heat, 'J')//' a cycle ('//quantity_text(self%heat*released_share(self%efficiency), 'J')// &
+      ' released) from '//short_text(self%start_deg)//' to '//short_text(self%start_deg + self%duration_deg)//' degrees'
   end function description
 end module wiebe_law

@@ -6,6 +6,9 @@ module case_description
   use joint_case, only: joint_case_t
   use joint_places, only: places, n_places, in_order
   use scene_builder, only: simulated_time, sample_interval
+  use train_case, only: order_cylinders
+  use gas_law, only: gas_law_t
+  use gas_figures, only: gas_figures_t, find_gas_figures
   use number_text, only: short_text, quantity_text
   use text_tools, only: integer_text, printable
   implicit none
@@ -34,14 +37,17 @@ contains
       call add('machine', machine_text(case))
     end if
     call add('speed', speed_text(case))
-    if (allocated(case%combustion)) call add('gas', case%combustion%description())
-    if (allocated(case%measured)) call add('gas', case%measured%description())
+    if (allocated(case%combustion)) call add('gas', gas_text(case, case%combustion))
+    if (allocated(case%measured)) call add('gas', gas_text(case, case%measured))
+    if (allocated(case%cylinders)) call add('firing', firing_text(case))
     do i = 1, n_places
       associate (place => in_order(i))
         if (allocated(case%load)) then
           if (i == 1) call add('bearing', joint_text(case%joints(place)))
+          if (i == 1) call add('note', advice(case%joints(place)))
         else if (i == 1 .or. case%joints(place)%has_bearing()) then
           call add(trim(places(place)%title), joint_text(case%joints(place)))
+          call add('note', advice(case%joints(place)))
         end if
       end associate
     end do
@@ -78,6 +84,37 @@ contains
     if (allocated(case%cylinders)) text = text//'; cylinders: '//integer_text(size(case%cylinders))
     if (allocated(case%shaft)) text = text//'; crankshaft of '//integer_text(case%shaft%n_inertia)//' stations'
   end function machine_text
+
+  !> The gas, and what it does in a cycle of one cylinder.
+  function gas_text(case, law) result(text)
+    type(case_t), intent(in) :: case
+    class(gas_law_t), intent(in) :: law
+    character(len=:), allocatable :: text
+    type(gas_figures_t) :: gas
+    real(dp), parameter :: bar = 1e5_dp   ! [Pa]
+    text = law%description()
+    call find_gas_figures(law, case%mechanism%crank_length, case%mechanism%rod_length, case%initial%crank_speed, gas)
+    if (gas%is_known) text = text//'; '//short_text(gas%least/bar, digits)//' to '//short_text(gas%peak/bar, digits)// &
+      ' bar, largest at '//short_text(gas%peak_angle, digits)//' degrees, IMEP '//short_text(gas%imep/bar, digits)//' bar'
+  end function gas_text
+
+  !> In which order cylinders reach the same point of the cycle, and after which angles.
+  function firing_text(case) result(text)
+    type(case_t), intent(in) :: case
+    character(len=:), allocatable :: text
+    real(dp), parameter :: same = 1e-3_dp   ! [degrees]
+    real(dp) :: gaps(size(case%cylinders))  ! [degrees]
+    integer :: i
+    call order_cylinders(case%delays(), 360.0_dp*case%forced_revolutions(), text, gaps)
+    text = 'order '//text//', every '//short_text(gaps(1), digits)
+    if (maxval(gaps) - minval(gaps) > same) then
+      do i = 2, size(gaps)
+        text = text//trim(merge(' and', ',   ', i == size(gaps)))//' '//short_text(gaps(i), digits)
+      end do
+      text = text(:index(text, ', every') - 1)//', after '//text(index(text, 'every ') + 6:)
+    end if
+    text = text//' degrees'
+  end function firing_text
 
   !> The table of a bearing by itself, and what turns.
   function load_text(case) result(text)
@@ -123,7 +160,8 @@ contains
     text = ''
     if (joint%is_carried()) text = 'quasi-static, '
     if (joint%load_share < 1) text = text//short_text(joint%load_share)//' of the load, '
-    text = text//'clearance '//quantity_text(joint%clearance, 'm', digits)//', '// &
+    text = text//'clearance '//quantity_text(joint%clearance, 'm', digits)//' (diametral '// &
+      quantity_text(2*joint%clearance, 'm', digits)//'), '// &
       short_text(joint%clearance/joint%bearing_radius, 2)//' of the radius of '//quantity_text(joint%bearing_radius, 'm', digits)
     if (joint%bearing_length > 0) text = text//', length/diameter '//short_text(0.5_dp*joint%bearing_length/joint%bearing_radius, 3)
     if (allocated(joint%film)) then
@@ -143,6 +181,20 @@ contains
     if (allocated(joint%friction)) text = text//'; friction '//trim(joint%friction%name)
     if (allocated(joint%wear)) text = text//'; wear'
   end function joint_text
+
+  !> What the manual advises against in a joint, though the case asks for it; empty: nothing.
+  function advice(joint) result(text)
+    type(joint_case_t), intent(in) :: joint
+    character(len=:), allocatable :: text
+    text = ''
+    if (.not. joint%has_bearing()) return
+    if (joint%is_too_short_for_its_film()) text = 'the film is that of a long bearing, too thick below length/diameter 2: '// &
+      'finite_bearing'
+    if (.not. joint%can_touch()) return
+    if (.not. joint%contact%geometry%is_of_spheres()) return
+    if (text /= '') text = text//'; '
+    text = text//'the contact is that of two spheres, far too soft for a pin in its bearing: conformal'
+  end function advice
 
   function guide_text(case) result(text)
     type(case_t), intent(in) :: case

@@ -9,7 +9,9 @@ module case_notes
   use chain_motion, only: body_piston
   use case_schema, only: find_group, shown_group
   use case_values, only: case_values_t
-  use number_text, only: short_text
+  use gas_figures, only: gas_figures_t, find_gas_figures, highest_peak
+  use train_case, only: order_cylinders
+  use number_text, only: short_text, quantity_text
   use text_tools, only: replaced
   use unit_hints, only: likely_unit
   use value_reader, only: n_values, read_bounds
@@ -18,6 +20,7 @@ module case_notes
   public :: note_case, count_lines
 
   real(dp), parameter :: steel = 7850   !! density [kg/m^3]
+  real(dp), parameter :: highest_imep = 3.5e6_dp   !! [Pa]
 
 contains
 
@@ -42,9 +45,11 @@ contains
     call note_speed()
     do i = 1, n_places
       call note_joint(c%joints(in_order(i)), joint_group(in_order(i)), in_order(i))
+      call note_defaults(c%joints(in_order(i)), in_order(i))
     end do
     call note_guide()
     call note_gas()
+    call note_firing()
     call note_rod()
     do i = 1, size(is_unusual)
       if (is_unusual(i)) call note_size(i)
@@ -257,17 +262,57 @@ contains
       associate (r => joint%bearing_radius, length => c%mechanism%crank_length)
         call expect(group, 'clearance', joint%clearance, r, 1e-4_dp, 0.1_dp, 'is # of bearing_radius = @ m', &
           group//'.bearing_radius')
+        if (is_engine() .and. allocated(joint%film)) call expect(group, 'clearance', joint%clearance, r, 1e-4_dp, 1.5e-3_dp, &
+          'is # of bearing_radius = @ m', group//'.bearing_radius', 'the diametral clearance')
         room = max(length, 0.5_dp*(c%mechanism%rod_length - length))
         call expect(group, 'bearing_radius', r, room, 0.0_dp, merge(1.0_dp, 3.0_dp, at_piston), &   ! 3: an eccentric shaft
           'is # of the room beside crank and rod (@ m)', 'mechanism.crank_length mechanism.rod_length')
         if (at_piston) call expect(group, 'bearing_radius', r, bore, 0.04_dp, 0.26_dp, 'is # of bore = @ m', &
           'combustion.bore cylinder_pressure.bore', 'the diameter instead of the radius')
+        if (is_engine() .and. .not. at_piston) then
+          call expect(group, 'bearing_radius', r, length, 0.0_dp, 1.0_dp, 'is # of crank_length = @ m', 'mechanism.crank_length', &
+            'the diameter instead of the radius')
+          call expect(group, 'bearing_radius', r, bore, 0.0_dp, 0.45_dp, 'is # of bore = @ m', &
+            'combustion.bore cylinder_pressure.bore', 'the diameter instead of the radius')
+        end if
         call expect(group, 'bearing_length', joint%bearing_length, 2*r, 0.1_dp, 3.0_dp, &
           'is # of the diameter of the bearing, @ m', group//'.bearing_radius')
       end associate
       call expect('initial', name_prefix(place)//'eccentricity', norm2(c%initial%eccentricity(:, place)), joint%clearance, &
         0.0_dp, 1.2_dp, 'is # of clearance = @ m', group//'.clearance')
     end subroutine note_joint
+
+    !> Laws that a joint has by default, though the manual advises against them.
+    subroutine note_defaults(joint, place)
+      type(joint_case_t), intent(in) :: joint
+      integer, intent(in) :: place   !! index in `places`
+      if (.not. joint%has_bearing()) return
+      if (joint%is_too_short_for_its_film() .and. .not. is_given(law_group('lubrication', place), 'law')) &
+        call remark(joint_group(place), 'bearing_length', 'is less than two diameters, and the film by default that of a '// &
+        'long bearing, which is too thick here: &lubrication law = ''finite_bearing''', joint_group(place)//'.bearing_radius')
+      if (.not. joint%can_touch()) return
+      if (joint%contact%geometry%is_of_spheres() .and. .not. is_given(law_group('contact', place), 'geometry')) &
+        call remark(law_group('contact', place), 'youngs_modulus', 'gives by default the contact of two spheres, far too '// &
+        'soft for a pin in its bearing: geometry = ''conformal''', '')
+    end subroutine note_defaults
+
+    function law_group(name, place) result(group)
+      character(len=*), intent(in) :: name
+      integer, intent(in) :: place   !! index in `places`
+      character(len=:), allocatable :: group
+      group = values%law_group(name, trim(places(place)%name))
+    end function law_group
+
+    logical function is_given(group, name)
+      character(len=*), intent(in) :: group, name
+      is_given = values%values(values%place_of(group, name))%given(1)
+    end function is_given
+
+    !> Whether the gas drives the machine.
+    logical function is_engine()
+      is_engine = allocated(c%measured)
+      if (allocated(c%combustion)) is_engine = c%combustion%heat_of_cycle() > 0
+    end function is_engine
 
     !> The piston in its bore.
     subroutine note_guide()
@@ -287,12 +332,70 @@ contains
       end associate
     end subroutine note_guide
 
-    !> Heat for the volume of the cylinder.
+    !> Heat for the volume of the cylinder, and pressures and work of a cycle.
     subroutine note_gas()
+      type(gas_figures_t) :: gas
+      if (allocated(c%measured)) then
+        call find_gas_figures(c%measured, c%mechanism%crank_length, c%mechanism%rod_length, c%initial%crank_speed, gas)
+        if (gas%is_known) call note_table(gas)
+      end if
       if (.not. allocated(c%combustion)) return
+      call note_heat()
+      associate (suction => c%combustion%filling_pressure(), crankcase => c%combustion%crankcase_pressure)
+        if (suction > 0 .and. crankcase > 1.05_dp*suction) then
+          call remark('combustion', 'suction_pressure', 'is below the crankcase_pressure of '//quantity_text(crankcase, 'Pa')// &
+            ', which is on the other side of the piston', 'combustion.crankcase_pressure')
+          call remark('combustion', 'crankcase_pressure', 'is above the suction_pressure of '//quantity_text(suction, 'Pa'), &
+            'combustion.suction_pressure')
+        end if
+      end associate
+      if (any(values%keys%group == 'combustion' .and. (is_unusual .or. is_noted)) .or. .not. is_engine() .or. &
+        any_remarkable('mechanism.crank_length mechanism.rod_length')) return
+      call find_gas_figures(c%combustion, c%mechanism%crank_length, c%mechanism%rod_length, c%initial%crank_speed, gas)
+      if (.not. gas%is_known) return
+      if (gas%peak > highest_peak) then
+        call remark('combustion', 'heat', 'gives a largest pressure of '//quantity_text(gas%peak, 'Pa')// &
+          ', usually up to 50 MPa', '')
+      else if (gas%imep > highest_imep) then
+        call remark('combustion', 'bore', 'gives a mean effective pressure of '//quantity_text(gas%imep, 'Pa')//' with this '// &
+          'heat, usually up to 3.5 MPa: the radius instead of the diameter?', '')
+      end if
+    end subroutine note_gas
+
+    !> A measured pressure.
+    subroutine note_table(gas)
+      type(gas_figures_t), intent(in) :: gas
+      character(len=*), parameter :: group = 'cylinder_pressure', key = 'table'
+      character(len=:), allocatable :: hint
+      real(dp), parameter :: far = 60, engine_ratio = 20   ! [degrees]; no stage of a compressor has a larger ratio of pressures
+      if (.not. gas%are_usual()) then
+        call remark(group, key, 'has pressures from '//quantity_text(gas%least, 'Pa')//' to '//quantity_text(gas%peak, 'Pa')// &
+          ', usually a least one of 2e4 to 1e6 Pa and a largest of 1e5 to 5e7 Pa'//gas%likely_unit(), '')
+      else if (gas%peak > 2*gas%least .and. abs(modulo(gas%peak_angle + 180, 360.0_dp) - 180) > far) then
+        call remark(group, key, 'has its largest pressure at '//short_text(gas%peak_angle, 4)//' degrees, far from the dead '// &
+          'centres at 0 and 360: offset_deg?', '')
+      else if (gas%imep < 0 .and. (c%measured%period_deg == 720 .or. gas%peak > engine_ratio*gas%least)) then
+        hint = ': offset_deg, or not fired?'
+        if (c%initial%crank_speed < 0) hint = ': crank_speed < 0 turns the engine backwards?'
+        call remark(group, key, 'takes power instead of giving it: IMEP '//quantity_text(gas%imep, 'Pa')//hint, '')
+      end if
+    end subroutine note_table
+
+    !> Several cylinders that fire at the same instant.
+    subroutine note_firing()
+      character(len=:), allocatable :: order
+      real(dp), allocatable :: gaps(:)
+      if (.not. (allocated(c%cylinders) .and. is_engine())) return
+      allocate (gaps(size(c%cylinders)))
+      call order_cylinders(c%delays(), 360.0_dp*c%forced_revolutions(), order, gaps)
+      if (index(order, '+') > 0) call add_line('&cylinder: those with a plus between them fire at the same instant: '//order// &
+        ': phase_deg and bank_deg?')
+    end subroutine note_firing
+
+    subroutine note_heat()
       call expect('combustion', 'heat', c%combustion%heat_of_cycle(), 1e6_dp*pi/4*bore**2*stroke, 0.03_dp, 10.0_dp, &
         'is # J for each cm^3 of displacement (@ cm^3)', 'mechanism.crank_length combustion.bore')
-    end subroutine note_gas
+    end subroutine note_heat
 
     !> Section of an elastic rod.
     subroutine note_rod()

@@ -38,10 +38,10 @@ module case_templates
   character(len=*), parameter :: dry_case = &
     "! A dry pin in a slow mechanism: it lies on its bearing, and knocks when the load changes its side."//si//rig// &
     "&joint"//n// &
-    "  kind = 'clearance', clearance = 20 um, bearing_radius = 0.010                   ! radial clearance"//n// &
+    "  kind = 'clearance', clearance = 20 um, bearing_radius = 0.010, bearing_length = 0.020   ! radial clearance"//n// &
     "/"//n// &
     "&contact"//n// &
-    "  law = 'lankarani_nikravesh', restitution = 0.8"//n// &
+    "  law = 'lankarani_nikravesh', geometry = 'conformal', restitution = 0.8            ! a pin in a bearing of its size"//n// &
     "  youngs_modulus = 2*207 GPa, poissons_ratio = 2*0.3                                ! of pin and bearing"//n// &
     "/"//n// &
     "&friction law = 'ambrosio', coefficient = 0.10, v0 = 1 mm/s, v1 = 10 mm/s /   ! full friction from v1 on"//n// &
@@ -59,7 +59,7 @@ module case_templates
     "&joint"//n// &
     "  kind = 'clearance', clearance = 20 um, bearing_radius = 0.010, bearing_length = 0.015   ! radial clearance"//n// &
     "/"//n// &
-    "&lubrication law = 'pinkus_sternlicht', variant = 'half_film', viscosity = 11.7 cP /"//n// &
+    "&lubrication law = 'finite_bearing', viscosity = 11.7 cP /"//n// &
     "&integrator revolutions = 4.0 /"//n
 
   character(len=*), parameter :: engine_case = &
@@ -68,7 +68,7 @@ module case_templates
     "  kind = 'clearance', clearance = 8 um, bearing_radius = 0.009, bearing_length = 0.020   ! radial clearance"//n// &
     "/"//n// &
     "&lubrication"//n// &
-    "  law = 'pinkus_sternlicht', variant = 'half_film', oil = 'SAE 30', temperature = 120 degC   ! of the film"//n// &
+    "  law = 'finite_bearing', oil = 'SAE 30', temperature = 120 degC                    ! of the film"//n// &
     "/"//n// &
     "&integrator revolutions = 8.0 /"//n
 
@@ -88,7 +88,7 @@ module case_templates
     "&joint"//n// &
     "  kind = 'clearance', clearance = 6 um, bearing_radius = 0.006, bearing_length = 0.014   ! radial clearance"//n// &
     "/"//n// &
-    "&lubrication law = 'pinkus_sternlicht', variant = 'half_film', viscosity = 0.015 /   ! Pa s"//n// &
+    "&lubrication law = 'finite_bearing', viscosity = 0.015 /   ! Pa s"//n// &
     "&integrator revolutions = 6.0 /"//n
 
   character(len=*), parameter :: slap_case = &

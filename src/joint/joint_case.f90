@@ -54,6 +54,7 @@ module joint_case
     procedure :: has_elastic_film
     procedure :: has_weighted_film
     procedure :: has_worn_bore
+    procedure :: is_too_short_for_its_film
     procedure :: make_film
     procedure :: make_history
     procedure :: bearing => bearing_of
@@ -96,6 +97,13 @@ contains
     has_worn_bore = .false.
     if (allocated(self%wear)) has_worn_bore = self%wear%bore == 'worn'
   end function has_worn_bore
+
+  !> Whether the film is that of a long bearing in a bearing that is not: its length is below twice its diameter.
+  pure logical function is_too_short_for_its_film(self) result(is_so)
+    class(joint_case_t), intent(in) :: self
+    is_so = .false.
+    if (allocated(self%film)) is_so = self%film%is_of_long_bearings() .and. self%bearing_length < 4*self%bearing_radius
+  end function is_too_short_for_its_film
 
   !> The law of the film with the viscosity of its oil.
   subroutine make_film(self, film)

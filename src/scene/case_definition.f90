@@ -119,6 +119,7 @@ module case_definition
     procedure :: has_clearance => has_clearance_anywhere
     procedure :: is_elastic
     procedure :: has_train
+    procedure :: delays
   end type case_t
 
   interface
@@ -211,6 +212,13 @@ contains
     has_train = allocated(self%shaft)
     if (allocated(self%cylinders)) has_train = has_train .or. size(self%cylinders) > 1
   end function has_train
+
+  !> Angles of the shaft by which the cylinders come later than a mark to the same point of the cycle [degrees].
+  pure function delays(self)
+    class(case_t), intent(in) :: self
+    real(dp) :: delays(size(self%cylinders))
+    delays = -sign(1.0_dp, self%initial%crank_speed)*(self%cylinders%phase_deg - self%cylinders%bank_deg)
+  end function delays
 
   subroutine mechanism_parameters(self, list)
     class(mechanism_case_t), intent(inout) :: self

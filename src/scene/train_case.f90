@@ -1,11 +1,12 @@
 !> Parameters of several cylinders on one crankshaft: the cylinders, the stations of the shaft, and its dampers.
 module train_case
   use kinds, only: dp
+  use text_tools, only: integer_text
   use model_parameters, only: has_parameters_t, parameter_list_t
   use train_motion, only: most_stations, most_cylinders, most_rings
   implicit none
   private
-  public :: cylinder_case_t, shaft_case_t, damper_case_t, full_cylinder, number_throws, list_value
+  public :: cylinder_case_t, shaft_case_t, damper_case_t, full_cylinder, number_throws, list_value, order_cylinders
   public :: most_stations, most_cylinders, most_rings
 
   !> A cylinder. Exactly one is that of the mechanism; masses and inertias are those of the others.
@@ -164,6 +165,30 @@ contains
     type(cylinder_case_t), intent(in) :: cylinders(:)
     full = max(1, findloc(cylinders%full, .true., 1))
   end function full_cylinder
+
+  !> The cylinders in the order in which the shaft brings them to the same point of the cycle, from cylinder 1 on: 1-3-4-2; with a
+  !> plus between those at the same instant.
+  pure subroutine order_cylinders(behind, period, order, gaps)
+    real(dp), intent(in) :: behind(:)   !! angles of the shaft by which they come later than any one of them, in the unit of:
+    real(dp), intent(in) :: period      !! angle of a whole cycle
+    character(len=:), allocatable, intent(out) :: order
+    real(dp), intent(out) :: gaps(:)    !! in this order, from each to the next; the last one to the first
+    real(dp), parameter :: same = 1e-6_dp
+    real(dp) :: left(size(behind)), before
+    integer :: i, next
+    left = modulo(behind - behind(1) + same, period) - same
+    order = ''
+    before = 0
+    do i = 1, size(behind)
+      next = minloc(left, 1)
+      if (i > 1) order = order//trim(merge('+', '-', left(next) - before < same))
+      gaps(i) = left(next)
+      order = order//integer_text(next)
+      before = left(next)
+      left(next) = huge(before)
+    end do
+    gaps = [gaps(2:), period] - gaps
+  end subroutine order_cylinders
 
   !> The throws of all cylinders, from 1 on, and which of them have the body of the crank of their throw: the full cylinder, and the
   !> first of a throw that is not the full one's.

@@ -14,6 +14,7 @@ module train_record
   use crank_train, only: crank_train_t
   use torsional_modes, only: find_modes
   use scene_problem, only: scene_t, evaluation_t
+  use train_case, only: order_cylinders
   use train_builder, only: mean_inertias
   implicit none
   private
@@ -384,14 +385,13 @@ contains
     end subroutine add_extremes
   end function results
 
-  !> The cylinders in the order in which the shaft brings them to the same point of the cycle, from cylinder 1 on: 1-3-4-2; with a
-  !> plus between those at the same instant.
+  !> See `order_cylinders`.
   function firing_order(scene) result(text)
     type(scene_t), intent(in) :: scene
     character(len=:), allocatable :: text
-    real(dp), parameter :: same = 1e-6_dp   !! [rad]
-    real(dp) :: behind(size(scene%chain%train%cylinders) + 1), period, before
-    integer :: i, next
+    real(dp), dimension(size(scene%chain%train%cylinders) + 1) :: behind, gaps
+    real(dp) :: period
+    integer :: i
     associate (train => scene%chain%train)
       behind(train%full_number) = 0
       do i = 1, size(train%cylinders)
@@ -399,16 +399,7 @@ contains
       end do
       period = two_pi
       if (allocated(scene%gas)) period = scene%gas%revolutions*two_pi
-      behind = modulo(behind - behind(1) + same, period) - same
+      call order_cylinders(behind, period, text, gaps)
     end associate
-    text = ''
-    before = 0
-    do i = 1, size(behind)
-      next = minloc(behind, 1)
-      if (i > 1) text = text//trim(merge('+', '-', behind(next) - before < same))
-      text = text//integer_text(next)
-      before = behind(next)
-      behind(next) = huge(before)
-    end do
   end function firing_order
 end module train_record
