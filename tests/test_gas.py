@@ -319,12 +319,16 @@ def what_check_says(program: Path) -> None:
         case.write_text((GAS / "measured.nml").read_text())
         for unit, factor, offset, hint in (("bar", 1e5, 0, "pascals under [bar]"), ("Pa", 1, 0, "bar under [Pa]"), ("bar", 0.1, 0, "MPa under [bar]"),
                                            ("bar", 1, -1.01325, "gauge pressure")):
-            changed = "".join(f"{angle},{max(0.0, factor * value + offset)}\n" for angle, value in zip(degrees, bar))
+            changed = "".join(f"{angle},{max(0.005, factor * value + offset)}\n" for angle, value in zip(degrees, bar))
             (Path(folder) / "indicator.csv").write_text(f"crank_angle[deg],pressure[{unit}]\n{changed}")
             check(hint in said(program, case), f"a table with {hint}", said(program, case))
     for name, order in (("inline_four", "order 1-3-4-2, every 180 degrees"), ("v_twin", "order 1-2, after 450 and 270 degrees")):
         check(order in said(program, TOP / "cases" / "cylinders" / f"{name}.nml"), f"firing order of {name}",
               said(program, TOP / "cases" / "cylinders" / f"{name}.nml"))
+    with tempfile.TemporaryDirectory() as folder:
+        case = Path(folder) / "together.nml"
+        case.write_text((TOP / "cases" / "cylinders" / "inline_four.nml").read_text().replace("phase_deg = -540.0", "phase_deg = 0.0"))
+        check("fire at the same instant: 1+2-3-4" in said(program, case), "cylinders that fire together", said(program, case))
     plain = said(program, TOP / "cases" / "sim_IV.nml", "joint.clearance=25 um", "combustion.heat=800", "combustion.wiebe_efficiency=2")
     check("clearance 25 um (diametral 50 um)" in plain, "both clearances", plain)
     check("800 J a cycle (692 J released)" in plain, "what is released", plain)   # 800 (1 - exp(-2)) = 691.73

