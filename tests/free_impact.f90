@@ -48,7 +48,7 @@ contains
     high = min(1.0_dp, 1/chi)
     do i = 1, 60
       root = (low + high)/2
-      if (chi*(1 + root) > log((1 + chi)/(1 - chi*root))) then
+      if (chi*(1 + root) > log((1 + chi)/max(1 - chi*root, 1e-200_dp))) then   ! 1 - chi*root may round to 0
         low = root
       else
         high = root

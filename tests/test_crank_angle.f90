@@ -100,22 +100,24 @@ contains
   !> A crank that swings from 30 degrees to the other side and back passes as many angles as its fine trace, in both directions.
   subroutine a_crank_that_turns_back(check)
     class(checks_t), intent(inout) :: check
-    character(len=long), parameter :: common(4) = [character(len=long) :: 'initial.crank_speed=0', &
-      'integrator.revolutions=0', 'integrator.end_time=3', 'drive.kind=free']
+    character(len=long), parameter :: common(3) = [character(len=long) :: 'integrator.revolutions=0', 'integrator.end_time=3', &
+      'drive.kind=free']
     character(len=8), parameter :: starts(2) = [character(len=8) :: '30', '31.3']
+    ! from rest at 30 degrees it would turn back at 330, an angle with a row, which it reaches or not by rounding
+    character(len=long), parameter :: speeds(2) = [character(len=long) :: 'initial.crank_speed=1', 'initial.crank_speed=0']
     type(trace_t) :: rows, fine
     real(dp), allocatable :: place(:)
     integer, allocatable :: cell(:)
     integer :: i, angle, n
     do i = 1, size(starts)
-      rows = run_case('cases/sim_I.nml', [character(len=long) :: common, by_angle, 'output.angle_origin_deg=30', &
+      rows = run_case('cases/sim_I.nml', [character(len=long) :: common, speeds(i), by_angle, 'output.angle_origin_deg=30', &
         'output.samples_per_revolution=36', 'initial.crank_angle_deg='//starts(i)], ideal_joint=.true.)
-      fine = run_case('cases/sim_I.nml', [character(len=long) :: common, 'output.interval=1e-4', &
+      fine = run_case('cases/sim_I.nml', [character(len=long) :: common, speeds(i), 'output.interval=1e-4', &
         'initial.crank_angle_deg='//starts(i)], ideal_joint=.true.)
       angle = column(fine, 'crank_angle[rad]')
       if (allocated(cell)) deallocate (cell)
       allocate (cell(size(fine%values, 2)))
-      cell(:) = floor((fine%values(angle, :) - 30*degree)/(10*degree))
+      cell(:) = floor((fine%values(angle, :) - 30*degree)/(10*degree) + 1e-9_dp)   ! rounding of the start
       n = size(cell)
       n = sum(abs(cell(2:) - cell(:n - 1)))
       if (i == 1) n = n + 1   ! the start is at an angle of the grid

@@ -39,7 +39,8 @@ contains
     speed = trace%values(column(trace, 'crank_speed[rad/s]'), :)
     fine_speed = fine%values(column(fine, 'crank_speed[rad/s]'), :)
     call check%that(size(speed) == 201, 'a row each half revolution')
-    call check%that(maxval(abs(speed - fine_speed)/fine_speed) < 3e-5_dp, 'crank speed of the ideal twin after 100 revolutions')
+    call check%close_to(maxval(abs(speed - fine_speed)/fine_speed), 0.0_dp, 1e-4_dp, &   ! 100 revolutions of 1e-6
+      'crank speed of the ideal twin after 100 revolutions')
   end subroutine a_long_ideal_run_ends_where_it_should
 
   !> In a bearing with 1.7 mm of clearance the pin falls onto its film until the film thickness is a millionth of the clearance.

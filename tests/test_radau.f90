@@ -383,7 +383,8 @@ contains
     y = [0.0_dp, 1.0_dp, 0.0_dp]
     call integrate(problem, method, t, y, 20.0_dp, 10000, observer, status)
     call check%that(status == integration_done, 'integration of a stiff equation')
-    call check%that(abs(y(3) + y(2) - 1) < 20*tolerance, 'a quadrature uses the final stages')
+    ! about 30 with the final stages, depending on rounding, and 150 with those before
+    call check%close_to(y(3) + y(2), 1.0_dp, 70*tolerance, 'a quadrature uses the final stages')
   end subroutine quadratures_belong_to_their_stages
 
   pure subroutine follow_cosine(self, t, y, dydt, in_domain)
