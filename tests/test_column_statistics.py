@@ -106,6 +106,7 @@ def refused(program: Path, folder: Path) -> None:
         ("piston_acceleration", "must be a statistic and a column"),
         ("max pin_force_x, max pin_force_x", "'max pin_force_x': is given twice"),
         ("max abs", "no such column"),
+        ("mean nonsense", "no such column in this scene\n"),
         ("max pin_force_x,", "must be a statistic and a column"),
         ("mean cylinder_pressure", "no such column in this scene"),
     ):

@@ -305,17 +305,26 @@ contains
     pressure = self%table(part)%value(xi)
   end function pressure
 
-  !> Derivative of the pressure with respect to the crank angle [Pa/rad], for implicit integration. It is 0 where the combustion
-  !> table is graded, which only slows down Newton's method.
+  !> Derivative of the pressure with respect to the crank angle [Pa/rad]. Where the combustion table is graded it is (A.9) at the
+  !> pressure of the table, since the slope of the table over that of the grading is 0/0 at the start of combustion.
   pure real(dp) function pressure_slope(self, q, part, cycle_start)
     class(gas_cycle_t), intent(in) :: self
     real(dp), intent(in) :: q
     integer, intent(in) :: part
     real(dp), intent(in) :: cycle_start
-    real(dp) :: reach
+    real(dp) :: reach, z, heat, unused
     pressure_slope = 0
-    if (part == part_open .or. part == part_combustion .and. self%grading > 1) return
+    if (part == part_open) return
     reach = self%bound(part) - self%bound(part - 1)
-    pressure_slope = self%table(part)%slope((q - cycle_start - self%bound(part - 1))/reach)/reach
+    z = (q - cycle_start - self%bound(part - 1))/reach
+    if (part == part_combustion .and. self%grading > 1) then
+      call heat_slopes(self%release, 1.0_dp, z, heat, unused)
+      associate (gamma => self%heat_capacity_ratio, at => q - cycle_start)
+        pressure_slope = ((gamma - 1)*heat/reach - gamma*self%pressure(q, part, cycle_start)*self%cylinder%volume_slope(at)) &
+          /self%cylinder%volume(at)
+      end associate
+    else
+      pressure_slope = self%table(part)%slope(z)/reach
+    end if
   end function pressure_slope
 end module gas_cycle

@@ -83,7 +83,7 @@ contains
         if (column == bare(list%names(i)) .or. column == list%names(i)) exit
       end do
       if (i > size(list%names)) then
-        near = nearest_word(column, [character(len=40) :: (bare(list%names(i)), i=1, size(list%names))])
+        near = nearest_word(column, bare(list%names))
         if (near /= '') near = '; did you mean '//near//'?'
         call fail(error, ''''//part//''': no such column in this scene'//near, status_case_file)
         return
@@ -110,7 +110,7 @@ contains
   end subroutine names_of
 
   !> The name of a column without its unit.
-  pure function bare(name)
+  elemental function bare(name)
     character(len=*), intent(in) :: name
     character(len=len(name)) :: bare
     bare = name(:index(name//'[', '[') - 1)

@@ -226,8 +226,10 @@ contains
       if (allocated(scene%given_load)) return
       call add('cycle_mean_piston_speed', 4*scene%chain%bodies%crank%length*revolutions/cycle%duration)
       if (.not. allocated(scene%gas)) return
-      call add('cycle_max_cylinder_pressure', cycle%max_pressure)
-      call add('cycle_max_cylinder_pressure_angle', degrees(cycle%max_pressure_angle))
+      if (scene%gas%has_force) then
+        call add('cycle_max_cylinder_pressure', cycle%max_pressure)
+        call add('cycle_max_cylinder_pressure_angle', degrees(cycle%max_pressure_angle))
+      end if
       shaft = -work_of(by_drive) - work_of(by_damping)
       one_way = -sum(cycle%work(scene%n_works + 1:size(scene%parts)))    ! by bearings that the mechanism does not feel
       loss = work_of(by_gas) - shaft - sum(cycle%work(:scene%n_works)) + one_way   ! by what is neither gas nor shaft

@@ -2,17 +2,19 @@
 !> searched inside the steps.
 module machine_record
   use kinds, only: dp
+  use constants, only: degree
   use chain_motion, only: body_pin
   use ode_method, only: ode_method_t
   use scene_problem, only: scene_t, evaluation_t
+  use working_gas, only: working_gas_t
   use peak_search, only: sample_t, peak_search_t, may_peak
   use cycle_statistics, only: cycle_t
   implicit none
   private
   public :: machine_record_t, turning_point
 
-  !> Quantities that are searched: the pressure, the speed and its negative.
-  integer, parameter :: of_pressure = 1, of_speed = 2, of_negative_speed = 3
+  !> Largest turn of the crank in which the pressure has at most one peak [rad].
+  real(dp), parameter :: short_turn = degree
 
   type :: machine_record_t
     private
@@ -52,10 +54,10 @@ contains
     type(cycle_t), intent(inout) :: cycle   !! extremes of the present revolution
     type(machine_record_t) :: next
     call next%begin(scene, t, now)
-    if (allocated(scene%gas)) call search_one(of_pressure, cycle%max_pressure, cycle%max_pressure_angle)
+    if (allocated(scene%gas)) call search_pressure(scene%gas, self, next, cycle)
     if (scene%crank_moves) then
-      call search_one(of_speed, cycle%max_speed)
-      call search_one(of_negative_speed, cycle%max_negative_speed)
+      call search_speed(1, cycle%max_speed)
+      call search_speed(-1, cycle%max_negative_speed)
     else
       cycle%max_speed = max(cycle%max_speed, next%speed)
       cycle%max_negative_speed = max(cycle%max_negative_speed, -next%speed)
@@ -65,59 +67,75 @@ contains
 
   contains
 
-    !> Search the largest value of a quantity, if it may exceed `largest`.
-    subroutine search_one(quantity, largest, angle)
-      integer, intent(in) :: quantity
+    !> Search the largest speed, or its negative with the sense -1, if it may exceed `largest`.
+    subroutine search_speed(sense, largest)
+      integer, intent(in) :: sense
       real(dp), intent(inout) :: largest
-      real(dp), intent(inout), optional :: angle   !! crank angle there [rad]
       type(peak_search_t) :: peak
       type(sample_t) :: left, right
-      left = sample_at(self, scene, quantity)
-      right = sample_at(next, scene, quantity)
-      call peak%begin(left, right)
-      if (left%slope > 0 .and. right%slope < 0) then
-        if (may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, largest)) call climb(quantity, peak)
-      end if
-      if (.not. peak%value(1) > largest) return
-      largest = peak%value(1)
-      if (present(angle)) angle = angle_at(peak%t(1))
-    end subroutine search_one
-
-    !> Crank angle at a time inside the step [rad].
-    real(dp) function angle_at(time)
-      real(dp), intent(in) :: time
-      real(dp) :: y(scene%n)
-      call method%interpolate(time, y)
-      angle_at = scene%crank_angle(time, y)
-    end function angle_at
-
-    !> Search the peak of a quantity that rises and then falls.
-    subroutine climb(quantity, peak)
-      integer, intent(in) :: quantity
-      type(peak_search_t), intent(inout) :: peak
-      real(dp) :: time
+      real(dp) :: y(scene%n), time
       logical :: is_done
-      do
+      left = sample_t(self%t, sense*self%speed, sense*self%acceleration)
+      right = sample_t(next%t, sense*next%speed, sense*next%acceleration)
+      call peak%begin(left, right)
+      is_done = .not. may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, largest)
+      do while (.not. is_done)
         call peak%next_time(time, is_done)
         if (is_done) exit
-        call peak%add_value(time, value_at(quantity, time))
+        call method%interpolate(time, y)
+        call peak%add_value(time, sense*scene%crank_speed(time, y))
       end do
-    end subroutine climb
-
-    !> The value of a quantity at a time inside the step.
-    real(dp) function value_at(quantity, time) result(value)
-      integer, intent(in) :: quantity
-      real(dp), intent(in) :: time
-      type(machine_record_t) :: point
-      type(sample_t) :: sample
-      real(dp) :: y(scene%n)
-      call method%interpolate(time, y)
-      point%angle = scene%crank_angle(time, y)
-      point%speed = scene%crank_speed(time, y)
-      sample = sample_at(point, scene, quantity)
-      value = sample%value
-    end function value_at
+      largest = max(largest, peak%value(1))
+    end subroutine search_speed
   end subroutine search
+
+  !> Search the largest pressure of the gas between two points. It follows from the crank angle alone, which may turn back between
+  !> them.
+  subroutine search_pressure(gas, left, right, cycle)
+    type(working_gas_t), intent(in) :: gas
+    type(machine_record_t), intent(in) :: left, right
+    type(cycle_t), intent(inout) :: cycle
+    real(dp) :: farthest
+    farthest = left%angle + turning_point(right%t - left%t, right%angle - left%angle, left%speed, right%speed)
+    call search_turn(gas, left%angle, farthest, cycle)
+    call search_turn(gas, farthest, right%angle, cycle)
+  end subroutine search_pressure
+
+  !> Search the largest pressure between two crank angles, turn by short turn.
+  subroutine search_turn(gas, from, to, cycle)
+    type(working_gas_t), intent(in) :: gas
+    real(dp), intent(in) :: from, to   !! [rad]
+    type(cycle_t), intent(inout) :: cycle
+    type(peak_search_t) :: peak
+    type(sample_t) :: left, right
+    real(dp) :: angle, way
+    logical :: is_done
+    integer :: i, n
+    n = max(1, ceiling(abs(to - from)/short_turn))
+    way = sign(1.0_dp, to - from)
+    left = sample_t(way*from, gas%pressure(from), way*slope_at(from))
+    do i = 1, n
+      angle = from + i*(to - from)/n
+      right = sample_t(way*angle, gas%pressure(angle), way*slope_at(angle))
+      call peak%begin(left, right)
+      is_done = .not. may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, cycle%max_pressure)
+      do while (.not. is_done)
+        call peak%next_time(angle, is_done)
+        if (.not. is_done) call peak%add_value(angle, gas%pressure(way*angle))
+      end do
+      if (peak%value(1) > cycle%max_pressure) cycle%max_pressure_angle = way*peak%t(1)
+      cycle%max_pressure = max(cycle%max_pressure, peak%value(1))
+      left = right
+    end do
+
+  contains
+
+    !> Slope of the pressure over the crank angle [Pa/rad].
+    pure real(dp) function slope_at(angle)
+      real(dp), intent(in) :: angle
+      slope_at = gas%force_slope(angle)/gas%cylinder%area
+    end function slope_at
+  end subroutine search_turn
 
   !> Account for the angle of a floating pin between two points: where it turns back, that of the cubic through angles and speeds.
   pure subroutine follow_pin(left, right, cycle)
@@ -141,23 +159,4 @@ contains
     s = v0/(v0 - middle + sign(sqrt(middle**2 - v0*v1), v0))
     angle = span*s*(v0*(1 - s + s**2/3) + middle*s*(1 - 2*s/3) + v1*s**2/3)
   end function turning_point
-
-  !> Value and slope of a quantity at a point.
-  pure type(sample_t) function sample_at(point, scene, quantity) result(sample)
-    type(machine_record_t), intent(in) :: point
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: quantity
-    sample%t = point%t
-    select case (quantity)
-    case (of_pressure)
-      sample%value = scene%gas%pressure(point%angle)
-      sample%slope = scene%gas%force_slope(point%angle)/scene%gas%cylinder%area*point%speed
-    case (of_speed)
-      sample%value = point%speed
-      sample%slope = point%acceleration
-    case default
-      sample%value = -point%speed
-      sample%slope = -point%acceleration
-    end select
-  end function sample_at
 end module machine_record

@@ -252,6 +252,7 @@ contains
     if (.not. self%reports_film) return
     film = scene%joints(self%joint)%film_figures(now%joint(self%joint))
     figures%pin(self%pin)%max_film_pressure = max(figures%pin(self%pin)%max_film_pressure, film%max_pressure)
+    if (present(cycles)) call cycles%record_film(self%pin, film%max_pressure, now%motion%crank_angle, 0.0_dp)
   end subroutine record_values
 
   subroutine add_values(self, touches, values, figures)

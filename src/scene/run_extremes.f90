@@ -108,10 +108,18 @@ contains
     call self%guide%record_values(scene, now, self%figures)
   end subroutine begin
 
-  !> Begin a revolution whose results are wanted.
-  subroutine begin_revolution(self)
+  !> Begin a revolution whose results are wanted, where the scene has been evaluated: its first instant counts.
+  subroutine begin_revolution(self, scene, now, cycles)
     class(run_extremes_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    type(evaluation_t), intent(in) :: now
+    type(cycle_watch_t), intent(inout) :: cycles
+    integer :: i
     call self%guide%begin_revolution()
+    call self%guide%record_values(scene, now, self%figures)
+    do i = 1, self%n_pins
+      call self%pins(i)%record_values(scene, now, self%figures, cycles)
+    end do
   end subroutine begin_revolution
 
   !> Add the extremes of the skirt in a revolution that ends to its results, and mark the wear so far.

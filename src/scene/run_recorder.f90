@@ -241,7 +241,7 @@ contains
         if (in_domain) call self%extremes%search(method, scene, self%crank%t(k), now, .false., self%cycles)
         if (self%cycles%columns%is_on()) call self%cycles%columns%record(method, scene, self%crank%t(k), self%initial_energy, &
           self%extremes%figures%evaluations)
-        call end_revolution(self, scene, self%crank%t(k), self%crank%y(:, k), now)
+        call end_revolution(self, scene, self%crank%t(k), self%crank%y(:, k), now, in_domain)
       end do
       call self%cycles%record_strobes(method, scene, t, y)
       if (self%cycles%columns%is_on()) call self%cycles%columns%record(method, scene, t, self%initial_energy, &
@@ -252,15 +252,16 @@ contains
     call record_point(self, scene, t, y, now, in_domain, self%rows%every_step .and. t >= self%rows%first_sample)
   end subroutine record_end
 
-  !> End a revolution at (t, y), where the scene has been evaluated.
-  subroutine end_revolution(self, scene, t, y, now)
+  !> End a revolution at (t, y), where the scene has been evaluated if that is inside the model, and begin the next one.
+  subroutine end_revolution(self, scene, t, y, now, in_domain)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: in_domain
     call self%extremes%end_revolution(self%cycles)
     call self%cycles%end_cycle(scene, t, y, now)
-    call self%extremes%begin_revolution()
+    if (in_domain) call self%extremes%begin_revolution(scene, now, self%cycles)
   end subroutine end_revolution
 
   !> Evaluate the scene for the trace or the summary. These evaluations are counted.
@@ -382,7 +383,7 @@ contains
     if (allocated(self%cycles)) then
       if (self%crank%is_complete(crank_angle)) then
         call scene%evaluate(t, y, now, in_domain)
-        call end_revolution(self, scene, t, y, now)
+        call end_revolution(self, scene, t, y, now, in_domain)
       end if
       call self%cycles%finish(scene, t, y)
       call self%extremes%find_film_changes(scene, self%cycles)
