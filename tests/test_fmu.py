@@ -8,6 +8,7 @@ Needs NumPy, pandas and FMPy, and the shared library: that of the environment va
 with `N passed, N failed`; the exit status is 0 if nothing failed.
 """
 
+import math
 import os
 import subprocess
 import sys
@@ -163,6 +164,106 @@ def parameters(fmi: int, folder: str) -> None:
         check("documentation/index.html" in file.namelist() and "binaries" in " ".join(file.namelist()), "files")
 
 
+def refusals(fmi: int, folder: str) -> None:
+    """What a master must not do is an error, and never ends it: references and times beyond all bounds, wrong kinds, steps after the
+    end."""
+    path = gudgeon.fmu(gudgeon.read(TOP / "cases" / "sim_I.nml"), Path(folder) / "refusals.fmu", fmi)
+    unit = Unit(path, fmi, folder, 0.02)
+    one, own = unit.unit, unit.reference
+    get, put = (one.getReal, one.setReal) if fmi == 2 else (one.getFloat64, one.setFloat64)
+    get_whole, put_whole = (one.getInteger, one.setInteger) if fmi == 2 else (one.getInt32, one.setInt32)
+    whole = next(v.valueReference for v in unit.description.modelVariables if v.type in ("Integer", "Int32"))
+
+    def refused(what: str, action) -> None:
+        try:
+            action()
+            check(False, f"FMI {fmi}: {what} is refused")
+        except FMICallException as error:
+            check(error.status == 3, f"FMI {fmi}: status of {what}: {error.status}")
+
+    for reference in (2**31, 2**31 + 12345, 2**32 - 1, 2**31 - 1):
+        refused(f"reference {reference}", lambda reference=reference: get([reference]))
+        refused(f"setting reference {reference}", lambda reference=reference: put([reference], [1.0]))
+    check(f"{2**31 + 12345} cannot" in " ".join(unit.messages), "the master is told the reference")
+    refused("a real output as an integer", lambda: get_whole([own["piston_position"]]))
+    refused("a real parameter as an integer", lambda: get_whole([own["joint.clearance"]]))
+    refused("an integer as a real", lambda: get([whole]))
+    refused("setting a real as an integer", lambda: put_whole([own["joint.clearance"]], [1]))
+    if fmi == 3:
+        refused("a real output as a boolean", lambda: one.getBoolean([own["piston_position"]]))
+        import ctypes
+
+        two = (ctypes.c_double * 2)()
+        arguments = one.component, (ctypes.c_uint * 1)(own["piston_position"]), 1, two, 2
+        refused("a wrong number of values", lambda: one.fmi3GetFloat64(*arguments))
+    one.doStep(0, 0.005)
+    for start, step in ((math.nan, 0.001), (0.005, math.nan), (0.005, math.inf), (math.inf, 0.001), (0.005, -0.001), (0.007, 0.001)):
+        refused(f"a step from {start} by {step}", lambda start=start, step=step: one.doStep(start, step))
+    one.doStep(0.005, 0.005)
+    want = gudgeon.read(TOP / "cases" / "sim_I.nml").begin(end=0.02)
+    want.advance(0.01)
+    check(same(unit.get(), np.array([want.values[name] for name in unit.outputs])), f"FMI {fmi}: refused steps change nothing")
+    one.terminate()
+    refused("a step after the end", lambda: one.doStep(0.01, 0.001))
+    one.reset()
+    for wrong in ({"startTime": math.nan}, {"startTime": 1, "stopTime": 0.5}, {"startTime": 0, "stopTime": math.nan},
+                  {"startTime": 0, "stopTime": 1, "tolerance": math.nan}):  # fmt: skip
+        refused(f"a set-up with {wrong}", lambda wrong=wrong: (one.setupExperiment if fmi == 2 else one.enterInitializationMode)(**wrong))
+    one.freeInstance()
+
+
+def ends(folder: str) -> None:
+    """A unit of a case that ends when its motion repeats goes on to the stop time of the master."""
+    case = gudgeon.read(TOP / "cases" / "sim_I.nml").set(run={"until": "periodic", "periodic_tolerance": 0.1})
+    alone = case.run().summary["simulated_time"]
+    path = gudgeon.fmu(case, Path(folder) / "periodic.fmu", columns=["time", "piston_position"])
+    unit = Unit(path, 2, folder, 2 * alone)
+    unit.unit.doStep(0, 1.9 * alone)
+    want = case.set({"run.until": "end"}).begin(end=2 * alone)
+    want.advance(1.9 * alone)
+    check(unit.get("piston_position")[0] == want.values["piston_position"], f"a unit goes on after {alone} s")
+    unit.free()
+
+
+def files(folder: str) -> None:
+    """Files of one name, one file twice, and names with apostrophes or of the unit's own files go with a unit."""
+    here = Path(folder) / "tables"
+    (here / "other").mkdir(parents=True)
+    own = (TOP / "cases/drive/motor.csv").read_text()
+    (here / "it's a table.csv").write_text(own)
+    (here / "identity").write_text(own)
+    case = gudgeon.read(TOP / "cases" / "drive/motor.nml")
+    for name in ("it's a table.csv", "identity"):
+        one = gudgeon.Case.from_text(case.set({"drive.torque_table": name}).to_nml(), "named", here)
+        unit = Unit(gudgeon.fmu(one, Path(folder) / "named.fmu"), 2, folder, 0.02)
+        unit.unit.doStep(0, 0.01)
+        want = case.begin(end=0.02)
+        want.advance(0.01)
+        check(unit.get("crank_speed")[0] == want.values["crank_speed"], f"a unit with the file {name}")
+        unit.free()
+
+
+def films(folder: str) -> None:
+    """A unit with a table of each of two films names both, and has the bits of the case."""
+    here = Path(folder) / "films"
+    here.mkdir()
+    values = {"law": "finite_bearing", "variant": "table", "film_points": 32, "table_points": 17, "viscosity": 0.02}
+    case = gudgeon.read(TOP / "cases" / "joints/both_pins.nml").set({"integrator.revolutions": 0.02})
+    case = case.set({"joint.bearing_length": 0.02, "crank_pin.joint.bearing_length": 0.03}, lubrication={**values, "table_file": "one.table"})
+    case.add("crank_pin.lubrication", **values, table_file="two.table")
+    case = gudgeon.Case.from_text(case.to_nml(), "films", here)
+    path = gudgeon.fmu(case, Path(folder) / "films.fmu", columns=["time", "piston_position", "pin_force_x"])
+    with zipfile.ZipFile(path) as file:
+        text = file.read("resources/case.nml").decode()
+        check("table_file = 'one.table'" in text and "table_file = 'two.table'" in text, f"a unit names both tables: {text}")
+    unit = Unit(path, 2, folder, 0.0004)
+    unit.unit.doStep(0, 0.0003)
+    want = case.begin(end=0.0004)
+    want.advance(0.0003)
+    check(unit.get("pin_force_x")[0] == want.values["pin_force_x"], "a unit with two tables has the bits of its case")
+    unit.free()
+
+
 def states(fmi: int, folder: str) -> None:
     """A saved state goes on with the same bits; many instances take no memory."""
     case = gudgeon.read(TOP / "cases" / "friction/coulomb_static.nml")
@@ -294,13 +395,13 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         for fmi in (2, 3):
             parts = [lambda name=name: bits(name, fmi, folder) for name in names]
-            parts += [lambda: parameters(fmi, folder), lambda: states(fmi, folder), lambda: resets(fmi, folder)]
+            parts += [lambda: parameters(fmi, folder), lambda: states(fmi, folder), lambda: resets(fmi, folder), lambda: refusals(fmi, folder)]
             for part in parts:
                 try:
                     part()
                 except Exception:
                     check(False, traceback.format_exc())
-        for part in (early_returns, libraries, motor, command):
+        for part in (early_returns, libraries, motor, command, ends, files, films):
             try:
                 part(folder)
             except Exception:

@@ -9,6 +9,7 @@ names procedures that exist, the version is the same everywhere, and the linters
 The test reads the `use` statements. Ends with `N passed, N failed`; the exit status is 0 if nothing failed.
 """
 
+import os
 import re
 import subprocess
 import sys
@@ -165,6 +166,9 @@ def main() -> int:
         check(f"{path.relative_to(top)}: lines {long} have more than {MOST} characters", not long)
     wrong = missing_procedures(TOP / "data/manual/architecture.md")
     check("data/manual/architecture.md names procedures that are not there:\n  " + "\n  ".join(wrong), not wrong)
+    scripts = [path for folder in ("tests", "scripts") for path in (TOP / folder).rglob("*") if path.is_file() and path.read_bytes()[:2] == b"#!"]
+    idle = [str(path.relative_to(TOP)) for path in scripts if "build" not in path.parts and not os.access(path, os.X_OK)]
+    check(f"scripts without an execute bit, which a wheel would not start either: {idle}", not idle and len(scripts) > 50)
     found = versions()
     check(f"the version is the same everywhere: {found}", len(found) >= 4 and len(set(found.values())) == 1)
     for command in (("fortitude", "check", "src", "tests", "scripts/bench", "--output-format", "concise"), ("ruff", "check", "--output-format", "concise")):

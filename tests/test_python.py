@@ -8,10 +8,12 @@ With --all every shipped case is compared. Ends with `N passed, N failed`; the e
 """
 
 import ast
+import copy
 import doctest
 import importlib
 import keyword
 import math
+import multiprocessing
 import os
 import pickle
 import re
@@ -22,6 +24,7 @@ import tempfile
 import threading
 import time
 import traceback
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parent.parent
@@ -145,6 +148,89 @@ def cases() -> None:
     check({c.name for c in case_of("sim_I").columns} == set(case_of("sim_I").run(end=0.001).names), "columns are known before the run")
 
 
+def round_trips() -> None:
+    """Every template and every shipped case is read back from its own text, complete or not, and from its pickle."""
+    shipped = [path for path in sorted((TOP / "cases").rglob("*.nml")) if "&mechanism" in path.read_text()]
+    kinds = ("complete", "dry", "film", "engine", "compressor", "slap", "elastic", "wear")
+    for case in [gudgeon.read(path) for path in shipped] + [gudgeon.template(kind) for kind in kinds]:
+        want = case.to_nml(complete=True)
+        for way in (case.to_nml(), want):
+            check(gudgeon.Case.from_text(way, case.name, case._folder).to_nml(complete=True) == want, f"{case.name} is read back from its text")
+        again = pickle.loads(pickle.dumps(case))
+        check(again == case and again.to_nml(complete=True) == want, f"{case.name} is read back from its pickle")
+    oiled = gudgeon.template("engine")
+    refuses(gudgeon.CaseError, "gives it", lambda: oiled.set({"lubrication.density": 900}).check())
+    check("oil = 'SAE" in oiled.to_nml() and "oil = 'SAE" in oiled.to_nml(complete=True), "the name of an oil is written")
+
+
+def links() -> None:
+    """A link in the folder of a case does not lead out of it; the message has nothing of the file that it points to."""
+    with tempfile.TemporaryDirectory() as folder:
+        inside = Path(folder, "inside")
+        inside.mkdir()
+        Path(folder, "secret.csv").write_text("secret words\n")
+        (inside / "table.csv").symlink_to("../secret.csv")
+        text = case_of("drive/motor").set({"drive.torque_table": "table.csv"}).to_nml()
+        refuses(gudgeon.CaseError, "must be a file in the folder", gudgeon.Case.from_text(text, folder=inside).check)
+        try:
+            gudgeon.Case.from_text(text, folder=inside).check()
+        except gudgeon.CaseError as error:
+            check("secret" not in str(error), f"a message has no word of the file: {error}")
+        (inside / "table.csv").unlink()
+        (inside / "table.csv").symlink_to("other.csv")
+        (inside / "other.csv").write_bytes((TOP / "cases/drive/motor.csv").read_bytes())
+        Path(folder, "linked").symlink_to("inside")
+        for place in (inside, Path(folder, "linked")):
+            check(gudgeon.Case.from_text(text, folder=place).check() is not None, "a link within the folder, or to it, is followed")
+
+
+def copies() -> None:
+    """A run is pickled and copied without the memory of the library, and comes back from other processes; what goes on is refused."""
+    case = case_of("wear/worn_bore")
+    run = case.run(end=0.02)
+
+    def is_same(other: gudgeon.Run) -> bool:
+        tables = {name: table.equals(other.tables[name]) for name, table in run.tables.items()}
+        words = {name: value for name, value in run.summary.items() if name != "wall_time"}
+        found = {name: value for name, value in other.summary.items() if name != "wall_time"}
+        same = same_bits(run._rows, other._rows) and run.events.equals(other.events) and words == found and run.case == other.case
+        return same and list(tables) == ["wear"] and all(tables.values()) and not other["time"].flags.writeable
+
+    check(is_same(pickle.loads(pickle.dumps(run))) and is_same(copy.deepcopy(run)), "a run is pickled and copied")
+    limited = case_of("sim_V").set({"integrator.max_steps": 50})
+    for start in ("fork", "spawn"):
+        with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context(start)) as pool:
+            check(is_same(pool.submit(case.run, end=0.02).result()), f"a run comes back from a process ({start})")
+            error = pool.submit(limited.run).exception()
+            check(isinstance(error, gudgeon.RunError) and len(error.run) > 0, f"so does that of an error ({start}): {error}")
+    stepper = case.begin(end=0.02)
+    for one in (stepper, stepper.snapshot(), stepper.inputs):
+        for action in (pickle.dumps, copy.deepcopy):
+            refuses(TypeError, "neither pickled nor copied", lambda one=one, action=action: action(one))
+    saved = stepper.snapshot()
+    for other in (case_of("sim_I"), case.set({"joint.clearance": 3e-5})):
+        refuses(ValueError, "another case", lambda other=other: other.begin(end=0.02).restore(saved))
+    other = case.begin(end=0.02)
+    stepper.advance(0.01)
+    other.restore(stepper.snapshot())
+    check(other.t == 0.01, "a state of a run of an equal case is put back")
+    for time_ in (math.nan, math.inf):
+        refuses(ValueError, "finite number", lambda time_=time_: stepper.advance(time_))
+        refuses(ValueError, "finite number", lambda time_=time_: case.run(until=time_))
+        refuses(ValueError, "finite number", lambda time_=time_: case.run(end=time_))
+
+
+def damaged() -> None:
+    """A damaged file of a run is one error that names it."""
+    run = case_of("sim_I").run(end=0.01)
+    with tempfile.TemporaryDirectory() as folder:
+        for suffix in (".csv", ".summary.csv", ".events.csv"):
+            for wrong in (b"", b"\xff\xfe\x00", b"time[s],x[m]\n1,2\n3\n", b"a,b\n1,x\n"):
+                base = run.save(folder)
+                Path(f"{base}{suffix}").write_bytes(wrong)
+                refuses(ValueError, f"sim_I{suffix}: not a file of results", lambda base=base: gudgeon.load(base))
+
+
 def runs() -> None:
     """What a run gives, how it stops, and that its memory is safe."""
     run = case_of("sim_I").run(ideal_twin=True)
@@ -161,6 +247,10 @@ def runs() -> None:
     refuses(AttributeError, "no column", lambda: run.nothing)
     check(list(run.to_pandas().columns) == run.names and run.units["pin_force_x"] == "N", "a table of pandas")
     check(abs(run.at(run["time"][100])["crank_angle"] - run["crank_angle"][100]) < 1e-12, "values at a time")
+    end = run["time"][-1]
+    rounded = end * (1 + 5e-11)  # as the ten digits of a summary may say
+    check(run.at(rounded)["crank_angle"] == run["crank_angle"][-1] and run.at(0)["time"] == 0, "values at the ends of a run")
+    refuses(ValueError, "not within the run", lambda: run.at(1.000001 * end))
     check(abs(run.at(crank_angle_deg=90)["crank_angle"] - math.pi / 2) < 1e-6, "values at a crank angle")
     cycle = run.cycle()
     turn = abs(cycle["crank_angle"][-1] - cycle["crank_angle"][0])
@@ -449,7 +539,7 @@ def main() -> int:
     if "--all" in sys.argv:
         found = sorted((TOP / "cases").rglob("*.nml"))
         names = [str(p.relative_to(TOP / "cases").with_suffix("")) for p in found if "studies" not in p.parts]
-    for part in (lambda: against_program(program, names), cases, runs, steps, sweeps, threads, static_lengths, texts_of_the_package, pages, tables, memory, lambda: writes_nowhere(program)):
+    for part in (lambda: against_program(program, names), cases, round_trips, links, copies, damaged, runs, steps, sweeps, threads, static_lengths, texts_of_the_package, pages, tables, memory, lambda: writes_nowhere(program)):
         try:
             part()
         except Exception:

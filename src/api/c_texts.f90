@@ -4,13 +4,16 @@ module c_texts
   use error_handling, only: error_t
   implicit none
   private
-  public :: handle_t, get_text, get_bytes, put_text
+  public :: out_of_turn, handle_t, get_text, get_bytes, put_text
+
+  integer, parameter :: out_of_turn = 2   !! status of a call out of turn, of one with a wrong index or without a handle
 
   !> What C holds. Every handle keeps the message of its last error.
   type :: handle_t
     character(len=:), allocatable :: message
   contains
     procedure :: keep
+    procedure :: refuse
   end type handle_t
 
   interface
@@ -32,6 +35,15 @@ contains
     status = error%status
     self%message = error%message
   end subroutine keep
+
+  !> Keep the message of a call out of turn, or with a wrong index.
+  subroutine refuse(self, message, status)
+    class(handle_t), intent(inout) :: self
+    character(len=*), intent(in) :: message
+    integer, intent(out) :: status
+    self%message = message
+    status = out_of_turn
+  end subroutine refuse
 
   !> The text at an address that ends with a zero; empty without an address.
   subroutine get_text(address, text)

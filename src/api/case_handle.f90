@@ -1,8 +1,10 @@
 !> A case that another program holds and changes, key by key. It is completed and checked when a run or its text is asked for.
 module case_handle
   use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+  use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
   use error_handling, only: error_t, fail, status_case_file
+  use checksums, only: checksum_t
   use text_tools, only: replaced, lowercase, integer_text
   use number_text, only: short_text
   use case_definition, only: case_t
@@ -14,6 +16,7 @@ module case_handle
   use accuracy_presets, only: with_preset, accuracy_levels
   use case_schema, only: is_listed
   use problem_list, only: behind_file
+  use posix_files, only: absolute_path
   use trace_columns, only: column_list_t, choose_columns
   use study_case, only: study_case_t
   use c_texts, only: handle_t
@@ -30,6 +33,7 @@ module case_handle
     character(len=:), allocatable :: cache         !! see case_t
     logical, private :: is_checked = .false.
     integer, private :: status = 0                 !! of the last check
+    character(len=:), allocatable, private :: reason   !! message of the last check
     type(case_values_t), private :: resolved       !! with all defaults, unless `varied` has them
     integer, allocatable, private :: numbers(:)    !! keys that have been set as numbers since the last change by a text
     type(study_case_t), allocatable, private :: varied   !! the case, which is complete but for the values of these keys
@@ -44,6 +48,7 @@ module case_handle
     procedure :: is_given
     procedure :: text
     procedure :: set_cache
+    procedure :: fingerprint
   end type case_handle_t
 
 contains
@@ -106,7 +111,8 @@ contains
     if (allocated(self%varied)) deallocate (self%varied)
   end subroutine forget
 
-  !> Set a number without a text: the key by its index in the table, an element of it from 1 on. Error: no such number.
+  !> Set a number without a text: the key by its index in the table, an element of it from 1 on. Error: a wrong index, or a number
+  !> that is no value of it.
   subroutine set_number(self, key, element, value, status)
     class(case_handle_t), intent(inout) :: self
     integer, intent(in) :: key, element
@@ -114,14 +120,16 @@ contains
     integer, intent(out) :: status
     type(error_t), allocatable :: error
     if (key < 1 .or. key > size(self%values%keys)) then
-      call fail(error, 'no key has the number '//integer_text(key), status_case_file)
-      call self%keep(error, status)
+      call self%refuse('there is no key '//integer_text(key - 1)//', counted from 0', status)
       return
     end if
     associate (schema => self%values%keys(key), given => self%values%values(key))
       if (schema%kind > integer_kind .or. element < 1 .or. element > schema%count) then
-        call fail(error, trim(schema%group)//'.'//trim(schema%name)//': has no number '//integer_text(element), status_case_file)
-      else if (.not. is_allowed(value, schema%kind)) then
+        call self%refuse(trim(schema%group)//'.'//trim(schema%name)//' has no number '//integer_text(element - 1)// &
+          ', counted from 0', status)
+        return
+      end if
+      if (.not. is_allowed(value, schema%kind)) then
         call fail(error, trim(schema%group)//'.'//trim(schema%name)//' = '//short_text(value)// &
           trim(merge(': must be 0 or of a size from 1e-30 to 1e30', ': must be a whole number                   ', &
           schema%kind == real_kind)), status_case_file)
@@ -202,8 +210,10 @@ contains
       if (.not. allocated(error)) call find_columns(self%case, self%list, error)
       call self%keep(error, self%status)
       self%is_checked = .true.
+      if (self%status /= 0) self%reason = self%message
     end if
     status = self%status
+    if (status /= 0) self%message = self%reason
   end subroutine check
 
   !> The columns of a run; none if the case asks for 'none'.
@@ -247,7 +257,7 @@ contains
     if (allocated(error)) deallocate (self%varied)
   end subroutine vary
 
-  !> Note the files that a case must not name: those that are not in its folder.
+  !> Note the files that a case must not name: those that are not in its folder, even if a link in it leads to them.
   subroutine refuse_files(self, values)
     class(case_handle_t), intent(in) :: self
     type(case_values_t), intent(inout) :: values
@@ -260,11 +270,21 @@ contains
         if (index(file, self%folder//'/') == 1) first = len(self%folder) + 2
         if (self%folder == '') then
           call values%refuse(trim(key%group), trim(key%name), 'must not be given: the case has no folder')
-        else if (index(file(first:), '/') == 1 .or. index('/'//file//'/', '/../') > 0) then
+        else if (index(file(first:), '/') == 1 .or. index('/'//file//'/', '/../') > 0 .or. leads_out()) then
           call values%refuse(trim(key%group), trim(key%name), 'must be a file in the folder of the case')
         end if
       end associate
     end do
+
+  contains
+
+    !> Whether the file, which is in the folder by its name, is outside it once links are followed.
+    logical function leads_out()
+      character(len=:), allocatable :: path, whole
+      path = self%folder//'/'//values%values(i)%text(first:)
+      whole = absolute_path(path)
+      leads_out = whole /= path .and. index(whole, absolute_path(self%folder)//'/') /= 1   ! it is the path if there is no file
+    end function leads_out
   end subroutine refuse_files
 
   !> The value of GROUP.KEY as a case has it: with the defaults of the selected laws if the case is valid, otherwise as given. For a
@@ -337,6 +357,23 @@ contains
       all = resolved_text(self%resolved)
     end if
   end subroutine text
+
+  !> A checksum of everything that the case says, and of where its files are.
+  pure integer(int64) function fingerprint(self)
+    class(case_handle_t), intent(in) :: self
+    type(checksum_t) :: sum
+    integer :: i
+    call sum%add(self%folder)
+    do i = 1, size(self%values%groups)
+      call sum%add(merge('+', '-', self%values%is_present(i)))
+    end do
+    do i = 1, size(self%values%keys)
+      associate (it => self%values%values(i), n => min(self%values%keys(i)%count, size(self%values%values(i)%reals)))
+        call sum%add(merge('+', '-', it%switch)//it%text//transfer([real(it%whole, dp), it%reals(:n)], repeat(' ', 8*(n + 1))))
+      end associate
+    end do
+    fingerprint = sum%sum
+  end function fingerprint
 
   !> Keep film tables in a folder; with an empty name nowhere.
   subroutine set_cache(self, folder)

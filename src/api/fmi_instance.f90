@@ -4,10 +4,12 @@
 !> the first output is asked for, or at the end of the initialisation, and again if a parameter changes before that.
 module fmi_instance
   use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_loc, c_f_pointer, c_associated
+  use, intrinsic :: iso_fortran_env, only: int64
   use kinds, only: dp
   use error_handling, only: status_integration
   use text_file, only: read_whole
-  use text_tools, only: integer_text
+  use case_schema, only: real_kind, integer_kind
+  use model_parameters, only: logical_kind
   use scene_inputs, only: inputs
   use case_handle, only: case_handle_t
   use run_handle, only: run_handle_t, begin_run, copy_run
@@ -15,6 +17,7 @@ module fmi_instance
   implicit none
   private
   public :: fmi_instance_t, fmi_ok, fmi_discard, fmi_error, save_state, restore_state, free_saved_state, decoded
+  public :: real_kind, integer_kind, logical_kind
 
   integer, parameter :: fmi_ok = 0, fmi_discard = 2, fmi_error = 3   !! statuses of FMI
   integer, parameter :: of_inputs = 1000, at_contacts = 5000, of_parameters = 10000     !! first value references
@@ -28,6 +31,7 @@ module fmi_instance
     real(dp) :: start = 0, stop = 0                !! times of the master [s]; stop 0: the case's end
     real(dp) :: last = 0                           !! last time that was reached [s]
     logical :: is_running = .false.                !! initialisation is over
+    logical :: is_terminated = .false.
     logical :: may_return_early = .false.          !! the master allows a step to end early
     logical :: has_returned_early = .false.        !! the last step
     logical, private :: returns_at_contacts = .false.   !! it is wanted where a contact begins or ends
@@ -40,11 +44,9 @@ module fmi_instance
     procedure :: forget
     procedure :: reset
     procedure :: get
-    procedure :: get_reals
-    procedure :: get_integers
+    procedure :: get_values
     procedure :: set
-    procedure :: set_reals
-    procedure :: set_integers
+    procedure :: set_values
     procedure :: step
     procedure :: assign
   end type fmi_instance_t
@@ -94,12 +96,18 @@ contains
     status = fmi_ok
   end subroutine reset
 
-  !> Times of the experiment, and the tolerance where the master gives one (0: it does not).
+  !> Times of the experiment, and the tolerance where the master gives one (0: it does not). A stop at the start: the case's end.
+  !> Error: a stop before the start, or what is not a finite number.
   subroutine setup(self, start, stop, tolerance, status)
     class(fmi_instance_t), intent(inout) :: self
     real(dp), intent(in) :: start, stop, tolerance
     integer, intent(out) :: status
     integer :: key
+    if (.not. (all(abs([start, stop, tolerance]) <= huge(start)) .and. stop >= start .and. tolerance >= 0)) then
+      self%message = 'start, stop and tolerance must be finite numbers, and the stop must not be before the start'
+      status = fmi_error
+      return
+    end if
     status = fmi_ok
     self%start = start
     self%last = start
@@ -167,7 +175,7 @@ contains
       place = findloc(self%run%run%inputs, reference - of_inputs + 1, 1)
       if (place == 0) call refuse(self, reference, status)
       if (place > 0) value = self%run%run%wanted_input(place)
-    else if (reference < size(self%run%now)) then
+    else if (reference >= 0 .and. reference < size(self%run%now)) then
       call self%run%look(status)
       if (status /= 0) self%message = 'the state is outside the model'
       if (status /= 0) status = fmi_error
@@ -178,39 +186,52 @@ contains
     end if
   end subroutine get
 
-  !> The values of several references, up to the first that is refused.
-  subroutine get_reals(self, references, values, status)
+  !> The values of several references to variables of a kind, up to the first that is refused.
+  subroutine get_values(self, references, kind, values, status)
     class(fmi_instance_t), intent(inout) :: self
     integer, intent(in) :: references(:)
+    integer, intent(in) :: kind   !! real_kind, integer_kind or logical_kind
     real(dp), intent(inout) :: values(:)
     integer, intent(out) :: status
     integer :: i
-    status = fmi_ok
+    call compare_sizes(self, references, values, status)
     do i = 1, size(references)
+      if (status == fmi_ok .and. kind_of(self, references(i)) /= kind) call refuse(self, references(i), status)
       if (status == fmi_ok) call self%get(references(i), values(i), status)
     end do
-  end subroutine get_reals
+  end subroutine get_values
 
-  !> The same of whole numbers.
-  subroutine get_integers(self, references, values, status)
+  !> Refuse a list of values that has not one for each reference.
+  subroutine compare_sizes(self, references, values, status)
     class(fmi_instance_t), intent(inout) :: self
     integer, intent(in) :: references(:)
-    integer, intent(inout) :: values(:)
+    real(dp), intent(in) :: values(:)
     integer, intent(out) :: status
-    real(dp) :: reals(size(references))
-    reals = 0
-    call self%get_reals(references, reals, status)
-    values = nint(reals)
-  end subroutine get_integers
+    status = fmi_ok
+    if (size(references) == size(values)) return
+    self%message = 'there must be one value for each reference'
+    status = fmi_error
+  end subroutine compare_sizes
+
+  !> The kind of the variable of a reference.
+  pure integer function kind_of(self, reference)
+    class(fmi_instance_t), intent(in) :: self
+    integer, intent(in) :: reference
+    integer :: key
+    kind_of = real_kind
+    if (reference == at_contacts) kind_of = logical_kind
+    key = (reference - of_parameters)/2 + 1
+    if (reference >= of_parameters .and. key <= size(self%case%values%keys)) kind_of = self%case%values%keys(key)%kind
+  end function kind_of
 
   subroutine refuse(self, reference, status)
     class(fmi_instance_t), intent(inout) :: self
     integer, intent(in) :: reference
     integer, intent(out) :: status
+    character(len=11) :: number
     status = fmi_error
-    call lock_texts()
-    self%message = 'the value reference '//integer_text(reference)//' cannot be used here'
-    call unlock_texts()
+    write (number, '(i0)') iand(int(reference, int64), int(z'FFFFFFFF', int64))   ! references have no sign
+    self%message = 'the value reference '//trim(number)//' cannot be used here'
   end subroutine refuse
 
   !> Set an input, or a parameter before the end of the initialisation.
@@ -244,37 +265,36 @@ contains
     end if
   end subroutine set
 
-  !> Set several inputs or parameters, up to the first that is refused.
-  subroutine set_reals(self, references, values, status)
+  !> Set several inputs or parameters of a kind, up to the first that is refused.
+  subroutine set_values(self, references, kind, values, status)
     class(fmi_instance_t), intent(inout) :: self
     integer, intent(in) :: references(:)
+    integer, intent(in) :: kind   !! real_kind, integer_kind or logical_kind
     real(dp), intent(in) :: values(:)
     integer, intent(out) :: status
     integer :: i
-    status = fmi_ok
+    call compare_sizes(self, references, values, status)
     do i = 1, size(references)
+      if (status == fmi_ok .and. kind_of(self, references(i)) /= kind) call refuse(self, references(i), status)
       if (status == fmi_ok) call self%set(references(i), values(i), status)
     end do
-  end subroutine set_reals
-
-  !> The same of whole numbers.
-  subroutine set_integers(self, references, values, status)
-    class(fmi_instance_t), intent(inout) :: self
-    integer, intent(in) :: references(:), values(:)
-    integer, intent(out) :: status
-    call self%set_reals(references, real(values, dp), status)
-  end subroutine set_integers
+  end subroutine set_values
 
   !> Go on from a time by a step, or until a contact begins or ends, where that is wanted and allowed. `status` is fmi_discard if
-  !> the run ends before, or cannot go on; `last` is the time reached.
+  !> the run ends before, or cannot go on; `last` is the time reached. Error: another time, or one that is not a finite number, or
+  !> a unit that is not running.
   subroutine step(self, from, by, status)
     class(fmi_instance_t), intent(inout) :: self
     real(dp), intent(in) :: from, by   !! [s]
     integer, intent(out) :: status
     real(dp), parameter :: rounding = 1e-9_dp
-    if (.not. self%is_running .or. abs(from - self%last) > rounding*max(by, abs(from)*1e-3_dp) .or. by < 0) then
-      self%message = 'a step must begin where the last one has ended'
-      status = fmi_error
+    status = fmi_error
+    if (self%is_terminated .or. .not. self%is_running) then
+      self%message = 'the unit is not running'
+      return
+    else if (.not. (by >= 0 .and. abs(from + by) <= huge(by) .and. &
+      abs(from - self%last) <= rounding*max(by, abs(from)*1e-3_dp))) then
+      self%message = 'a step must begin where the last one has ended, and end at a later time'
       return
     end if
     if (self%may_return_early .and. self%returns_at_contacts) then
@@ -319,6 +339,7 @@ contains
       call copy_run(from%run, self%run)
     end if
     self%is_running = from%is_running
+    self%is_terminated = from%is_terminated
   end subroutine assign
 
   !> Save a copy of an instance at an address, where there is one from an earlier call, or else a new one.
@@ -333,15 +354,22 @@ contains
       state = c_loc(saved)
     end if
     call saved%assign(instance)
+    saved%identity = instance%identity
   end subroutine save_state
 
-  !> Put a saved copy back.
-  subroutine restore_state(instance, state)
+  !> Put a saved copy back. Error: there is none, or it is that of another unit.
+  subroutine restore_state(instance, state, status)
     type(fmi_instance_t), intent(inout) :: instance
     type(c_ptr), intent(in) :: state
+    integer, intent(out) :: status
     type(fmi_instance_t), pointer :: saved
+    status = fmi_error
+    instance%message = 'this is no saved state of this unit'
+    if (.not. c_associated(state)) return
     call c_f_pointer(state, saved)
+    if (saved%identity /= instance%identity) return
     call instance%assign(saved)
+    status = fmi_ok
   end subroutine restore_state
 
   !> Free a saved copy, if there is one.

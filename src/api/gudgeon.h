@@ -1,8 +1,9 @@
 /* The C interface of gudgeon: the dynamics of a slider-crank mechanism with clearance in its joints. The manual's page "C" has an
  * example.
  *
- * Statuses: 0 done; -1 paused, more to come; 2 call out of turn, or a wrong index; 3 wrong case; 4 the integration cannot go on;
- * 5 a result could not be written. Every handle keeps the message of its last error (gudgeon_message).
+ * Statuses: 0 done; -1 paused, more to come; 2 call out of turn, a wrong index or time, or no handle (NULL); 3 wrong case;
+ * 4 the integration cannot go on; 5 a result could not be written. Every handle keeps the message of its last error
+ * (gudgeon_message; that of NULL is "no handle"). Without a handle what is not a status is 0, NULL or empty (events: -1).
  *
  * Texts are UTF-8. They are copied into `text` of `size` bytes with a final 0, cut where they do not fit; the value is the whole
  * length. Times are in seconds, all other values in SI units. Indices begin at 0. A handle belongs to one thread at a time; there
@@ -45,7 +46,8 @@ int gudgeon_case_columns(gudgeon_case *);
 int gudgeon_case_column(const gudgeon_case *, int i, char *name, size_t name_size, char *unit, size_t unit_size, char *meaning,
                         size_t meaning_size);
 
-/* A run of the case, or of its ideal twin. end <= 0: the end that the case has; a run cannot go beyond its end. Tables of films are
+/* A run of the case, or of its ideal twin. end <= 0: the end that the case has; otherwise this instead, even where the case ends when
+ * its motion repeats; not a finite number: refused. A run cannot go beyond its end. Tables of films are
  * computed here. without_rows: values are asked for at pauses, and no rows are kept. NULL: the case has the message. */
 gudgeon_run *gudgeon_run_new(gudgeon_case *, int ideal_twin, double end, int without_rows);
 /* Go on to a time, or through so many steps (0: no limit), or to the end. The results do not depend on the pauses. -1: paused. */
@@ -57,7 +59,7 @@ int gudgeon_run_certify(gudgeon_run *);
 /* Write PATH.csv, PATH.events.csv, PATH.summary.csv, ... of a finished run. */
 int gudgeon_run_save(gudgeon_run *, const char *path);
 void gudgeon_run_free(gudgeon_run *);
-/* Saved states: a copy goes on independently; assign puts it back. */
+/* Saved states: a copy goes on independently; assign puts it back. That of a run of another case is refused. */
 gudgeon_run *gudgeon_run_copy(const gudgeon_run *);
 int gudgeon_run_assign(gudgeon_run *to, const gudgeon_run *from);
 double gudgeon_run_time(const gudgeon_run *);

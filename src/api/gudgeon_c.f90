@@ -15,12 +15,12 @@ module gudgeon_c
   use version_number, only: program_version
   use case_handle, only: case_handle_t
   use run_handle, only: run_handle_t, begin_run, copy_run
-  use c_texts, only: handle_t, get_text, get_bytes, put_text
+  use c_texts, only: out_of_turn, handle_t, get_text, get_bytes, put_text
   use text_lock, only: lock_texts, unlock_texts
   implicit none
   private
 
-  integer(c_int), parameter :: paused = -1, out_of_turn = 2
+  character(len=*), parameter :: no_handle = 'no handle', no_summary = 'only a finished run has a summary'
 
   !> Group and key of the case file, as in gudgeon.h.
   type, bind(c) :: c_key_t
@@ -54,6 +54,8 @@ contains
   type(c_ptr) function case_copy(handle) bind(c, name='gudgeon_case_copy') result(copy)
     type(c_ptr), value :: handle
     type(case_handle_t), pointer :: old, new
+    copy = c_null_ptr
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, old)
     allocate (new)
     new = old
@@ -72,6 +74,8 @@ contains
     type(c_ptr), value :: handle, key, value
     type(case_handle_t), pointer :: it
     character(len=:), allocatable :: name, text
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     call lock_texts()
     call get_text(key, name)
@@ -85,6 +89,8 @@ contains
     integer(c_int), value :: key, element
     real(c_double), value :: value
     type(case_handle_t), pointer :: it
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     call lock_texts()
     call it%set_number(key + 1, element + 1, value, status)
@@ -95,6 +101,8 @@ contains
     type(c_ptr), value :: handle, level
     type(case_handle_t), pointer :: it
     character(len=:), allocatable :: name
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     call lock_texts()
     call get_text(level, name)
@@ -105,6 +113,8 @@ contains
   integer(c_int) function case_check(handle) bind(c, name='gudgeon_case_check') result(status)
     type(c_ptr), value :: handle
     type(case_handle_t), pointer :: it
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     call lock_texts()
     call it%check(status)
@@ -117,6 +127,9 @@ contains
     type(case_handle_t), pointer :: it
     character(len=:), allocatable :: name, value
     integer :: status
+    length = 0
+    call put_text('', text, size)
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     call lock_texts()
     call get_text(key, name)
@@ -130,6 +143,8 @@ contains
     type(c_ptr), value :: handle
     integer(c_int), value :: key
     type(case_handle_t), pointer :: it
+    given = 0
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     given = merge(1, 0, it%is_given(key + 1))
   end function case_given
@@ -139,6 +154,9 @@ contains
     integer(c_size_t), value :: size
     type(case_handle_t), pointer :: it
     character(len=:), allocatable :: all
+    length = 0
+    call put_text('', text, size)
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     call lock_texts()
     call it%text(all)
@@ -152,6 +170,9 @@ contains
     integer(c_size_t), value :: size
     type(case_handle_t), pointer :: it
     integer :: status
+    length = 0
+    call put_text('', text, size)
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     call lock_texts()
     call it%check(status)
@@ -169,6 +190,8 @@ contains
     type(c_ptr), value :: handle, folder
     type(case_handle_t), pointer :: it
     character(len=:), allocatable :: name
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     call lock_texts()
     call get_text(folder, name)
@@ -181,10 +204,11 @@ contains
     type(c_ptr), value :: handle
     type(case_handle_t), pointer :: it
     integer :: status
+    n = 0
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     call lock_texts()
     call it%check(status)
-    n = 0
     if (status == 0) n = size(it%list%id)
     call unlock_texts()
   end function case_columns
@@ -195,22 +219,25 @@ contains
     integer(c_int), value :: i
     integer(c_size_t), value :: name_size, unit_size, meaning_size
     type(case_handle_t), pointer :: it
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
-    call put_column(it%list, i, name, name_size, unit, unit_size, meaning, meaning_size, status)
+    call put_column(it, it%list, i, name, name_size, unit, unit_size, meaning, meaning_size, status)
   end function case_column
 
   !> Put name, unit and meaning of column i, from 0 on.
-  subroutine put_column(list, i, name, name_size, unit, unit_size, meaning, meaning_size, status)
+  subroutine put_column(of, list, i, name, name_size, unit, unit_size, meaning, meaning_size, status)
+    class(handle_t), intent(inout) :: of
     type(column_list_t), intent(in) :: list
     integer(c_int), intent(in) :: i
     type(c_ptr), intent(in) :: name, unit, meaning
     integer(c_size_t), intent(in) :: name_size, unit_size, meaning_size
     integer(c_int), intent(out) :: status
-    integer :: bracket
-    status = out_of_turn
-    if (.not. allocated(list%id)) return
-    if (i < 0 .or. i >= size(list%id)) return
-    status = 0
+    integer :: bracket, n
+    n = 0
+    if (allocated(list%id)) n = size(list%id)
+    call check_index(of, int(i, c_int64_t), int(n, c_int64_t), 'column', status)
+    if (status /= 0) return
     associate (all => list%names(list%id(i + 1)))
       bracket = index(all, '[')
       call put_text(all(:bracket - 1), name, name_size)
@@ -219,6 +246,19 @@ contains
     call put_text(list%meanings(list%id(i + 1))(:len_trim(list%meanings(list%id(i + 1)))), meaning, meaning_size)
   end subroutine put_column
 
+  !> Refuse an index that is not one of the n from 0 on.
+  subroutine check_index(of, i, n, what, status)
+    class(handle_t), intent(inout) :: of
+    integer(c_int64_t), intent(in) :: i, n
+    character(len=*), intent(in) :: what   !! in the message
+    integer(c_int), intent(out) :: status
+    character(len=40) :: numbers
+    status = 0
+    if (i >= 0 .and. i < n) return
+    write (numbers, '(i0, a, i0)') i, ' of ', n
+    call of%refuse('there is no '//what//' '//trim(numbers)//', counted from 0', status)
+  end subroutine check_index
+
   type(c_ptr) function run_new(handle, ideal_twin, end_time, without_rows) bind(c, name='gudgeon_run_new') result(run)
     type(c_ptr), value :: handle
     integer(c_int), value :: ideal_twin, without_rows
@@ -226,11 +266,12 @@ contains
     type(case_handle_t), pointer :: it
     type(run_handle_t), pointer :: new
     integer :: status
+    run = c_null_ptr
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     call lock_texts()
     call begin_run(it, ideal_twin /= 0, end_time, without_rows /= 0, new, status)
     call unlock_texts()
-    run = c_null_ptr
     if (associated(new)) run = c_loc(new)
   end function run_new
 
@@ -239,15 +280,21 @@ contains
     real(c_double), value :: to
     integer(c_int64_t), value :: most_steps
     type(run_handle_t), pointer :: it
-    call c_f_pointer(handle, it)
     status = out_of_turn
-    if (.not. to <= huge(to) .or. most_steps < 0) return
-    call it%advance(to, int(min(most_steps, int(huge(0), c_int64_t))), status)
+    if (.not. c_associated(handle)) return
+    call c_f_pointer(handle, it)
+    if (.not. abs(to) <= huge(to) .or. most_steps < 0) then
+      call it%refuse('the time must be a finite number, and the steps must not be negative', status)
+    else
+      call it%advance(to, int(min(most_steps, int(huge(0), c_int64_t))), status)
+    end if
   end function run_advance
 
   integer(c_int) function run_finish(handle) bind(c, name='gudgeon_run_finish') result(status)
     type(c_ptr), value :: handle
     type(run_handle_t), pointer :: it
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     call lock_texts()
     call it%finish(status)
@@ -257,6 +304,8 @@ contains
   integer(c_int) function run_certify(handle) bind(c, name='gudgeon_run_certify') result(status)
     type(c_ptr), value :: handle
     type(run_handle_t), pointer :: it
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     call lock_texts()
     call it%certify(status)
@@ -267,6 +316,8 @@ contains
     type(c_ptr), value :: handle, path
     type(run_handle_t), pointer :: it
     character(len=:), allocatable :: name
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     call lock_texts()
     call get_text(path, name)
@@ -285,6 +336,8 @@ contains
   type(c_ptr) function run_copy(handle) bind(c, name='gudgeon_run_copy') result(copy)
     type(c_ptr), value :: handle
     type(run_handle_t), pointer :: old, new
+    copy = c_null_ptr
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, old)
     allocate (new)
     call copy_run(old, new)
@@ -294,15 +347,27 @@ contains
   integer(c_int) function run_assign(to, from) bind(c, name='gudgeon_run_assign') result(status)
     type(c_ptr), value :: to, from
     type(run_handle_t), pointer :: old, new
-    call c_f_pointer(from, old)
+    status = out_of_turn
+    if (.not. c_associated(to)) return
     call c_f_pointer(to, new)
-    call copy_run(old, new)
-    status = 0
+    if (.not. c_associated(from)) then
+      call new%refuse(no_handle, status)
+      return
+    end if
+    call c_f_pointer(from, old)
+    if (old%origin /= new%origin) then
+      call new%refuse('the saved state is that of a run of another case', status)
+    else
+      call copy_run(old, new)
+      status = 0
+    end if
   end function run_assign
 
   real(c_double) function run_time(handle) bind(c, name='gudgeon_run_time') result(time)
     type(c_ptr), value :: handle
     type(run_handle_t), pointer :: it
+    time = 0
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     time = it%run%t
   end function run_time
@@ -310,6 +375,8 @@ contains
   real(c_double) function run_end(handle) bind(c, name='gudgeon_run_end') result(time)
     type(c_ptr), value :: handle
     type(run_handle_t), pointer :: it
+    time = 0
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     time = it%run%expected_end()
   end function run_end
@@ -317,6 +384,8 @@ contains
   integer(c_int) function run_inputs(handle) bind(c, name='gudgeon_inputs') result(n)
     type(c_ptr), value :: handle
     type(run_handle_t), pointer :: it
+    n = 0
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     n = size(it%run%inputs)
   end function run_inputs
@@ -328,11 +397,12 @@ contains
     real(c_double), intent(out) :: value
     integer(c_size_t), value :: name_size, unit_size
     type(run_handle_t), pointer :: it
-    call c_f_pointer(handle, it)
-    status = out_of_turn
     value = 0
-    if (i < 0 .or. i >= size(it%run%inputs)) return
-    status = 0
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
+    call c_f_pointer(handle, it)
+    call check_index(it, int(i, c_int64_t), size(it%run%inputs, kind=c_int64_t), 'input', status)
+    if (status /= 0) return
     value = it%run%wanted_input(i + 1)
     associate (input => inputs(it%run%inputs(i + 1)))
       call put_text(input%name(:len_trim(input%name)), name, name_size)
@@ -345,16 +415,23 @@ contains
     integer(c_int), value :: i
     real(c_double), value :: value
     type(run_handle_t), pointer :: it
-    call c_f_pointer(handle, it)
     status = out_of_turn
-    if (i < 0 .or. i >= size(it%run%inputs) .or. .not. abs(value) <= huge(value)) return
-    call it%set_input(i + 1, value)
-    status = 0
+    if (.not. c_associated(handle)) return
+    call c_f_pointer(handle, it)
+    call check_index(it, int(i, c_int64_t), size(it%run%inputs, kind=c_int64_t), 'input', status)
+    if (status /= 0) return
+    if (abs(value) <= huge(value)) then
+      call it%set_input(i + 1, value)
+    else
+      call it%refuse('an input must be a finite number', status)
+    end if
   end function input_set
 
   integer(c_int) function run_columns(handle) bind(c, name='gudgeon_columns') result(n)
     type(c_ptr), value :: handle
     type(run_handle_t), pointer :: it
+    n = 0
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     n = size(it%list%id)
   end function run_columns
@@ -365,16 +442,20 @@ contains
     integer(c_int), value :: i
     integer(c_size_t), value :: name_size, unit_size, meaning_size
     type(run_handle_t), pointer :: it
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
-    call put_column(it%list, i, name, name_size, unit, unit_size, meaning, meaning_size, status)
+    call put_column(it, it%list, i, name, name_size, unit, unit_size, meaning, meaning_size, status)
   end function run_column
 
   type(c_ptr) function run_rows(handle, rows) bind(c, name='gudgeon_rows') result(values)
     type(c_ptr), value :: handle
     integer(c_int64_t), intent(out) :: rows
     type(run_handle_t), pointer :: it
-    call c_f_pointer(handle, it)
     values = c_null_ptr
+    rows = 0
+    if (.not. c_associated(handle)) return
+    call c_f_pointer(handle, it)
     rows = it%rows%rows
     if (rows > 0) values = c_loc(it%rows%values)
   end function run_rows
@@ -383,6 +464,8 @@ contains
     type(c_ptr), value :: handle
     real(c_double), intent(out) :: now(*)
     type(run_handle_t), pointer :: it
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
     call c_f_pointer(handle, it)
     call it%look(status)
     if (status == 0) now(:size(it%now)) = it%now
@@ -391,8 +474,9 @@ contains
   integer(c_int64_t) function run_events(handle) bind(c, name='gudgeon_events') result(n)
     type(c_ptr), value :: handle
     type(run_handle_t), pointer :: it
-    call c_f_pointer(handle, it)
     n = -1
+    if (.not. c_associated(handle)) return
+    call c_f_pointer(handle, it)
     if (it%has_events()) n = it%rows%events
   end function run_events
 
@@ -403,12 +487,13 @@ contains
     integer(c_int), intent(out) :: ends
     integer(c_size_t), value :: place_size
     type(run_handle_t), pointer :: it
-    call c_f_pointer(handle, it)
-    status = out_of_turn
     values = 0
     ends = 0
-    if (i < 0 .or. i >= it%rows%events) return
-    status = 0
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
+    call c_f_pointer(handle, it)
+    call check_index(it, i, int(it%rows%events, c_int64_t), 'event', status)
+    if (status /= 0) return
     associate (event => it%rows%event(i + 1))
       values = [event%time, event%crank_angle, event%normal_speed, event%duration, event%max_penetration, event%max_normal_force]
       ends = merge(0, 1, event%kind == event_contact_begins)
@@ -419,12 +504,18 @@ contains
   integer(c_int) function run_quantities(handle) bind(c, name='gudgeon_quantities') result(n)
     type(c_ptr), value :: handle
     type(run_handle_t), pointer :: it
-    call c_f_pointer(handle, it)
+    integer :: status
     n = 0
+    if (.not. c_associated(handle)) return
+    call c_f_pointer(handle, it)
     call lock_texts()
     call it%read_summary()
     call unlock_texts()
-    if (allocated(it%summary)) n = size(it%summary)
+    if (allocated(it%summary)) then
+      n = size(it%summary)
+    else
+      call it%refuse(no_summary, status)
+    end if
   end function run_quantities
 
   integer(c_int) function run_quantity(handle, i, value, name, name_size, unit, unit_size, text, text_size) &
@@ -434,12 +525,15 @@ contains
     real(c_double), intent(out) :: value
     integer(c_size_t), value :: name_size, unit_size, text_size
     type(run_handle_t), pointer :: it
-    call c_f_pointer(handle, it)
-    status = out_of_turn
+    integer :: n
     value = 0
-    if (.not. allocated(it%summary)) return
-    if (i < 0 .or. i >= size(it%summary)) return
-    status = 0
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
+    call c_f_pointer(handle, it)
+    n = 0
+    if (allocated(it%summary)) n = size(it%summary)
+    call check_index(it, int(i, c_int64_t), int(n, c_int64_t), 'quantity (gudgeon_quantities counts them)', status)
+    if (status /= 0) return
     associate (row => it%summary(i + 1))
       value = row%value
       call put_text(row%name, name, name_size)
@@ -452,9 +546,15 @@ contains
     type(c_ptr), value :: handle, text
     integer(c_size_t), value :: size
     type(run_handle_t), pointer :: it
-    call c_f_pointer(handle, it)
+    integer :: status
     length = 0
-    if (.not. allocated(it%table)) return
+    call put_text('', text, size)
+    if (.not. c_associated(handle)) return
+    call c_f_pointer(handle, it)
+    if (.not. allocated(it%table)) then
+      call it%refuse(no_summary, status)
+      return
+    end if
     call put_text(it%table, text, size)
     length = len(it%table)
   end function run_summary_text
@@ -476,7 +576,7 @@ contains
     call case_schema_of(table)
     call unlock_texts()
     status = out_of_turn
-    if (first < 0 .or. count < 0 .or. first + count > size(table%keys)) return
+    if (first < 0 .or. count < 0 .or. int(first, c_int64_t) + count > size(table%keys)) return
     status = 0
     do i = 1, count
       associate (key => table%keys(first + i), it => into(i))
@@ -567,8 +667,13 @@ contains
     type(c_ptr), value :: handle, text
     integer(c_size_t), value :: size
     type(handle_t), pointer :: it
-    call c_f_pointer(handle, it)
     length = 0
+    if (.not. c_associated(handle)) then
+      call put_text(no_handle, text, size)
+      length = len(no_handle)
+      return
+    end if
+    call c_f_pointer(handle, it)
     if (allocated(it%message)) then
       call put_text(it%message, text, size)
       length = len(it%message)

@@ -8,7 +8,7 @@ module gudgeon_fmi2
   use c_texts, only: get_text
   use text_lock, only: lock_texts, unlock_texts
   use fmi_instance, only: fmi_instance_t, fmi_ok, fmi_discard, fmi_error, save_state, restore_state, &
-    free_saved_state, decoded
+    free_saved_state, decoded, real_kind, integer_kind
   implicit none
   private
 
@@ -138,6 +138,9 @@ contains
 
   integer(c_int) function terminate(handle) bind(c, name='fmi2Terminate') result(status)
     type(c_ptr), value :: handle
+    type(unit_t), pointer :: unit
+    call c_f_pointer(handle, unit)
+    unit%instance%is_terminated = .true.
     status = fmi_ok
   end function terminate
 
@@ -156,7 +159,7 @@ contains
     real(c_double), intent(inout) :: values(n)
     type(unit_t), pointer :: unit
     call c_f_pointer(handle, unit)
-    call unit%instance%get_reals(references, values, status)
+    call unit%instance%get_values(references, real_kind, values, status)
     call tell(unit, status)
   end function get_real
 
@@ -166,8 +169,11 @@ contains
     integer(c_int), intent(in) :: references(n)
     integer(c_int), intent(inout) :: values(n)
     type(unit_t), pointer :: unit
+    real(dp) :: reals(n)
     call c_f_pointer(handle, unit)
-    call unit%instance%get_integers(references, values, status)
+    reals = values
+    call unit%instance%get_values(references, integer_kind, reals, status)
+    values = nint(reals)
     call tell(unit, status)
   end function get_integer
 
@@ -178,7 +184,7 @@ contains
     real(c_double), intent(in) :: values(n)
     type(unit_t), pointer :: unit
     call c_f_pointer(handle, unit)
-    call unit%instance%set_reals(references, values, status)
+    call unit%instance%set_values(references, real_kind, values, status)
     call tell(unit, status)
   end function set_real
 
@@ -188,7 +194,7 @@ contains
     integer(c_int), intent(in) :: references(n), values(n)
     type(unit_t), pointer :: unit
     call c_f_pointer(handle, unit)
-    call unit%instance%set_integers(references, values, status)
+    call unit%instance%set_values(references, integer_kind, real(values, dp), status)
     call tell(unit, status)
   end function set_integer
 
@@ -246,8 +252,8 @@ contains
     type(c_ptr), value :: handle, state
     type(unit_t), pointer :: unit
     call c_f_pointer(handle, unit)
-    call restore_state(unit%instance, state)
-    status = fmi_ok
+    call restore_state(unit%instance, state, status)
+    call tell(unit, status)
   end function set_state
 
   integer(c_int) function free_state(handle, state) bind(c, name='fmi2FreeFMUstate') result(status)

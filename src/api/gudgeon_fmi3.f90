@@ -7,7 +7,7 @@ module gudgeon_fmi3
   use c_texts, only: get_text
   use text_lock, only: lock_texts, unlock_texts
   use fmi_instance, only: fmi_instance_t, fmi_ok, fmi_discard, fmi_error, save_state, restore_state, &
-    free_saved_state, decoded
+    free_saved_state, decoded, real_kind, integer_kind, logical_kind
   implicit none
   private
 
@@ -111,6 +111,9 @@ contains
 
   integer(c_int) function terminate(handle) bind(c, name='fmi3Terminate') result(status)
     type(c_ptr), value :: handle
+    type(unit_t), pointer :: unit
+    call c_f_pointer(handle, unit)
+    unit%instance%is_terminated = .true.
     status = fmi_ok
   end function terminate
 
@@ -126,10 +129,10 @@ contains
     type(c_ptr), value :: handle
     integer(c_size_t), value :: n, n_values
     integer(c_int32_t), intent(in) :: references(n)
-    real(c_double), intent(inout) :: values(n)
+    real(c_double), intent(inout) :: values(n_values)
     type(unit_t), pointer :: unit
     call c_f_pointer(handle, unit)
-    call unit%instance%get_reals(references, values, status)
+    call unit%instance%get_values(references, real_kind, values, status)
     call tell(unit, status)
   end function get_reals
 
@@ -137,10 +140,13 @@ contains
     type(c_ptr), value :: handle
     integer(c_size_t), value :: n, n_values
     integer(c_int32_t), intent(in) :: references(n)
-    integer(c_int32_t), intent(inout) :: values(n)
+    integer(c_int32_t), intent(inout) :: values(n_values)
     type(unit_t), pointer :: unit
+    real(dp) :: reals(n_values)
     call c_f_pointer(handle, unit)
-    call unit%instance%get_integers(references, values, status)
+    reals = values
+    call unit%instance%get_values(references, integer_kind, reals, status)
+    values = nint(reals)
     call tell(unit, status)
   end function get_integers
 
@@ -148,20 +154,20 @@ contains
     type(c_ptr), value :: handle
     integer(c_size_t), value :: n, n_values
     integer(c_int32_t), intent(in) :: references(n)
-    real(c_double), intent(in) :: values(n)
+    real(c_double), intent(in) :: values(n_values)
     type(unit_t), pointer :: unit
     call c_f_pointer(handle, unit)
-    call unit%instance%set_reals(references, values, status)
+    call unit%instance%set_values(references, real_kind, values, status)
     call tell(unit, status)
   end function set_reals
 
   integer(c_int) function set_integers(handle, references, n, values, n_values) bind(c, name='fmi3SetInt32') result(status)
     type(c_ptr), value :: handle
     integer(c_size_t), value :: n, n_values
-    integer(c_int32_t), intent(in) :: references(n), values(n)
+    integer(c_int32_t), intent(in) :: references(n), values(n_values)
     type(unit_t), pointer :: unit
     call c_f_pointer(handle, unit)
-    call unit%instance%set_integers(references, values, status)
+    call unit%instance%set_values(references, integer_kind, real(values, dp), status)
     call tell(unit, status)
   end function set_integers
 
@@ -169,12 +175,12 @@ contains
     type(c_ptr), value :: handle
     integer(c_size_t), value :: n, n_values
     integer(c_int32_t), intent(in) :: references(n)
-    logical(c_bool), intent(inout) :: values(n)
+    logical(c_bool), intent(inout) :: values(n_values)
     type(unit_t), pointer :: unit
-    real(dp) :: reals(n)
+    real(dp) :: reals(n_values)
     call c_f_pointer(handle, unit)
-    reals = 0
-    call unit%instance%get_reals(references, reals, status)
+    reals = merge(1.0_dp, 0.0_dp, logical(values))
+    call unit%instance%get_values(references, logical_kind, reals, status)
     values = abs(reals) > 0
     call tell(unit, status)
   end function get_booleans
@@ -183,10 +189,10 @@ contains
     type(c_ptr), value :: handle
     integer(c_size_t), value :: n, n_values
     integer(c_int32_t), intent(in) :: references(n)
-    logical(c_bool), intent(in) :: values(n)
+    logical(c_bool), intent(in) :: values(n_values)
     type(unit_t), pointer :: unit
     call c_f_pointer(handle, unit)
-    call unit%instance%set_reals(references, merge(1.0_dp, 0.0_dp, logical(values)), status)
+    call unit%instance%set_values(references, logical_kind, merge(1.0_dp, 0.0_dp, logical(values)), status)
     call tell(unit, status)
   end function set_booleans
 
@@ -220,8 +226,8 @@ contains
     type(c_ptr), value :: handle, state
     type(unit_t), pointer :: unit
     call c_f_pointer(handle, unit)
-    call restore_state(unit%instance, state)
-    status = fmi_ok
+    call restore_state(unit%instance, state, status)
+    call tell(unit, status)
   end function set_state
 
   integer(c_int) function free_state(handle, state) bind(c, name='fmi3FreeFMUState') result(status)

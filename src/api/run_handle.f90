@@ -1,7 +1,8 @@
 !> A run that another program advances: with its rows and events in memory, and its summary.
 module run_handle
   use kinds, only: dp
-  use error_handling, only: error_t, fail, status_integration
+  use, intrinsic :: iso_fortran_env, only: int64
+  use error_handling, only: error_t, fail, status_integration, status_output
   use case_definition, only: case_t
   use joint_places, only: n_places
   use trace_columns, only: column_list_t, choose_columns
@@ -32,6 +33,7 @@ module run_handle
     integer :: status = 0                            !! of the finished run
     real(dp), allocatable :: now(:)                  !! all columns at the time `seen`
     real(dp) :: seen = -huge(1.0_dp)                 !! [s]
+    integer(int64) :: origin = 0                     !! checksum of the case: states of equal cases may replace each other
     type(case_t), private :: case
     logical, private :: is_twin = .false.
     real(dp), private :: began = 0                   !! time of `clock` [s]
@@ -51,8 +53,8 @@ module run_handle
 
 contains
 
-  !> Begin the run of a case, which ends at a time [s], or as its case says if that is 0. Error: a wrong case, or one whose scene
-  !> cannot be built; the handle of the case keeps the message.
+  !> Begin the run of a case, which ends at a time [s], or as its case says if that is not above 0. Error: a time that is not a
+  !> finite number, a wrong case, or one whose scene cannot be built; the handle of the case keeps the message.
   subroutine begin_run(of, is_twin, end_time, without_rows, new, status)
     type(case_handle_t), intent(inout) :: of
     logical, intent(in) :: is_twin
@@ -62,6 +64,10 @@ contains
     integer, intent(out) :: status
     type(error_t), allocatable :: error
     nullify (new)
+    if (.not. abs(end_time) <= huge(end_time)) then
+      call of%refuse('the end of a run must be a finite number', status)
+      return
+    end if
     call of%check(status)
     if (status /= 0) return
     allocate (new)
@@ -69,10 +75,13 @@ contains
     new%is_twin = is_twin
     new%case = of%case
     new%list = of%list
+    new%origin = of%fingerprint()
+    if (is_twin) new%origin = not(new%origin)
     if (end_time > 0) then
       new%case%integrator%revolutions = 0
       new%case%integrator%crank_revolutions = 0
       new%case%integrator%end_time = end_time
+      if (new%case%run%is_until_periodic()) new%case%run%until = 'end'
     end if
     if (without_rows) new%case%output%start_time = huge(1.0_dp)
     if (is_twin .and. size(of%list%id) > 0) call choose_columns(of%case, .true., new%list, error)
@@ -105,6 +114,7 @@ contains
     self%seen = -huge(1.0_dp)
     status = -1
     if (self%run%is_over) status = merge(0, status_integration, self%run%is_complete())
+    if (status == status_integration) self%message = 'the integration cannot go on; finish the run for the reason'
   end subroutine advance
 
   !> Go on to a time [s], or until a contact begins or ends, if that comes first.
@@ -129,7 +139,9 @@ contains
     if (.not. abs(self%seen - self%run%t) > 0) return
     call self%run%evaluate_row(self%now, in_domain)
     if (in_domain) self%seen = self%run%t
-    if (.not. in_domain) status = status_integration
+    if (in_domain) return
+    self%message = 'the state is outside the model'
+    status = status_integration
   end subroutine look
 
   !> Set an input of the run.
@@ -178,8 +190,7 @@ contains
     type(error_t), allocatable :: error
     type(certificate_t) :: certificate
     if (.not. allocated(self%table) .or. self%is_twin .or. allocated(self%certificate_table)) then
-      status = 2
-      self%message = 'only a finished run can be certified, once'
+      call self%refuse('only a finished run can be certified, once', status)
       return
     end if
     status = self%status
@@ -209,8 +220,11 @@ contains
     type(error_t), allocatable :: error
     integer :: i
     if (.not. allocated(self%table)) then
-      status = 2
-      self%message = 'only a finished run can be saved'
+      call self%refuse('only a finished run can be saved', status)
+      return
+    else if (path == '') then
+      self%message = 'a path is needed to save a run'
+      status = status_output
       return
     end if
     call files%open(path, self%list, self%case%output%digits, self%has_events(), error)

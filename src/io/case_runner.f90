@@ -39,7 +39,7 @@ module case_runner
   !> All cases of a command.
   type, extends(tasks_t) :: case_jobs_t
     type(case_job_t), allocatable :: job(:)
-    type(command_line_t) :: options
+    type(command_line_t), pointer :: options => null()
     integer :: status = status_ok                     !! largest exit status so far
   contains
     procedure :: carry_out
@@ -52,7 +52,7 @@ contains
   !> Run all cases, several at the same time, or only check them if the options say so; the largest exit status is returned. The
   !> outcome of each case is printed.
   subroutine run_cases(options, status)
-    type(command_line_t), intent(in) :: options
+    type(command_line_t), intent(in), target :: options
     integer, intent(out) :: status
     type(case_jobs_t) :: cases
     character(len=:), allocatable :: advice
@@ -60,7 +60,7 @@ contains
     real(dp) :: began   ! [s]
     integer :: i, jobs
     began = clock()
-    cases%options = options
+    cases%options => options
     shows_progress = progress_wanted(options%progress) .and. .not. options%quiet
     allocate (cases%job(size(options%cases)))
     do i = 1, size(cases%job)

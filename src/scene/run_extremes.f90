@@ -47,7 +47,7 @@ module run_extremes
     procedure :: begin_wear
     procedure :: end_wear_cycle
     procedure :: change_bore
-    procedure :: wear
+    procedure :: find_wear
   end type run_extremes_t
 
 contains
@@ -330,14 +330,17 @@ contains
   end subroutine change_bore
 
   !> The worn surfaces of the joints whose wear is counted.
-  function wear(self, scene) result(worn)
+  subroutine find_wear(self, scene, worn)
     class(run_extremes_t), intent(in) :: self
     type(scene_t), intent(in) :: scene
-    type(wear_profile_t), allocatable :: worn(:)
-    integer :: i
-    allocate (worn(0))
+    type(wear_profile_t), allocatable, intent(out) :: worn(:)
+    integer :: i, k
+    allocate (worn(count([(allocated(self%pins(i)%wear), i=1, self%n_pins)])))
+    k = 0
     do i = 1, self%n_pins
-      if (allocated(self%pins(i)%wear)) worn = [worn, self%pins(i)%wear%profile(scene)]
+      if (.not. allocated(self%pins(i)%wear)) cycle
+      k = k + 1
+      call self%pins(i)%wear%find_profile(scene, worn(k))
     end do
-  end function wear
+  end subroutine find_wear
 end module run_extremes

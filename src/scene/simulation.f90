@@ -370,7 +370,7 @@ contains
     report%statistics = self%method%totals()
     if (allocated(self%method%time_with)) report%time_with = self%method%time_with
     report%figures = self%recorder%extremes%figures
-    report%wear = self%recorder%extremes%wear(self%scene)
+    call self%recorder%extremes%find_wear(self%scene, report%wear)
     allocate (report%answers(0))
     if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, &
       self%recorder%periods, self%recorder%extremes)

@@ -62,7 +62,7 @@ module wear_record
     procedure :: begin_at
     procedure :: change_bore
     procedure :: end_cycle
-    procedure :: profile
+    procedure :: find_profile
   end type wear_record_t
 
 contains
@@ -371,10 +371,10 @@ contains
   end subroutine distribute
 
   !> The worn surfaces so far.
-  function profile(self, scene) result(worn)
+  subroutine find_profile(self, scene, worn)
     class(wear_record_t), intent(in) :: self
     type(scene_t), intent(in) :: scene
-    type(wear_profile_t) :: worn
+    type(wear_profile_t), intent(out) :: worn
     real(dp) :: radius
     integer :: k
     associate (joint => scene%joints(self%joint), n => size(self%surface(1)%load_path))
@@ -389,5 +389,5 @@ contains
         worn%depth(:, k) = worn%volume(:, k)/(radius*joint%bearing%length*self%surface(k)%width())
       end do
     end associate
-  end function profile
+  end subroutine find_profile
 end module wear_record

@@ -121,6 +121,58 @@ static void refusals(void) {
   gudgeon_case_free(it);
 }
 
+static int says(const void *handle, const char *words) {
+  char text[2000];
+  gudgeon_message(handle, text, sizeof text);
+  return strstr(text, words) != NULL;
+}
+
+/* No handle is no crash, wrong indices and values have the statuses of the header, and every failure leaves its message. */
+static void misuse(void) {
+  double value, six[6];
+  int ends;
+  int64_t rows;
+  char text[20];
+  check(gudgeon_case_set(NULL, "joint.clearance", "1") == 2 && gudgeon_case_set_number(NULL, 0, 0, 1) == 2 &&
+        gudgeon_case_accuracy(NULL, "draft") == 2 && gudgeon_case_check(NULL) == 2 && gudgeon_case_cache(NULL, "") == 2 &&
+        gudgeon_case_column(NULL, 0, text, 20, text, 20, text, 20) == 2, "functions of a case without one have status 2");
+  check(!gudgeon_case_get(NULL, "joint.clearance", text, 20) && !gudgeon_case_text(NULL, text, 20) && !gudgeon_case_given(NULL, 0) &&
+        !gudgeon_case_notes(NULL, text, 20) && !gudgeon_case_columns(NULL) && !gudgeon_case_copy(NULL), "others give nothing");
+  check(gudgeon_run_advance(NULL, 1, 0) == 2 && gudgeon_run_finish(NULL) == 2 && gudgeon_run_certify(NULL) == 2 &&
+        gudgeon_run_save(NULL, "x") == 2 && gudgeon_run_assign(NULL, NULL) == 2 && gudgeon_input_set(NULL, 0, 1) == 2 &&
+        gudgeon_input(NULL, 0, &value, text, 20, text, 20) == 2 && gudgeon_column(NULL, 0, text, 20, text, 20, text, 20) == 2 &&
+        gudgeon_values(NULL, six) == 2 && gudgeon_event(NULL, 0, six, &ends, text, 20) == 2 &&
+        gudgeon_quantity(NULL, 0, &value, text, 20, text, 20, text, 20) == 2, "functions of a run without one have status 2");
+  check(!gudgeon_run_new(NULL, 0, 0, 0) && !gudgeon_run_copy(NULL) && gudgeon_run_time(NULL) == 0 && gudgeon_run_end(NULL) == 0 &&
+        !gudgeon_inputs(NULL) && !gudgeon_columns(NULL) && !gudgeon_rows(NULL, &rows) && rows == 0 && gudgeon_events(NULL) == -1 &&
+        !gudgeon_summary(NULL, text, 20) && !gudgeon_quantities(NULL), "others give nothing");
+  check(says(NULL, "no handle"), "the message says so");
+  gudgeon_case_free(NULL), gudgeon_run_free(NULL);
+
+  gudgeon_case *it = read_case("sim_I"), *other = read_case("sim_II");
+  check(gudgeon_case_set_number(it, 100000, 0, 1) == 2 && says(it, "no key 100000"), "a wrong index of a key has status 2");
+  check(gudgeon_case_set_number(it, 0, 99, 1) == 2 && says(it, "no number 99"), "so has one of an element");
+  check(gudgeon_case_column(it, -1, text, 20, text, 20, text, 20) == 2 && says(it, "no column -1"), "and one of a column");
+  check(!gudgeon_run_new(it, 0, NAN, 0) && says(it, "finite"), "an end that is no number is refused");
+  gudgeon_case_set(other, "joint.clearance", "-1");
+  check(gudgeon_case_check(other) == 3 && gudgeon_case_set(other, "joint.nothing", "1") == 3 && gudgeon_case_check(other) == 3 &&
+        says(other, "must be > 0"), "a case that is still wrong says why again");
+  gudgeon_case_set(other, "joint.clearance", "1e-5");
+  gudgeon_run *run = gudgeon_run_new(it, 0, 0.01, 0), *another = gudgeon_run_new(other, 0, 0.01, 0);
+  check(gudgeon_run_assign(run, another) == 2 && says(run, "another case"), "a state of another case is refused");
+  check(gudgeon_run_assign(run, NULL) == 2 && says(run, "no handle"), "so is none");
+  check(gudgeon_run_advance(run, NAN, 0) == 2 && says(run, "finite"), "a time that is no number is refused");
+  check(gudgeon_run_advance(run, 1, -1) == 2 && gudgeon_run_time(run) == 0, "so are steps below 0");
+  check(gudgeon_summary(run, text, 20) == 0 && says(run, "only a finished run"), "a run that goes on has no summary");
+  check(gudgeon_quantities(run) == 0 && gudgeon_run_save(run, "x") == 2 && gudgeon_run_certify(run) == 2, "and is not saved");
+  check(gudgeon_input_set(run, 99, 1) == 2 && says(run, "no input 99"), "a wrong input has status 2");
+  gudgeon_run_finish(run);
+  check(gudgeon_event(run, 1 << 30, six, &ends, text, 20) == 2 && says(run, "no event"), "a wrong event has status 2");
+  check(gudgeon_quantity(run, -1, &value, text, 20, text, 20, text, 20) == 2 && says(run, "no quantity"), "so has a wrong quantity");
+  check(gudgeon_run_save(run, "") == 5 && says(run, "path"), "a run is not saved without a name");
+  gudgeon_run_free(run), gudgeon_run_free(another), gudgeon_case_free(it), gudgeon_case_free(other);
+}
+
 /* Numbers set without texts give the bits of those set as texts. */
 static void numbers(void) {
   int n = gudgeon_keys(), clearance = -1;
@@ -195,6 +247,7 @@ int main(int count, char **arguments) {
   pauses();
   torques();
   refusals();
+  misuse();
   numbers();
   if (count < 3) threads();   /* a second argument: without, for valgrind */
   printf("%d passed, %d failed\n", passed, failed);

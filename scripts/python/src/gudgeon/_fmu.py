@@ -50,6 +50,8 @@ def fmu(case: Case, path: str | Path | None = None, fmi: int = 2, columns: Seque
         found = Inputs(owner)
         inputs = {name: (found[name], found.units[name]) for name in found}
         end = _library.library().run_end(owner.number)
+        for name in ("case.nml", "identity"):  # no file of the case may have these names
+            (resources / name).touch()
         text = _with_its_files(case, resources)
         (resources / "case.nml").write_text(text)
         identity = "{" + hashlib.sha256(f"{fmi}{text}{_library.text_from(_library.library().version)}".encode()).hexdigest()[:32] + "}"
@@ -70,14 +72,18 @@ def fmu(case: Case, path: str | Path | None = None, fmi: int = 2, columns: Seque
 
 
 def _with_its_files(case: Case, resources: Path) -> str:
-    """The complete case, with copies of the files that it names."""
-    text = case.to_nml(complete=True)
+    """The complete case, with copies of the files that it names, each under a name of its own."""
+    unit = Case.from_text(case.to_nml(complete=True), "case", resources)
+    copies: dict[Path, str] = {}
     for name, key in keys.items():
         if key.is_path and (path := case[name] if case.is_given(key) else ""):
-            source = Path(path) if Path(path).is_absolute() else Path(case._folder) / path
-            shutil.copy(source, resources / source.name)
-            text = re.sub(rf"(?m)^  {key.name} = '.*'$", lambda _: f"  {key.name} = '{source.name}'", text)
-    return text
+            source = (Path(path) if Path(path).is_absolute() else Path(case._folder) / path).resolve()
+            if source not in copies:
+                plain = re.sub(r"[^\w.-]", "_", source.name, flags=re.ASCII)
+                copies[source] = plain if not (resources / plain).exists() else f"{len(copies) + 1}_{plain}"
+                shutil.copy(source, resources / copies[source])
+            unit[name] = copies[source]
+    return unit.to_nml(complete=True).replace(f" = '{os.path.abspath(resources)}/", " = '")
 
 
 def _binaries(folder: Path, system: str) -> None:

@@ -7,6 +7,7 @@ import ctypes
 import math
 import time
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -31,6 +32,9 @@ class RunError(RuntimeError):
     def __init__(self, text: str, run: Run) -> None:
         super().__init__(text)
         self.run = run
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return RunError, (str(self), self.run)
 
 
 class Summary(Mapping[str, Any]):
@@ -95,6 +99,15 @@ class Run:
         self._resolved: str | None = None  # the complete case, if it was read from a file
         self._files: Path | None = None  # that it was read from: their path without suffix
 
+    def __getstate__(self) -> dict[str, Any]:
+        """What a pickle and a deep copy have: everything but the memory of the library and the files."""
+        tables = {"tables": self.tables} if "_owner" in self.__dict__ or self._files else {}
+        return {**self.__dict__, **tables, "_rows": self._rows.copy(), "_files": None, "_owner": None}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._rows.flags.writeable = False
+
     # columns
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -152,6 +165,8 @@ class Run:
         along = self["time"] if time is not None else np.degrees(self["crank_angle"])
         where = time if time is not None else crank_angle_deg
         assert where is not None
+        close = 1e-9 * np.ptp(along)  # a time that is the end but for rounding
+        where = min(max(where, along.min()), along.max()) if along.min() - close <= where <= along.max() + close else where
         past = np.flatnonzero((along[:-1] - where) * (along[1:] - where) <= 0)
         if not len(past):
             raise ValueError(f"{where} is not within the run: {along.min()} to {along.max()}")
@@ -231,7 +246,7 @@ class Run:
         """Write the files of the command line: NAME.csv, NAME.events.csv, NAME.summary.csv, NAME.resolved.nml, ..."""
         handle = self.__dict__.get("_owner")
         if handle is None or self.case is None:
-            raise ValueError("only a whole run can be saved")
+            raise ValueError("only a whole run that this process has made can be saved")
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         base = folder / (name or self.name)
@@ -315,6 +330,9 @@ class _Owner:
     def __del__(self, library: Callable[[], Any] = library) -> None:  # also while Python ends
         library().run_free(self.number)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError("a run that goes on, and its saved states, can be neither pickled nor copied; its results can (Stepper.run)")
+
 
 def from_handle(case: Case, owner: _Owner | int) -> Run:
     """The run of a handle, which is finished here. The run owns the handle from now on."""
@@ -396,7 +414,7 @@ def carry_out(
 
 def advance(number: int, to: float, tell: Callable[[float], None] | None, timeout: float | None) -> int:
     """Advance a run of the library in slices of about `SLICE`, between which Python looks for interruptions. Returns -1 at a pause, 0
-    at its end, 4 if it cannot go on."""
+    at its end, 4 if it cannot go on. Raises ValueError for a time that is not a finite number."""
     began = before = time.monotonic()
     steps = 500
     while True:
@@ -406,6 +424,8 @@ def advance(number: int, to: float, tell: Callable[[float], None] | None, timeou
         before = clock
         if tell is not None:
             tell(min(1.0, now / max(library().run_end(number), 1e-300)))
+        if status == 2:
+            raise ValueError(_library.message(number))
         if status != -1 or now >= to:
             return int(status)
         if timeout is not None and clock - began > timeout:
@@ -422,31 +442,57 @@ def _bar(share: float) -> None:
 
 def load(path: str | Path, folder: str | Path | None = None) -> Run:
     """A run from its files: `load("results/sim_I")`, or a name that is looked for in `results/`. Its case may read the tables that it
-    names in the folder of the files, or in `folder`; "/": anywhere."""
+    names in the folder of the files, or in `folder`; "/": anywhere. Raises ValueError with the name of a file that is damaged."""
     import numpy as np
     import pandas as pd
 
     base = Path(str(path).removesuffix(".csv"))
     if not Path(f"{base}.csv").is_file():
         base = Path("results") / base
-    with open(f"{base}.csv") as file:
+    with _reading(f"{base}.csv") as path, open(path) as file:
         headings = [name.partition("[") for name in file.readline().strip().split(",")]
         columns = [Column(name, unit.rstrip("]"), "") for name, _, unit in headings]
+        if not columns[0].name:
+            raise ValueError("no columns")
         rows = np.loadtxt(file, delimiter=",", ndmin=2)
+        if rows.size and rows.shape[1] != len(columns):
+            raise ValueError(f"{rows.shape[1]} columns instead of {len(columns)}")
+        rows = rows.reshape(-1, len(columns))
     rows.flags.writeable = False
-    table = pd.read_csv(f"{base}.summary.csv", dtype=str, keep_default_na=False)
+    with _reading(f"{base}.summary.csv") as path:
+        table = pd.read_csv(path, dtype=str, keep_default_na=False)[["quantity", "value", "unit"]]
     events = None
     if Path(f"{base}.events.csv").is_file():
-        events = pd.read_csv(f"{base}.events.csv").values.tolist()
+        with _reading(f"{base}.events.csv") as path:
+            events = _events_of_file(path)
     case, resolved = None, Path(f"{base}.resolved.nml")
     if resolved.is_file():
-        case = Case.from_text(resolved.read_text(), base.name, folder or base.parent)
+        with _reading(f"{resolved}"):
+            case = Case.from_text(resolved.read_text(), base.name, folder or base.parent)
     run = Run(case, columns, rows, events, table.values.tolist(), base.name)
     run._resolved = resolved.read_text() if case else None
     run._files = base
     if Path(f"{base}.ideal.csv").is_file():
         run.twin = load(f"{base}.ideal.csv", folder)
     return run
+
+
+@contextmanager
+def _reading(path: str) -> Iterator[str]:
+    """What is wrong with the contents of a file becomes one error with its name."""
+    try:
+        yield path
+    except (ValueError, LookupError) as error:
+        raise ValueError(f"{path}: not a file of results, or damaged: {' '.join(str(error).split())}") from None
+
+
+def _events_of_file(path: str) -> list[list[Any]]:
+    import pandas as pd
+
+    table = pd.read_csv(path)
+    if len(table.columns) != len(EVENT_COLUMNS):
+        raise ValueError(f"{len(table.columns)} columns instead of {len(EVENT_COLUMNS)}")
+    return table.values.tolist()
 
 
 def compare(a: Run, b: Run, *names: str, ax: Any = None) -> pd.DataFrame:

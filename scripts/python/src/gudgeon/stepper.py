@@ -6,7 +6,7 @@ import ctypes
 from collections.abc import Iterator, MutableMapping
 from typing import TYPE_CHECKING, Any
 
-from ._library import library
+from ._library import library, message
 from .case import Case, _meant
 from .run import RunError, _columns, _Owner, advance, from_handle
 
@@ -99,7 +99,7 @@ class Stepper:
 
     def advance(self, to: float) -> bool:
         """Go on to a time [s], or to the end of the run if that comes first. Returns whether the run has ended. Raises RunError if
-        the integration cannot go on."""
+        the integration cannot go on, ValueError for a time that is not a finite number."""
         status = advance(self._number, to, None, None)
         if status == 4:
             run = self.run
@@ -117,8 +117,10 @@ class Stepper:
         return Snapshot(library().run_copy(self._number))
 
     def restore(self, saved: Snapshot) -> None:
-        """Put a saved state back, with its inputs; the snapshot stays."""
-        library().run_assign(self._number, saved._owner.number)
+        """Put a saved state of a run of this case back, with its inputs; the snapshot stays. Raises ValueError for that of another
+        case."""
+        if library().run_assign(self._number, saved._owner.number):
+            raise ValueError(message(self._number))
 
     @property
     def run(self) -> Run:
