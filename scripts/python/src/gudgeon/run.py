@@ -6,7 +6,7 @@ import csv
 import ctypes
 import math
 import time
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
@@ -478,7 +478,7 @@ def load(path: str | Path, folder: str | Path | None = None) -> Run:
 
 
 @contextmanager
-def _reading(path: str) -> Iterator[str]:
+def _reading(path: str) -> Generator[str]:
     """What is wrong with the contents of a file becomes one error with its name."""
     try:
         yield path
