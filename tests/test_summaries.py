@@ -43,7 +43,7 @@ def judge(folder: Path, name: str, slack: float) -> None:
     check(max(abs(float(row["energy_residual[J]"])) for row in rows) <= residual,
           f"{name}: max_energy_residual {residual!r} is smaller than in a row")
     fractions = sum(float(value) for quantity, value in summary.items() if "_time_fraction_with_" in quantity)
-    check(fractions <= 1 + 1e-9, f"{name}: times by method sum to {fractions} of the run")
+    check(not fractions or abs(fractions - 1) <= 1e-8, f"{name}: times by method sum to {fractions} of the run")
     events = table(folder / f"{name}.events.csv") if (folder / f"{name}.events.csv").exists() else []
     loose = {joint for joint, prefix in PREFIXES.items() if f"{prefix}film_thickness[m]" in rows[0]}
     corners = {f"guide_{i}" for i in range(1, 5) if f"guide_{i}_gap[m]" in rows[0]}

@@ -56,13 +56,14 @@ contains
     call has(case, report, 'contact_time_fraction_with_adams,9.000000000E-01,1')
     deallocate (report%time_with)
     allocate (report%time_with(2, 0:8), source=0.0_dp)
-    report%time_with(1, 2 + 3*1) = 1
+    report%time_with(1, [0, 2 + 3*1]) = 1
     case%joints(piston_pin)%kind = 'clearance'
     case%joints(crank_pin)%kind = 'clearance'
     call has(case, report, 'contact_film_time_fraction_with_adams,5.000000000E-01,1')
     deallocate (report%time_with)
     allocate (report%time_with(2, 0:2), source=0.0_dp)
     report%time_with(2, 1) = 0.2_dp
+    report%time_with(1, 2) = 1.8_dp
     case%joints(piston_pin)%kind = 'ideal'
     call has(case, report, 'crank_pin_film_time_fraction_with_radau,1.000000000E-01,1')
 

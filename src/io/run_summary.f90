@@ -72,8 +72,8 @@ contains
         do mode = lbound(report%time_with, 2), ubound(report%time_with, 2)
           do method = with_adams, with_radau
             if (report%time_with(method, mode) > 0) call &
-              table%add('PHASE_time_fraction_with_NAME', report%time_with(method, mode)/f%time, phases_of(case, mode)//'_', &
-              trim(method_names(method)))
+              table%add('PHASE_time_fraction_with_NAME', report%time_with(method, mode)/sum(report%time_with), &
+              phases_of(case, mode)//'_', trim(method_names(method)))
           end do
         end do
       end if

@@ -109,7 +109,7 @@ module summary_quantities
     quantity_t('neglected_shear_loss', 'J', &
       'energy that the shear of the film would have taken; it does not act with `film_moment = .false.`'), &
     quantity_t('max_film_pressure', 'Pa', 'largest pressure in the film'), &
-    quantity_t('mean_film_side_flow', 'm3/s', 'mean oil flow out of both ends of the bearing'), &
+    quantity_t('mean_film_side_flow', 'm3/s', 'mean oil flow out of both ends of the bearing, with `report`'), &
     quantity_t('max_force', 'N', 'largest contact force of this corner of the skirt'), &
     quantity_t('elastic_members', '', 'which bodies are elastic'), &
     quantity_t('rod_bending_frequency', 'Hz', 'lowest natural frequency of the rod in bending'), &
@@ -145,7 +145,7 @@ module summary_quantities
     quantity_t('cyclic_irregularity', '1', &
       'largest less smallest speed of the driven station in the last cycle, over the mean speed'), &
     quantity_t('front_irregularity', '1', 'the same of the first station'), &
-    quantity_t('max_damper_R_power', 'W', 'power that the damping of damper R takes, mean of the last cycle'), &
+    quantity_t('cycle_mean_damper_R_power', 'W', 'mean power that the damping of damper R takes in the last cycle'), &
     quantity_t('cycle_front_twist_order_H', 'rad', 'amplitude at order H of the twist of the first station against the '// &
       'driven one in the last cycle'), &
     quantity_t('cycle_segment_J_torque_order_H', 'N.m', 'amplitude at order H of the torque of segment J in the last cycle'), &

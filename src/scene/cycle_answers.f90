@@ -63,10 +63,10 @@ module cycle_answers
     quantity_t('cycle_mean_friction_moment', 'N.m', &
       'these losses in the cycle over the angle that the pin turns through in its bearing, in either sense'), &
     quantity_t('cycle_turning', 'rad', 'angle that a floating pin turns through in this bearing in the cycle, in either sense'), &
-    quantity_t('cycle_joint_fmep', 'Pa', 'these losses in the cycle over the displacement of the cylinder'), &
+    quantity_t('cycle_joint_fmep', 'Pa', 'these losses in the cycle over the displacement of all cylinders'), &
     quantity_t('cycle_max_film_pressure', 'Pa', 'largest pressure in the film in the cycle, with `report`'), &
     quantity_t('cycle_max_film_pressure_angle', 'deg', 'crank angle then'), &
-    quantity_t('cycle_mean_film_side_flow', 'm3/s', 'mean oil flow out of both ends of the bearing in the cycle'), &
+    quantity_t('cycle_mean_film_side_flow', 'm3/s', 'mean oil flow out of both ends of the bearing in the cycle, with `report`'), &
     quantity_t('cycle_mean_film_temperature', 'K', 'mean temperature of the film in the cycle, with `&heat`'), &
     quantity_t('cycle_heat_to_oil', 'J', 'heat that the oil carries out of the film in the cycle'), &
     quantity_t('cycle_heat_to_housing', 'J', 'heat that flows from the film to the housing in the cycle'), &
@@ -77,7 +77,8 @@ module cycle_answers
     quantity_t('cycle_pin_turn', 'rad', 'angle by which a floating pin turns in the cycle, positive from x to y'), &
     quantity_t('cycle_speed_fluctuation', '1', 'largest minus smallest crank speed in the cycle, over the mean'), &
     quantity_t('cycle_mean_piston_speed', 'm/s', 'two strokes of the ideal mechanism in the mean time of a revolution'), &
-    quantity_t('cycle_max_cylinder_pressure', 'Pa', 'largest pressure of the gas in the cycle'), &
+    quantity_t('cycle_max_cylinder_pressure', 'Pa', &
+      'largest pressure of the gas in the cycle, in the cylinder of the mechanism itself'), &
     quantity_t('cycle_max_cylinder_pressure_angle', 'deg', 'crank angle then, from 0 to the length of the cycle'), &
     quantity_t('cycle_indicated_power', 'W', 'work of the gas on the piston in the cycle over its duration'), &
     quantity_t('cycle_brake_power', 'W', &
@@ -121,6 +122,7 @@ contains
     cycle = cycles%last_cycle(revolutions)
     displacement = 0
     if (allocated(scene%gas)) displacement = scene%gas%cylinder%displacement*revolutions/forced
+    if (allocated(scene%chain%train)) displacement = displacement*(1 + size(scene%chain%train%cylinders))
 
     call add('cycle_start', cycle%start)
     call add('cycle_duration', cycle%duration)
@@ -236,7 +238,6 @@ contains
       shaft = shaft - one_way
       call add('cycle_indicated_power', work_of(by_gas)/cycle%duration)
       call add('cycle_brake_power', shaft/cycle%duration)
-      if (allocated(scene%chain%train)) displacement = displacement*(1 + size(scene%chain%train%cylinders))
       call add('cycle_imep', work_of(by_gas)/displacement)
       if (allocated(scene%gas%cycle)) call add('cycle_heat_released', &
         scene%gas%cycle%release%heat*released_share(scene%gas%cycle%release%efficiency))

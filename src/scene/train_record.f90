@@ -358,7 +358,7 @@ contains
       integer :: every
       call add('front_irregularity', 'front_irregularity', irregularity(2))
       do j = 1, size(scene%chain%train%rings)
-        call add('max_damper_R_power', 'max_damper_'//integer_text(j)//'_power', cycle%loss(j)/cycle%duration)
+        call add('cycle_mean_damper_R_power', 'cycle_mean_damper_'//integer_text(j)//'_power', cycle%loss(j)/cycle%duration)
       end do
       every = merge(1, 2, mod(revolutions, 2) == 0)
       do j = 1, scene%chain%train%n
