@@ -26,6 +26,7 @@ import pandas as pd
 from assertions import Assertions
 from gudgeon.cycles import bearing_loads, orders, spectrum, whole_cycles, work
 from gudgeon.language import Language
+from gudgeon.plots.cycles import draw_bearings
 from gudgeon.program import release_program
 from gudgeon.report.cycles import section
 from gudgeon.report.page import page
@@ -116,6 +117,19 @@ def runs(folder: Path) -> None:
     check(told.returncode == 0, "the script runs", told.stderr)
     for kind in ("orders.csv", "work.csv", "cycles.png", "orders.png", "bearings.png", "indicator.png"):
         check((folder / f"sim_IV.{kind}").stat().st_size > 100, f"it writes {kind}")
+    settled_cycles = whole_cycles(fired, 0)
+    drawing = draw_bearings(settled_cycles)
+    force = bearing_loads(settled_cycles)["crank on the main bearing"].mean(axis=1)
+    numbers = {int(text.get_text()): text.xy for text in drawing.axes[-1].texts}
+    check(set(numbers) == {0, 180, 360, 540}, "loads on the bearings: crank angles within the cycle", str(numbers))
+    for number, (_, size) in numbers.items():
+        row = int(np.argmin(np.abs(settled_cycles.place - np.radians(number))))
+        check(abs(size - np.hypot(*force[:, row]) / 1e3) < 1e-9, f"the mark at {number} degrees has the load of the trace")
+    axis = drawing.axes[-1]
+    check(axis.get_theta_offset() == np.pi / 2 and axis.get_theta_direction() == -1, "the cylinder axis points upwards")
+    for case, said in (({"combustion": {}}, "cylinder volume"), ({"cylinder_pressure": {"compression_ratio": 0.0}}, "swept volume"),
+                       ({"cylinder_pressure": {"compression_ratio": 9.0}}, "cylinder volume")):
+        check(replace(fired, case=case).volume == said, f"the volume of {case} is the {said}")
     told = subprocess.run(
         [*PLOT, "orders", folder / "sim_IV.csv", "--columns", "nonsense"], capture_output=True, text=True, check=False
     )

@@ -33,6 +33,7 @@ import pandas as pd
 import show_noise
 import tradeoff
 from gudgeon import cli, language, names, study
+from gudgeon.plots import bearing as bearing_pictures
 from gudgeon.plots import columns, compare, figures, film_pressure, laws, ringing, style
 from gudgeon.plots import film as film_pictures
 from gudgeon.plots.figure_map import read_figures
@@ -379,6 +380,17 @@ class FilmPressure(unittest.TestCase):
             rate = crank / rod * speed**2 / np.sqrt(1 - (crank / rod) ** 2)
             surface = radius * rate / speed  # Re(-i s P*) = s Im P*
             np.testing.assert_allclose(self.resultant(made), [0, -unit * surface * out_of_phase], rtol=2e-3, atol=1e-6)
+
+    def test_the_viscosity_of_an_oil(self) -> None:
+        """An oil whose viscosity the run has computed gives the pressures of its numbers; at 15 degC its density is that of the case."""
+        motion = {"crank_speed": 300.0, "rod_speed": 50.0}
+        for law in ("pinkus_sternlicht", "oscillating_film"):
+            given = self.case({"law": law, "kinematic_viscosity": self.VISCOSITY / 900}, 0.2, 0.05)
+            oil = self.case({"law": law, "viscosity": 0.0, "kinematic_viscosity": 0.0, "density": 900.0, "temperature": 288.15}, 0.2, 0.05)
+            wanted = self.resultant(self.made(0.5, given, **motion))
+            found = self.resultant(replace(self.made(0.5, oil, **motion), summary={"viscosity": (str(self.VISCOSITY), "Pa s")}))
+            np.testing.assert_allclose(found, wanted, rtol=1e-12)
+            self.assertGreater(np.abs(wanted).max(), 1)
 
     def test_no_pressure_in_contact(self) -> None:
         made = self.made(1.1, self.case({"law": "pinkus_sternlicht"}, 0.2, 0.05), phase=2, rod_speed=50.0)
@@ -1132,6 +1144,37 @@ class Columns(unittest.TestCase):
             rows = columns.rows_of_cycle(self.run, cycle)
             np.testing.assert_allclose(self.angle[rows][[0, -1]], np.array([first, first + 2]) * np.pi, atol=0.05)
 
+    def test_the_last_cycle_is_that_of_the_summary(self) -> None:
+        """Three and a half cycles, of which the last whole one ends with the run: it is counted from 0 degrees."""
+        made = replace(self.run, summary={"cycle_start": (str(0.05 * np.pi), "s"), "cycle_duration": (str(0.02 * np.pi), "s")})
+        for cycle, first in ((-1, 5), (-3, 1), (0, 1)):
+            rows = columns.rows_of_cycle(made, cycle)
+            np.testing.assert_allclose(self.angle[rows][[0, -1]], np.array([first, first + 2]) * np.pi, atol=0.02)
+        drawing = columns.draw([made], ["pin_force_x"], cycle=-1)
+        x, y = drawing.axes[0].lines[0].get_data()
+        np.testing.assert_allclose(x[[0, -1]], (0, 360), atol=2)   # rows are 1.8 degrees apart
+        np.testing.assert_allclose(y, 3 * np.cos(np.radians(x)), atol=0.02)
+        self.assertTrue(set(range(0, 361, 90)) <= set(np.round(drawing.axes[0].get_xticks()).astype(int)))
+        plt.close(drawing)
+
+    def test_orbits_have_the_angles_of_the_trace(self) -> None:
+        """A last cycle of two revolutions that begins at an odd one: each number at the orbit is the angle of the trace at this place."""
+        angle = np.radians(np.arange(0, 9 * 360 + 1))
+        x, y = 8e-6 * np.cos(angle / 2), 6e-6 * np.sin(angle / 2)
+        made = run({"time": angle / 100, "crank_angle": angle, "eccentricity_x": x, "eccentricity_y": y, "film_thickness": 1e-5 - np.hypot(x, y),
+                    "film_force_x": -1e3 * np.cos(20 * angle), "film_force_y": -1e3 * np.sin(20 * angle)})
+        made.summary.update(cycle_start=(str(0.14 * np.pi), "s"), cycle_duration=(str(0.04 * np.pi), "s"), cycle_revolutions=("2", "1"))
+        drawing = bearing_pictures.orbit(made, "piston_pin", "made")
+        left, right = drawing.axes
+        found = {int(text.get_text()): np.array(text.xy) for text in left.texts if text.get_text()}
+        self.assertEqual(set(found), set(range(0, 720, 90)))
+        for number, place in found.items():
+            at = np.radians(number) / 2
+            np.testing.assert_allclose(place, [0.6 * np.sin(at), 0.8 * np.cos(at)], atol=0.01)
+        path = max(right.lines, key=lambda line: len(line.get_xdata()))   # the load turns by 20 degrees from row to row
+        self.assertLess(np.hypot(*np.diff(path.get_xydata(), axis=0).T).max(), 0.02)
+        plt.close(drawing)
+
     def test_a_missing_column_is_refused(self) -> None:
         with self.assertRaisesRegex(MissingResult, "no column film_thickness"):
             columns.draw([self.run], ["film_thickness"])
@@ -1212,6 +1255,17 @@ class Page(unittest.TestCase):
         for said in ("&amp;joint clearance = 2 mm: usually 1 to 500 um", "a force &lt; 1e9 N", "The run did not end as requested: interrupted at"):
             self.assertEqual(text.count(f'<p class="warning">{said}'), 1, said)
         self.assertNotIn("note_1", text)
+        self.assertNotIn("No warnings.", text)
+
+    def test_no_warning_is_denied(self) -> None:
+        """A motion that has not settled, and contacts that are too fast: both are told, and nothing says that there are no warnings."""
+        for name, value, said in (("cycle_is_settled", "no", "The motion has not settled"),
+                                  ("impacts_beyond_validity", "2", "2 of 3 contacts at the piston pin")):
+            made = self.made()
+            made.summary[name] = (value, "1")
+            text = report_page.page(made)
+            self.assertNotIn("No warnings.", text)
+            self.assertEqual(text.count(f'<p class="warning">{said}'), 1)
 
     def test_the_page_opens_where_the_force_is_largest(self) -> None:
         columns = {"time": np.linspace(0, 1, 11), "pin_force": np.array([9.0, 0, 1, 2, 7, 3, 2, 1, 1, 1, 1])}
@@ -1228,12 +1282,12 @@ class Page(unittest.TestCase):
             self.assertLess(head.index("contacts"), head.index("<details>"))
             self.assertGreater(head.index("compiler_options"), head.index("<details>"))  # not in the main table
         self.assertIn('<html lang="pt">', said)
-        self.assertIn("pino no mancal", said)
-        self.assertNotIn("pin in its bearing", said.split("<script", 1)[0])
+        self.assertIn("pino do pistão no mancal", said)
+        self.assertNotIn("piston pin in its bearing", said.split("<script", 1)[0])
 
     def test_every_word_of_the_page_has_its_portuguese(self) -> None:
         portuguese = language.Language("pt")
-        for text in [*report_page.script_words(), *(title for _, title, *_ in report_page.OVER_TIME)]:
+        for text in [*report_page.script_words(), *(title for _, title, *_ in (*report_page.OVER_TIME, *report_page.FIRST_OF_BEARINGS))]:
             portuguese.say(text)
         self.assertEqual(portuguese.unknown, set())
         self.assertGreater(len(report_page.script_words()), 15)

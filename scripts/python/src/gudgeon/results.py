@@ -48,6 +48,17 @@ class Run:
         return float(self.parameter("joint", "clearance", 0.0)) if "film_thickness" in self else 0.0
 
     @property
+    def volume(self) -> str:
+        """What the column cylinder_volume is: a measured pressure without a compression ratio has the swept volume alone."""
+        measured = "cylinder_pressure" in self.case and not float(self.parameter("cylinder_pressure", "compression_ratio", 0.0))
+        return "swept volume" if measured else "cylinder volume"
+
+    @property
+    def viscosity(self) -> float:
+        """Dynamic viscosity of the piston pin's film [Pa s]: what the run computed for its oil, or the number in the case."""
+        return float(self.summary["viscosity"][0] if "viscosity" in self.summary else self.parameter("lubrication", "viscosity", 0.0))
+
+    @property
     def cycle(self) -> float:
         """Crank angle after which the loads repeat [rad]: two revolutions with the gas of four strokes, else one."""
         if "bearing_load" in self.case:

@@ -177,7 +177,7 @@ class Run:
 
     def cycle(self, i: int = -1, revolutions: int | None = None) -> Run:
         """The rows of one whole cycle: of the last one, or by number from 0. A cycle has the revolutions that the gas takes to
-        repeat, or those given."""
+        repeat, or those given; the last one ends where the cycle ends whose answers are in the summary (`cycle_...`)."""
         travel = self._cycles_turned(revolutions)
         whole = int(travel[-1])
         if not -whole <= i < whole:
@@ -186,12 +186,11 @@ class Run:
         return Run(self.case, self._columns, self._rows[chosen], None, [], f"{self.name}, cycle {i % whole}")
 
     def _cycles_turned(self, revolutions: int | None = None) -> np.ndarray:
-        """Cycles that the crank has turned through until each row, raised by rounding."""
-        import numpy as np
-
+        """Cycles that the crank has turned through until each row, see `cycles_turned`."""
         if revolutions is None:
             revolutions = int(self.summary.get("cycle_revolutions", 1))
-        return np.abs(self["crank_angle"] - self["crank_angle"][0]) / (2 * math.pi * revolutions) + 1e-9
+        end = self.summary["cycle_start"] + self.summary["cycle_duration"] if "cycle_start" in self.summary else None
+        return cycles_turned(self["time"], self["crank_angle"], 2 * math.pi * revolutions, end)
 
     @property
     def cycles(self) -> pd.DataFrame:
@@ -261,17 +260,30 @@ class Run:
     # pictures
 
     def plot(self, *names: str, over: str = "time", cycle: int | None = None, ax: Any = None) -> Any:
-        """Columns over time, or over the crank angle in degrees. Returns the axes of matplotlib."""
+        """Columns over another column or over the crank angle in degrees, which is counted within the cycle if one is shown. Returns
+        the axes of matplotlib."""
         import matplotlib.pyplot as plt
-        import numpy as np
+
+        from .names import plain_unit, prefixed
+        from .plots.columns import crank_angles
 
         run = self if cycle is None else self.cycle(cycle)
-        x = np.degrees(run["crank_angle"]) if over == "crank_angle" else run[over]
+        if over == "crank_angle":
+            x, order = crank_angles(run["crank_angle"], None if cycle is None else 2 * math.pi * int(self.summary.get("cycle_revolutions", 1)))
+            along = "crank angle [deg]"
+        else:
+            shown, factor = prefixed(self.units[over], run[over])
+            x, order, along = factor * run[over], slice(None), _label(over, plain_unit(shown))
         ax = ax or plt.gca()
         for name in names:
-            ax.plot(x, run[name], label=f"{name} [{self.units[name]}]")
-        ax.set_xlabel("crank angle [deg]" if over == "crank_angle" else f"{over} [{self.units[over]}]")
-        ax.legend()
+            shown, factor = prefixed(self.units[name], run[name])
+            ax.plot(x, factor * run[name][order], label=_label(name, plain_unit(shown)))
+        ax.set_xlabel(along)
+        if len(ax.lines) == 1:
+            ax.set_ylabel(ax.lines[0].get_label())
+        else:
+            ax.set_ylabel("")
+            ax.legend()
         return ax
 
     def animate(self, cycle: int | None = None, frames: int = 120) -> Any:
@@ -302,6 +314,22 @@ class Run:
         name = next((name for name in ("piston_acceleration", *self.names[1:]) if name in self._index), None)
         picture = _polyline(self["time"], self[name]) if name and len(self) > 1 else ""
         return f"<b>{escape(self.name)}</b>: {escape(str(self.summary.get('status', '')))}{picture}<br>{escape(name or '')}{_table(rows)}"
+
+
+def _label(column: str, unit: str) -> str:
+    """A column on an axis."""
+    return column.replace("_", " ") + (f" [{unit}]" if unit else "")
+
+
+def cycles_turned(time: np.ndarray, angle: np.ndarray, length: float, end: float | None) -> np.ndarray:
+    """Cycles of `length` [rad] that the crank has turned through until each row, raised by rounding. A whole number is reached at
+    `end` [s], where the cycle ends whose answers are in the summary: rows before the first whole cycle have negative values. Without
+    it cycles are counted from the first row."""
+    import numpy as np
+
+    travel = np.abs(angle - angle[0]) / length
+    before = 0.0 if end is None else (np.interp(end, time, travel) + 1e-6) % 1 - 1e-6
+    return travel - before + 1e-9
 
 
 class Page:

@@ -12,6 +12,9 @@ from matplotlib.figure import Figure as Drawing
 #: The largest load in the picture, over the radius of the clearance circle.
 LOAD_RADIUS = 1.25
 
+#: Parts into which the steps between rows are divided in the axes of the load: it may turn fast between two rows.
+PARTS = 16
+
 
 def has_film(run: Run, place: str) -> bool:
     prefix, _ = PLACES[place]
@@ -39,8 +42,8 @@ def orbit(run: Run, place: str, name: str) -> Drawing:
     clearance = float(np.median(thickness + np.hypot(x, y)))
     load = -(run[f"{prefix}film_force_x"] + 1j * run[f"{prefix}film_force_y"])[rows]
     place_in_circle = (x + 1j * y) / clearance
-    turned = place_in_circle * np.exp(-1j * np.angle(load))
     angle = np.degrees(run["crank_angle"][rows])
+    cycle = np.degrees(run_cycle(run))
     drawing, (left, right) = plt.subplots(1, 2, figsize=(WIDTH, 0.58 * WIDTH))
     scale = LOAD_RADIUS / np.abs(load).max()
     left.plot(scale * load.imag, scale * load.real, color=ORANGE, linewidth=0.6, label=f"load, up to {1e-3 * np.abs(load).max():.3g} kN")
@@ -48,15 +51,18 @@ def orbit(run: Run, place: str, name: str) -> Drawing:
     ends = scale * load[thinnest]
     left.annotate("", (ends.imag, ends.real), (0, 0), arrowprops={"arrowstyle": "->", "color": ORANGE, "linewidth": 0.8})
     right.annotate("", (0, LOAD_RADIUS), (0, 0), arrowprops={"arrowstyle": "->", "color": ORANGE, "linewidth": 0.8})
-    for axes, track, title in ((left, place_in_circle, "fixed axes"), (right, turned, "axes of the load")):
-        draw_orbit(axes, track, angle, thinnest)
-        axes.set_title(title, loc="left")
+    draw_orbit(left, place_in_circle, angle, thinnest, cycle)
+    fine = np.linspace(0, len(angle) - 1, PARTS * (len(angle) - 1) + 1)
+    place_then, load_then, angle_then = (np.interp(fine, np.arange(len(angle)), values) for values in (place_in_circle, load, angle))
+    draw_orbit(right, place_then * np.exp(-1j * np.angle(load_then)), angle_then, PARTS * thinnest, cycle)
+    left.set_title("fixed axes", loc="left")
+    right.set_title("axes of the load", loc="left")
     right.plot([], [], color=BLUE, label="pin, dots every 90° of the crank")
     right.plot([], [], "o", color=VERMILION, markersize=4, label="thinnest film")
     for axes in (left, right):
         axes.legend(loc="upper left", bbox_to_anchor=(0, 0.0), ncols=2)
     where = "bearing" if "bearing_load" in run.case else place.replace("_", " ")
-    words = f"thinnest film {1e6 * thickness[thinnest]:.3g} µm of {1e6 * clearance:.4g} µm, crank at {angle[thinnest] % np.degrees(run_cycle(run)):.1f}°"
+    words = f"thinnest film {1e6 * thickness[thinnest]:.3g} µm of {1e6 * clearance:.4g} µm, crank at {angle[thinnest] % cycle:.1f}°"
     drawing.suptitle(f"{language.current.keep(name)}: {where}, {words}")
     return drawing
 
@@ -67,17 +73,18 @@ def run_cycle(run: Run) -> float:
     return 2 * np.pi * float(turns[0]) if turns else run.cycle
 
 
-def draw_orbit(axes: Axes, track: np.ndarray, angle: np.ndarray, thinnest: int) -> None:
-    """One orbit of complex places over the clearance, with the crank's quarters and the thinnest film."""
+def draw_orbit(axes: Axes, track: np.ndarray, angle: np.ndarray, thinnest: int, cycle: float) -> None:
+    """One orbit of complex places over the clearance, with the crank's quarters, which are counted within the cycle [deg], and the
+    thinnest film."""
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 361))
     axes.plot(circle.imag, circle.real, color=BLACK, linewidth=1)
     axes.plot(0.5 * circle.imag, 0.5 * circle.real, color=GREY, linewidth=0.4, linestyle=":")
     axes.plot(track.imag, track.real, color=BLUE)
-    quarters = np.arange(90 * np.ceil(angle.min() / 90 - 1e-6), angle.max() + 1e-6, 90)[:-1]
-    for quarter in quarters:
+    first = 90 * np.ceil(angle.min() / 90 - 1e-6)
+    for quarter in np.arange(first, min(angle.max(), first + cycle - 90) + 1e-6, 90):
         row = int(np.argmin(np.abs(angle - quarter)))
         axes.plot(track[row].imag, track[row].real, "o", color=BLUE, markersize=2)
-        axes.annotate(f"{(quarter - quarters[0]) % 5760:.0f}", (track[row].imag, track[row].real), (2, 2), textcoords="offset points",
+        axes.annotate(f"{quarter % cycle:.0f}", (track[row].imag, track[row].real), (2, 2), textcoords="offset points",
                       fontsize=6, color=BLUE)
     axes.plot(track[thinnest].imag, track[thinnest].real, "o", color=VERMILION, markersize=4)
     axes.plot([0, track[thinnest].imag / abs(track[thinnest])], [0, track[thinnest].real / abs(track[thinnest])], color=VERMILION,

@@ -18,8 +18,10 @@ from gudgeon.plots.style import (
     WIDTH,
 )
 from gudgeon.results import Run
+from gudgeon.run import cycles_turned
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import MultipleLocator
 
 COLOURS = (BLUE, VERMILION, GREEN, BLACK, ORANGE, PURPLE, SKY)
 
@@ -47,18 +49,33 @@ def plot_column(axis: Axes, runs: Sequence[Run], column: str, over: str = "crank
     shown, factor = prefixed(unit, np.concatenate(values))
     for run, column_values, colour in zip(runs, values, COLOURS * len(runs)):
         rows = rows_of_cycle(run, cycle)
-        x = 1e3 * run["time"][rows] if over == "time" else np.degrees(run["crank_angle"][rows])
-        axis.plot(x, factor * column_values[rows], color=colour, label=run.name)
+        x, order = 1e3 * run["time"][rows], slice(None)
+        if over != "time":
+            x, order = crank_angles(run["crank_angle"][rows], None if cycle is None else run.cycle)
+        axis.plot(x, factor * column_values[rows][order], color=colour, label=run.name)
         if cycle is None and len(runs) == 1:
             shade_uncertified(axis, run, x)
+        if cycle is not None and over != "time":
+            axis.xaxis.set_major_locator(MultipleLocator(90))
     axis.set_ylabel(f"{column.replace('_', ' ')}\n[{shown}]" if shown else column.replace("_", " "))
 
 
+def crank_angles(angle: np.ndarray, cycle: float | None) -> tuple[np.ndarray, np.ndarray | slice]:
+    """Crank angles [deg] for an axis, and the rows in their order: of one cycle of this length [rad] counted within it, or as they
+    are."""
+    if cycle is None:
+        return np.degrees(angle), slice(None)
+    within = np.degrees(np.mod(angle + 1e-9, cycle))
+    order = np.argsort(within, kind="stable")
+    return within[order], order
+
+
 def rows_of_cycle(run: Run, cycle: int | None) -> slice:
-    """The rows of one whole cycle of a run, or all rows."""
+    """The rows of one whole cycle of a run, or all rows. The last one ends where the cycle ends whose answers are in the summary."""
     if cycle is None:
         return slice(None)
-    travel = np.abs(run["crank_angle"] - run["crank_angle"][0]) / run.cycle
+    begin, length = (float(run.summary.get(f"cycle_{name}", (np.nan, ""))[0]) for name in ("start", "duration"))
+    travel = cycles_turned(run["time"], run["crank_angle"], run.cycle, begin + length if np.isfinite(begin + length) else None)
     whole = max(int(travel[-1] + 1e-6), 1)
     wanted = cycle if cycle >= 0 else whole + cycle
     found = np.flatnonzero((travel >= wanted - 1e-9) & (travel <= wanted + 1 + 1e-9))

@@ -78,13 +78,16 @@ def draw_bearings(cycles: Cycles) -> Drawing:
         x, y = force.mean(axis=1)
         x, y = np.append(x, x[0]), np.append(y, y[0])
         axis.plot(np.arctan2(y, x), np.hypot(x, y) / 1e3, color=BLUE)
-        for mark in marks:
+        # two of the marks are close together where the gas is thin: their numbers go to different sides
+        for mark, (right, up) in zip(marks, ((2, 3), (-3, 3), (2, 3), (2, -8))):
             axis.plot(np.arctan2(y[mark], x[mark]), np.hypot(x[mark], y[mark]) / 1e3, "o", color=VERMILION, markersize=2.5)
             axis.annotate(
-                f"{np.degrees(cycles.place[mark]):.0f}", (np.arctan2(y[mark], x[mark]), np.hypot(x[mark], y[mark]) / 1e3),
-                fontsize=6, xytext=(2, 3), textcoords="offset points", color=VERMILION,
+                f"{round(np.degrees(cycles.place[mark])) % round(np.degrees(cycles.length))}", (np.arctan2(y[mark], x[mark]), np.hypot(x[mark], y[mark]) / 1e3),
+                fontsize=6, xytext=(right, up), ha="left" if right > 0 else "right", textcoords="offset points", color=VERMILION,
             )
-        axis.set_title(name.replace(", ", ",\n") + " [kN]", pad=6)
+        axis.set_title(name.replace(", ", ",\n") + ("" if ", " in name else "\n") + " [kN]", pad=6)
+        axis.set_theta_zero_location("N")   # x, or the outward axis of the rod, points upwards and y to the right, as in the other pictures
+        axis.set_theta_direction(-1)
         axis.set_xticks(np.radians([0, 90, 180, 270]))
         axis.yaxis.set_major_locator(MaxNLocator(3))
         axis.tick_params(labelsize=5.5, labelcolor=GREY, pad=0)
@@ -100,7 +103,7 @@ def draw_indicator(cycles: Cycles) -> Drawing:
     for k in range(min(cycles.number, 40)):
         axis.plot(volume[k], pressure[k], color=GREY, linewidth=0.3)
     axis.plot(volume.mean(axis=0), pressure.mean(axis=0), color=BLUE)
-    axis.set_xlabel("cylinder volume [cm³]")
+    axis.set_xlabel(f"{cycles.run.volume} [cm³]")
     axis.set_ylabel("cylinder pressure [bar]")
     axis.set_title(cycles.run.name)
     return drawing

@@ -47,8 +47,24 @@ def pinkus_sternlicht(run: Run, angles: np.ndarray) -> np.ndarray:
     squeeze = motion.normal_rate[:, None] / clearance
     cosine, sine = -np.cos(angles), -np.sin(angles)
     bracket = wedge * sine * (2 + eps * cosine) - squeeze * (4 * cosine + eps * (2 * cosine**2 - 1))
-    scale = 6 * float(run.parameter("lubrication", "viscosity")) * (pin_radius / clearance) ** 2
+    scale = 6 * viscosity_of(run)[:, None] * (pin_radius / clearance) ** 2
     return np.maximum(0.0, scale * bracket / ((2 + eps**2) * (1 + eps * cosine) ** 2))
+
+
+def viscosity_of(run: Run) -> np.ndarray:
+    """Dynamic viscosity of the film [Pa s], one value for each row: it varies with the temperature in a run with `&heat`."""
+    return run["film_viscosity"] if "film_viscosity" in run else np.full(len(run["time"]), run.viscosity)
+
+
+def kinematic_viscosity_of(run: Run) -> np.ndarray:
+    """That over the density [m2/s], which follows the temperature of the film by the table for lubricating oils of ASTM D1250; or the
+    number in the case."""
+    if given := float(run.parameter("lubrication", "kinematic_viscosity", 0.0)):
+        return np.full(len(run["time"]), given)
+    density = float(run.parameter("lubrication", "density"))
+    temperature = run["film_temperature"] if "film_temperature" in run else float(run.parameter("lubrication", "temperature"))
+    expansion = 0.6278 / density**2 * (temperature - 288.15)
+    return viscosity_of(run) / (density * np.exp(-expansion * (1 + 0.8 * expansion)))
 
 
 def inertia_function(v: np.ndarray) -> np.ndarray:
@@ -85,12 +101,11 @@ def oscillating(run: Run, angles: np.ndarray, points: int = 160) -> np.ndarray:
     frequency = np.abs(run["crank_speed"])[:, None]
     speed, acceleration = (values[:, None] for values in ideal_rod_motion(run))
     phasor = pin_radius * (speed - 1j * acceleration / frequency)
-    v = clearance**2 * frequency / (4 * float(run.parameter("lubrication", "kinematic_viscosity"))) * eta**2
+    v = clearance**2 * frequency / (4 * kinematic_viscosity_of(run)[:, None]) * eta**2
     resistance = inertia_function(v)
     flow = _integral(resistance / eta**2, theta)[:, -1:] / _integral((resistance + 1j * v) / eta**3, theta)[:, -1:]
-    viscosity = float(run.parameter("lubrication", "viscosity"))
     gradient = (
-        2 * viscosity * pin_radius / clearance**2 * phasor * (eta * resistance - flow * (resistance + 1j * v)) / eta**3
+        2 * viscosity_of(run)[:, None] * pin_radius / clearance**2 * phasor * (eta * resistance - flow * (resistance + 1j * v)) / eta**3
     )
     pressure = _integral(gradient.real, theta)
     pressure -= _integral(pressure, theta)[:, -1:] / (2 * np.pi)

@@ -31,7 +31,7 @@ def first_cycle(run: Run) -> np.ndarray:
 def indicator(axis: Axes, run: Run, look: dict) -> None:
     rows = first_cycle(run)
     axis.plot(1e6 * run["cylinder_volume"][rows], 1e-5 * run["cylinder_pressure"][rows], **look)
-    axis.set_xlabel("volume [cm³]")
+    axis.set_xlabel(f"{run.volume} [cm³]")
     axis.set_xlim(left=0)
     axis.set_ylim(bottom=0)
 

@@ -169,7 +169,7 @@ def label(run: Run) -> str:
         return "oscillating film"
     clearance = f"c = {1e3 * run.clearance:.3g} mm"
     if law:
-        return f"oil of {float(run.parameter('lubrication', 'viscosity')):.3g} Pa s, {clearance}"
+        return f"oil of {run.viscosity:.3g} Pa s, {clearance}"
     if "friction" in run.case:
         return f"friction {float(run.parameter('friction', 'coefficient')):.3g}, {clearance}"
     return clearance

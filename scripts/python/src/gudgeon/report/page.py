@@ -62,6 +62,9 @@ MOTION = (
     "small_end_eccentricity_x",
     "small_end_eccentricity_y",
     "small_end_phase",
+    "main_bearing_eccentricity_x",
+    "main_bearing_eccentricity_y",
+    "main_bearing_phase",
     "pin_angle",
     "piston_offset",
     "piston_tilt",
@@ -70,13 +73,7 @@ MOTION = (
 
 #: Plots over time: column, title, unit shown, factor; with the curve of the ideal joint if there is such a run.
 OVER_TIME = (
-    ("film_thickness", "Film thickness (below 0: penetration)", "µm", 1e6),
     ("pin_force", "Pin force", "kN", 1e-3),
-    ("normal_force", "Contact force", "kN", 1e-3),
-    ("crank_pin_film_thickness", "Crank pin: film thickness (below 0: penetration)", "µm", 1e6),
-    ("crank_pin_normal_force", "Crank pin: contact force", "kN", 1e-3),
-    ("small_end_film_thickness", "Small end: film thickness (below 0: penetration)", "µm", 1e6),
-    ("small_end_normal_force", "Small end: contact force", "kN", 1e-3),
     ("pin_angle", "Angle of the pin", "°", 180 / np.pi),
     ("pin_speed", "Speed of the pin", "rad/s", 1.0),
     ("crank_speed", "Crank speed", "rad/s", 1.0),
@@ -98,7 +95,12 @@ OVER_TIME = (
     ("energy_residual", "Energy residual", "J", 1.0),
 )
 
-#: Plots over time of every bearing, by the part of their columns behind the place: title, unit shown, factor.
+#: Plots over time of every bearing, by the part of their columns behind the place: title, unit shown, factor. Those of the first
+#: come before all other plots.
+FIRST_OF_BEARINGS = (
+    ("film_thickness", "film thickness (below 0: penetration)", "µm", 1e6),
+    ("normal_force", "contact force", "kN", 1e-3),
+)
 OF_BEARINGS = (
     ("eccentricity_ratio", "eccentricity over the clearance", "-", 1.0),
     ("asperity_force", "force of the asperities", "kN", 1e-3),
@@ -150,14 +152,13 @@ def with_sizes(run: Run) -> dict[str, np.ndarray]:
 
 def over_time(columns: dict[str, np.ndarray], run: Run) -> list[tuple[str, str, str, float]]:
     """The plots over time: those of every run, of every bearing, and of the columns that the case asks for by name."""
-    found = list(OVER_TIME)
+    def of_bearings(listed: Sequence[tuple[str, str, str, float]]) -> list[tuple[str, str, str, float]]:
+        return [(pre + name, (named_bearing(columns, place) + title).capitalize(), unit, factor)
+                for place, (pre, _) in PLACES.items() for name, title, unit, factor in listed]
+
+    found = of_bearings(FIRST_OF_BEARINGS) + list(OVER_TIME) + of_bearings(OF_BEARINGS)
     if "crankpin_force" in columns:
-        found.insert(2, ("crankpin_force", "Crank pin force", "kN", 1e-3))
-    for pre, place in PLACES.values():
-        named = "" if pre == "" and not any(f"{other}eccentricity_x" in columns for other, _ in PLACES.values() if other) else f"{place}: "
-        found += [(pre + name, (named + title).capitalize(), unit, factor) for name, title, unit, factor in OF_BEARINGS]
-        if pre == "main_bearing_":
-            found.append((f"{pre}film_thickness", f"{place}: film thickness".capitalize(), "µm", 1e6))
+        found.insert(found.index(OVER_TIME[0]) + 1, ("crankpin_force", "Crank pin force", "kN", 1e-3))
     known = {name for name, *_ in found} | {name for name in columns if name.endswith(("_x", "_y")) and name[:-2] in columns}
     asked = [part.strip() for part in str(run.parameter("output", "columns", "")).split(",")]
     for name in asked:
@@ -165,6 +166,13 @@ def over_time(columns: dict[str, np.ndarray], run: Run) -> list[tuple[str, str, 
             unit, factor = UNITS.get(run.units.get(name, ""), (run.units.get(name, ""), 1.0))
             found.append((name, name.replace("_", " ").capitalize(), unit, factor))
     return found
+
+
+def named_bearing(columns: dict[str, np.ndarray], place: str) -> str:
+    """The name of a bearing before a quantity; empty for the piston pin's if there is no other."""
+    pre, name = PLACES[place]
+    others = any(f"{other}eccentricity_x" in columns for other, _ in PLACES.values() if other)
+    return f"{name}: " if pre or others else ""
 
 
 def is_informative(values: np.ndarray) -> bool:
@@ -242,7 +250,8 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
                 phase="phase",
             )
         )
-    for place, title in (("small_end", "Orbit of the pin in the small end"), ("crank_pin", "Orbit of the crank pin")):
+    for place, title in (("small_end", "Orbit of the pin in the small end"), ("crank_pin", "Orbit of the crank pin"),
+                         ("main_bearing", "Orbit of the journal in the main bearing")):
         if f"{place}_phase" in columns:
             found.append(
                 plane(
@@ -266,15 +275,15 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
     if "cylinder_volume" in columns:
         found.append(
             plane(
-                "p–V diagram", "volume [cm³]", "pressure [bar]", ("cylinder_volume", "cylinder_pressure"), (1e6, 1e-5)
+                "p–V diagram", f"{run.volume} [cm³]", "pressure [bar]", ("cylinder_volume", "cylinder_pressure"), (1e6, 1e-5)
             )
         )
     return found
 
 
 def warnings(run: Run) -> list[str]:
-    """What the program says of a run: how far it is certified, and why it ended early."""
-    found = []
+    """What a reader has to know of a run besides its notes: how far it is certified, why it ended early, what its answers lack."""
+    found = answers.warnings(run)
     if (until := run.certified_until) is not None:
         found.append(
             f"The run is certified up to {1e3 * until:.4g} ms: beyond, shaded in the plots, single values are not reliable. How far "
@@ -442,6 +451,7 @@ def page(
         "bore": bore,
         "crank_pin": orbit_of(run, columns, "crank_pin"),
         "small_end": orbit_of(run, columns, "small_end"),
+        "main_bearing": orbit_of(run, columns, "main_bearing"),
         "engine": engine,
         "speed": float(run.parameter("initial", "crank_speed")),
         "modes": sum(name.startswith("rod_mode_") for name in used),
@@ -560,7 +570,7 @@ def time_line(columns: dict[str, np.ndarray], run: Run) -> dict:
         least = min(float(thickness.min()), of_summary("min_film_thickness", np.inf))
         return {
             "column": "film_thickness",
-            "title": "film thickness",
+            "title": named_bearing(columns, "piston_pin") + "film thickness",
             "unit": "µm",
             "factor": 1e6,
             "range": [min(0.0, least), float(thickness.max())],

@@ -28,12 +28,13 @@
   const pressure = scene.angles ? new Int8Array(await unpack("pressure")) : null;
   const time = column.time, begin = time[0], end = time[scene.rows - 1];
   const joint = scene.clearance > 0;
-  const bore = scene.bore, crankPin = scene.crank_pin, smallEnd = scene.small_end;
+  const bore = scene.bore, crankPin = scene.crank_pin, smallEnd = scene.small_end, mainBearing = scene.main_bearing;
   document.body.classList.toggle("ideal", !joint);
   document.body.classList.toggle("boreless", !bore);
   document.body.classList.toggle("tight-crank-pin", !crankPin);
   document.body.classList.toggle("tight-small-end", !smallEnd);
-  const beside = 2 * joint + Boolean(smallEnd) + Boolean(crankPin) + Boolean(bore);   // views beside that of the mechanism
+  document.body.classList.toggle("tight-main-bearing", !mainBearing);
+  const beside = 2 * joint + Boolean(smallEnd) + Boolean(crankPin) + Boolean(mainBearing) + Boolean(bore);   // views beside that of the mechanism
   document.body.classList.toggle("unmagnified", !beside);
   document.body.style.setProperty("--beside", beside);
   document.body.classList.toggle("single", !scene.engine);
@@ -405,6 +406,7 @@
     if (joint) { drawJoint(); drawOrbit("orbit", "", scene.clearance, scene.peak.eccentricity_ratio); }
     if (smallEnd) drawOrbit("small-end-orbit", "small_end_", smallEnd.clearance, smallEnd.peak_ratio);
     if (crankPin) drawOrbit("crank-pin-orbit", "crank_pin_", crankPin.clearance, crankPin.peak_ratio);
+    if (mainBearing) drawOrbit("main-bearing-orbit", "main_bearing_", mainBearing.clearance, mainBearing.peak_ratio);
     if (bore) drawBore();
     if (scene.engine) drawEngine();
     drawTimeline();
