@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import errno
 import os
 import random
 import resource
@@ -128,7 +129,7 @@ def test_kills(gudgeon: Gudgeon, work: Path, kills: int, rng: random.Random) -> 
 
 def test_signals(gudgeon: Gudgeon, work: Path) -> None:
     """Ctrl-C and similar signals end all cases of a batch, including those that have not begun."""
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU):
         folder = work / number.name
         process = gudgeon.start("-o", folder, "-j", "1", *LONG, ROOT / "cases" / "sim_I.nml", FLORES / "dry_0100um.nml")
         wait_for((folder / "sim_I.csv.part").exists, "sim_I.csv.part")
@@ -141,6 +142,7 @@ def test_signals(gudgeon: Gudgeon, work: Path) -> None:
               f"{number.name}: one line for each case: {lines}")
         summary = (folder / "sim_I.summary.csv").read_text()
         check("status,interrupted at t" in summary.replace('"', ""), f"{number.name}: the summary states the interruption")
+        check((folder / "sim_I.state.nml").is_file(), f"{number.name}: the state is written")
         whole(folder, number.name)
     folder = work / "twin"   # is not begun after its case was interrupted, and an earlier one does not stay beside the new case
     folder.mkdir()
@@ -335,6 +337,42 @@ ssize_t write(int file, const void *bytes, size_t n) {
 """
 
 
+REFUSALS = r"""
+#define _GNU_SOURCE
+#include <errno.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#define REFUSE(call) if (getenv(call)) { errno = atoi(getenv(call)); return -1; }
+int fsync(int file) { (void)file; REFUSE("FSYNC") return 0; }
+int fallocate(int file, int mode, off_t at, off_t length) { (void)file; (void)mode; (void)at; (void)length; REFUSE("OTHERS") return 0; }
+int flock(int file, int way) { (void)file; (void)way; REFUSE("OTHERS") return 0; }
+int statx(int folder, const char *restrict path, int flags, unsigned mask, struct statx *restrict file) {
+  (void)folder; (void)path; (void)flags; (void)mask; (void)file; errno = EPERM; return -1;
+}
+"""
+
+
+def test_calls_not_offered(gudgeon: Gudgeon, work: Path) -> None:
+    """A file system or a sandbox without statx, and without fsync, locks or reserved space: the run is done. A disk that fails is told."""
+    source, library = work / "refusals.c", work / "refusals.so"
+    source.write_text(REFUSALS)
+    built = subprocess.run(["gcc", "-shared", "-fPIC", "-o", library, source], capture_output=True, text=True, check=False)
+    if built.returncode:
+        print(f"skipped: calls that are not offered (gcc: {built.stderr[:100]})")
+        return
+    for number in (errno.EINVAL, errno.ENOSYS, errno.EOPNOTSUPP, errno.EIO):
+        folder = work / str(number)
+        others = "" if number == errno.EIO else f"{number}"
+        how = {"env": {**os.environ, "LD_PRELOAD": str(library), "FSYNC": str(number), **({"OTHERS": others} if others else {})}}
+        status, _, err = gudgeon.run("-o", folder, *SHORT, FLORES / "dry_0100um.nml", **how)
+        summary = folder / "dry_0100um.summary.csv"
+        if number == errno.EIO:
+            check(status == 5 and os.strerror(number) in err, f"fsync that fails is told: {status} {err}")
+        else:
+            check(status == 0 and not err and summary.is_file(), f"fsync and other calls give {os.strerror(number)}: {status} {err}")
+            whole(folder, f"calls give {os.strerror(number)}")
+
+
 def test_power_cut(gudgeon: Gudgeon, work: Path) -> None:
     """The order of writes to the disk, recorded by a library that intercepts the calls. The content of a file is on the disk before
     the file gets its name, all names are on the disk before the program ends, and an earlier summary that says "done" is removed
@@ -490,7 +528,8 @@ def main() -> int:
     signal.signal(signal.SIGINT, signal.default_int_handler)   # a background job and its children would ignore the signal
     gudgeon = Gudgeon(options.program or program_built())
     with tempfile.TemporaryDirectory(prefix="faults") as work:
-        for test in (test_signals, test_full_disk, test_full_disk_has_summary, test_planted, test_standard_input, test_power_cut,
+        for test in (test_signals, test_full_disk, test_full_disk_has_summary, test_planted, test_standard_input, test_calls_not_offered,
+                     test_power_cut,
                      test_folders, test_standard_output, test_two_runs, test_batch):
             folder = Path(work) / test.__name__
             folder.mkdir()

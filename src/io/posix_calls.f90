@@ -1,22 +1,17 @@
 !> Interfaces of calls of the C library and their structures on Linux; posix_files provides procedures that use them.
 module posix_calls
-  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_short, c_ptr, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_int32_t, c_long, c_short, c_ptr, c_size_t
   implicit none
   private
   public :: file_status_t, poll_t
   public :: c_open, c_read, c_realpath, c_write, c_fsync, c_ftruncate, c_flock, &
-    c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_rmdir, c_opendir, c_readdir, c_closedir, c_isatty, &
-    c_errno_location, c_strerror_r, c_exit
+    c_fallocate, c_stat, c_lstat, c_fstat, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_rmdir, c_opendir, c_readdir, &
+    c_closedir, c_isatty, c_errno_location, c_strerror_r, c_exit
 
-  !> The struct statx of Linux, which is the same on all processors.
+  !> The struct stat of 64-bit Linux, in halves of 8 bytes: the device is in the first two, the number of the file in the next two,
+  !> its length in the 13th and 14th. Its mode is the 5th or 7th: see `kind_of`.
   type, bind(c) :: file_status_t
-    integer(c_int) :: mask = 0, block_size = 0
-    integer(c_long) :: attributes = 0
-    integer(c_int) :: links = 0, user = 0, group = 0
-    integer(c_short) :: mode = 0, spare = 0
-    integer(c_long) :: number = 0, length = 0, blocks = 0, known_attributes = 0, times(8) = 0
-    integer(c_int) :: special(2) = 0, device(2) = 0
-    integer(c_long) :: rest(14) = 0
+    integer(c_int32_t) :: halves(64) = 0
   end type file_status_t
 
   !> The struct pollfd of C.
@@ -66,12 +61,21 @@ module posix_calls
       integer(c_int), value :: descriptor, mode
       integer(c_long), value :: offset, length
     end function c_fallocate
-    integer(c_int) function c_statx(folder, path, flags, mask, file) bind(c, name='statx') result(status)
+    integer(c_int) function c_stat(path, file) bind(c, name='stat') result(status)
       import :: c_char, c_int, file_status_t
-      integer(c_int), value :: folder, flags, mask
       character(kind=c_char), intent(in) :: path(*)
       type(file_status_t), intent(inout) :: file
-    end function c_statx
+    end function c_stat
+    integer(c_int) function c_lstat(path, file) bind(c, name='lstat') result(status)
+      import :: c_char, c_int, file_status_t
+      character(kind=c_char), intent(in) :: path(*)
+      type(file_status_t), intent(inout) :: file
+    end function c_lstat
+    integer(c_int) function c_fstat(descriptor, file) bind(c, name='fstat') result(status)
+      import :: c_int, file_status_t
+      integer(c_int), value :: descriptor
+      type(file_status_t), intent(inout) :: file
+    end function c_fstat
     integer(c_int) function c_poll(files, number, milliseconds) bind(c, name='poll') result(ready)
       import :: c_int, c_long, poll_t
       type(poll_t), intent(inout) :: files

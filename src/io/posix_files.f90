@@ -4,7 +4,7 @@ module posix_files
   use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_short, c_null_char, c_ptr, &
     c_size_t, c_loc, c_f_pointer, c_associated
   use posix_calls, only: file_status_t, poll_t, c_open, c_read, c_realpath, c_write, c_fsync, c_ftruncate, c_flock, &
-    c_fallocate, c_statx, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_rmdir, &
+    c_fallocate, c_stat, c_lstat, c_fstat, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_rmdir, &
     c_opendir, c_readdir, c_closedir, c_isatty, c_errno_location, c_strerror_r
   use posix_signals, only: signal_set_t, hold_interrupts, restore_interrupts, interrupted, ignore_write_signals
   implicit none
@@ -18,14 +18,13 @@ module posix_files
 
   !> Error numbers of Linux, and two of this module: the file is neither a regular file nor a folder, and a symbolic link that must
   !> not be followed.
-  integer, parameter :: error_no_entry = 2, error_interrupted = 4, error_locked = 11, error_exists = 17, &
+  integer, parameter :: error_no_entry = 2, error_interrupted = 4, error_locked = 11, error_no_access = 13, error_exists = 17, &
     error_not_directory = 20, error_is_directory = 21, error_invalid = 22, error_no_space = 28, error_broken_pipe = 32, &
-    error_not_regular = -1, error_is_link = -2
+    error_no_call = 38, error_not_supported = 95, error_not_regular = -1, error_is_link = -2
 
-  !> Flags of open and statx, as far as they are equal on all processors.
+  !> Flags of open, as far as they are equal on all processors.
   integer(c_int), parameter :: read_only = 0, write_only = 1, read_and_write = 2, o_creat = 64, o_excl = 128, o_append = 1024, &
     o_nonblock = 2048, o_cloexec = 524288, to_read = read_only, to_append = ior(write_only, o_append)
-  integer(c_int), parameter :: at_working_folder = -100, at_link_itself = 256, at_empty_path = 4096, basic_status = 2047
 
   integer, parameter :: longest_name = 255   !! bytes of a name in a folder
 
@@ -85,16 +84,17 @@ contains
     character(len=*), intent(in) :: path
     integer, intent(in) :: way
     integer, intent(out) :: descriptor, status
+    type(file_status_t) :: file
     integer :: ignored
     descriptor = c_open(path//c_null_char, ior(way, ior(o_nonblock, o_cloexec)), 0_c_int)
     status = outcome(descriptor)
     if (status /= 0) return
-    select case (kind_of_file(descriptor, '', at_empty_path))
+    select case (kind_of(file, c_fstat(descriptor, file)))
     case (kind_regular)
       if (way == to_read) return
       if (is_file(path, descriptor)) return
       status = error_no_entry
-      if (kind_of_file(at_working_folder, path, at_link_itself) == kind_link) status = error_is_link
+      if (kind_of(file, c_lstat(path//c_null_char, file)) == kind_link) status = error_is_link
     case (kind_folder)
       status = error_is_directory
     case default
@@ -119,9 +119,9 @@ contains
     integer, intent(in) :: descriptor
     type(file_status_t) :: named, opened
     answer = .false.
-    if (c_statx(at_working_folder, path//c_null_char, at_link_itself, basic_status, named) /= 0) return
-    if (c_statx(descriptor, ''//c_null_char, at_empty_path, basic_status, opened) /= 0) return
-    answer = all(named%device == opened%device) .and. named%number == opened%number
+    if (c_lstat(path//c_null_char, named) /= 0) return
+    if (c_fstat(descriptor, opened) /= 0) return
+    answer = all(named%halves(:4) == opened%halves(:4))   ! device and number
   end function is_file
 
   !> Length of a file in bytes; negative if it does not exist.
@@ -129,17 +129,20 @@ contains
     character(len=*), intent(in) :: path
     type(file_status_t) :: file
     length = -1
-    if (c_statx(at_working_folder, path//c_null_char, 0_c_int, basic_status, file) == 0) length = file%length
+    if (c_stat(path//c_null_char, file) == 0) length = transfer(file%halves(13:14), length)
   end function file_length
 
-  !> The kind of a file, from statx; 0 if it cannot be determined.
-  integer function kind_of_file(folder, path, flags) result(kind_bits)
-    integer(c_int), intent(in) :: folder, flags
-    character(len=*), intent(in) :: path
-    type(file_status_t) :: file
+  !> The kind of a file; 0 if it cannot be determined. The place of the mode depends on the processor: it is where the root folder is
+  !> a folder.
+  integer function kind_of(file, status) result(kind_bits)
+    type(file_status_t), intent(in) :: file
+    integer(c_int), intent(in) :: status   !! of the call that has filled `file`
+    type(file_status_t) :: root
     kind_bits = 0
-    if (c_statx(folder, path//c_null_char, flags, basic_status, file) == 0) kind_bits = iand(int(file%mode), kind_mask)
-  end function kind_of_file
+    if (status /= 0) return
+    if (c_stat('/'//c_null_char, root) /= 0) return
+    kind_bits = iand(file%halves(merge(5, 7, iand(root%halves(5), kind_mask) == kind_folder)), kind_mask)
+  end function kind_of
 
   !> One call of read: `done` bytes of `buffer` are filled, 0 at the end of the file.
   subroutine read_bytes(descriptor, buffer, done, status)
@@ -159,14 +162,16 @@ contains
     if (c_associated(c_realpath(path//c_null_char, buffer))) whole = buffer(:index(buffer, c_null_char) - 1)
   end function absolute_path
 
-  !> Wait until everything written to a file is on its disk.
+  !> Wait until everything written to a file is on its disk. Does not wait if the file system does not offer it.
   subroutine synchronise_file(descriptor, status)
     integer, intent(in) :: descriptor
     integer, intent(out) :: status
     status = outcome(c_fsync(descriptor))
+    if (any(status == [error_invalid, error_no_call, error_not_supported])) status = 0
   end subroutine synchronise_file
 
-  !> Wait until the names in the folder of `path` are on its disk. Does not wait if the file system does not support it.
+  !> Wait until the names in the folder of `path` are on its disk. Does not wait if the file system does not offer it, or if the
+  !> folder may be written but not read.
   subroutine synchronise_folder(path, status)
     character(len=*), intent(in) :: path   !! path of a file in the folder
     integer, intent(out) :: status
@@ -174,9 +179,9 @@ contains
     descriptor = c_open('./'(:merge(0, 2, index(path, '/') > 0))//path(:index(path, '/', back=.true.))//c_null_char, &
                         ior(read_only, o_cloexec), 0_c_int)
     status = outcome(descriptor)
-    if (status /= 0) return
+    if (status == error_no_access) status = 0
+    if (descriptor < 0) return
     call synchronise_file(descriptor, status)
-    if (status == error_invalid) status = 0
     call close_file(descriptor, ignored)
   end subroutine synchronise_folder
 
@@ -239,6 +244,7 @@ contains
   subroutine make_directory(path, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: status
+    type(file_status_t) :: file
     integer :: i
     do i = 2, len(path)
       if (path(i:i) == '/') status = c_mkdir(path(:i - 1)//c_null_char, folder_mode)
@@ -246,7 +252,7 @@ contains
     status = outcome(c_mkdir(path//c_null_char, folder_mode))
     if (status /= error_exists) return
     status = 0
-    if (kind_of_file(at_working_folder, path, 0_c_int) /= kind_folder) status = error_not_directory
+    if (kind_of(file, c_stat(path//c_null_char, file)) /= kind_folder) status = error_not_directory
   end subroutine make_directory
 
   !> Remove a folder, if it is empty.

@@ -5,9 +5,10 @@ module posix_signals
   private
   public :: signal_set_t, hold_interrupts, restore_interrupts, interrupted, ignore_write_signals
 
-  integer(c_int), parameter :: signal_hangup = 1, signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, &
-    signal_file_size = 25
-  integer(c_int), parameter :: held(3) = [signal_hangup, signal_interrupt, signal_terminate]
+  integer(c_int), parameter :: signal_hangup = 1, signal_interrupt = 2, signal_user_1 = 10, signal_user_2 = 12, &
+    signal_pipe = 13, signal_terminate = 15, signal_processor_time = 24, signal_file_size = 25
+  integer(c_int), parameter :: held(6) = [signal_hangup, signal_interrupt, signal_user_1, signal_user_2, signal_terminate, &
+    signal_processor_time]
   integer(c_int), parameter :: signal_block = 0, signal_set_mask = 2
   integer(c_intptr_t), parameter :: ignore_handler = 1, error_handler = -1
 
@@ -46,9 +47,9 @@ module posix_signals
 
 contains
 
-  !> Hold SIGINT, SIGTERM and SIGHUP from now on: instead of ending the program they are reported by `interrupted`. A signal that
-  !> the program was started to ignore remains ignored. Must be called before any thread is started. `before` receives the previous
-  !> mask, for `restore_interrupts`.
+  !> Hold SIGINT, SIGTERM and SIGHUP from now on, and what clusters send before they end a job: SIGUSR1, SIGUSR2 and SIGXCPU. Instead
+  !> of ending the program they are reported by `interrupted`. A signal that the program was started to ignore remains ignored. Must
+  !> be called before any thread is started. `before` receives the previous mask, for `restore_interrupts`.
   subroutine hold_interrupts(before)
     type(signal_set_t), intent(out), optional :: before
     type(signal_set_t) :: set, old
