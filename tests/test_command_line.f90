@@ -148,9 +148,16 @@ contains
     call refused(check, ['a/x.nml', 'b/x.nml'], &
                  'a/x.nml and b/x.nml: their results would have the same names; run them separately with --out')
     call refused(check, [character(len=12) :: 'x.nml', 'x.ideal.nml'], &
-                 'x.nml and x.ideal.nml: their results would have the same names; run them separately with --out')
-    call refused(check, [character(len=12) :: 'x.wear.nml', 'x.nml'], &
-                 'x.nml and x.wear.nml: their results would have the same names; run them separately with --out')
+                 'x.ideal.nml: x has results whose names begin with x.ideal: give another name with --name')
+    call refused(check, [character(len=14) :: '--name', 'a.film_history', 'x.nml'], &
+                 'x.nml: a has results whose names begin with a.film_history: give another name with --name')
+    call refused(check, ['c/x.runs.nml'], &
+                 'c/x.runs.nml: x has results whose names begin with x.runs: give another name with --name')
+    call refused(check, [character(len=14) :: 'sweep', 'x.chunks.nml'], &
+                 'x.chunks.nml: x has results whose names begin with x.chunks: give another name')
+    call refused(check, ['--name=-x', 'x.nml    '], '--name -x: must not begin with -'//hint)
+    call refused(check, ['--name=a'//achar(10)//'b', 'x.nml     '], &
+                 '--name a\x0Ab: must not contain control characters or bytes that are not UTF-8'//hint)
     call refused(check, ['--'//achar(27)//achar(10)], '--\x1B\x0A: unknown option'//hint)
   end subroutine test_refusals
 

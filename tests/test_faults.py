@@ -256,6 +256,36 @@ def test_planted(gudgeon: Gudgeon, work: Path) -> None:
     check(status == 0 and not err, f"pipes in the place of results: {status} {err}")
 
 
+def test_names(gudgeon: Gudgeon, work: Path) -> None:
+    """A case whose results would have the names of another one's is refused, the results that stand there stay; what a terminal obeys
+    in the name of a file does not reach standard output."""
+    results = work / "results"
+    shutil.copy(FLORES / "dry_0100um.nml", work / "c.nml")
+    status, _, err = gudgeon.run("-o", results, *SHORT[:2], "--certify", work / "c.nml")
+    check(status == 0, f"c: {status} {err}")
+    before = {path.name: path.read_bytes() for path in results.iterdir()}
+    for name in before:   # a case with the name of each result that it could replace
+        if not name.endswith(".csv") or name == "c.csv":
+            continue
+        other = work / f"{name.removesuffix('.csv')}.nml"
+        shutil.copy(FLORES / "ideal.nml", other)
+        status, _, err = gudgeon.run("-o", results, *SHORT, other)
+        check(status == 2 and err.count("\n") == 1 and "give another name with --name" in err, f"{other.name}: {status} {err}")
+        status, _, err = gudgeon.run("-o", results, *SHORT, "--name", other.stem, FLORES / "ideal.nml")
+        check(status == 2 and err.count("\n") == 1, f"--name {other.stem}: {status} {err}")
+    check({path.name: path.read_bytes() for path in results.iterdir()} == before, "the results of c stay")
+    own = results / "c.resolved.nml"
+    status, _, err = gudgeon.run("-o", results, *SHORT, "--name", "c", own)
+    check(status == 2 and "would be replaced" in err and own.read_bytes() == before[own.name], f"a case file is not replaced: {status} {err}")
+    name = "a\x1b[31mb\nc"
+    shutil.copy(FLORES / "ideal.nml", work / f"{name}.nml")
+    (work / f"s{name}.nml").write_text("&study case = 'c.nml' /\n&parameter key = 'joint.clearance', values = '1e-5, 2e-5' /\n")
+    for words in ((*SHORT, f"{name}.nml"), ("--check", f"{name}.nml"), ("sweep", *SHORT[:2], f"s{name}.nml")):
+        _, out, err = gudgeon.run("-o", name, *words, cwd=work)
+        lines = (out + err).splitlines()
+        check("\x1b" not in out + err and lines and all(r"a\x1B" in line for line in lines if ".csv" in line), f"{words}: {lines}")
+
+
 def test_standard_input(gudgeon: Gudgeon, work: Path) -> None:
     """A case can be read from /dev/stdin; a signal ends the program while it waits for the case."""
     case = FLORES / "ideal.nml"
@@ -528,7 +558,7 @@ def main() -> int:
     signal.signal(signal.SIGINT, signal.default_int_handler)   # a background job and its children would ignore the signal
     gudgeon = Gudgeon(options.program or program_built())
     with tempfile.TemporaryDirectory(prefix="faults") as work:
-        for test in (test_signals, test_full_disk, test_full_disk_has_summary, test_planted, test_standard_input, test_calls_not_offered,
+        for test in (test_signals, test_full_disk, test_full_disk_has_summary, test_planted, test_names, test_standard_input, test_calls_not_offered,
                      test_power_cut,
                      test_folders, test_standard_output, test_two_runs, test_batch):
             folder = Path(work) / test.__name__

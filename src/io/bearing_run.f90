@@ -53,9 +53,9 @@ contains
     character(len=:), allocatable :: table
     integer :: place
 
-    self%file = path
+    self%file = printable(path, 200)
     self%base = base
-    self%line = path//': correct'
+    self%line = self%file//': correct'
     self%notice = ''
     call values%check()
     if (.not. values%problems%is_structural) then
@@ -156,7 +156,7 @@ contains
     status = 'done'
     if (allocated(error)) then
       status = error%message
-      error%message = printable(self%file, 200)//': '//error%message
+      error%message = self%file//': '//error%message
     end if
     call write_text(self%base//'.resolved.nml', self%resolved, file_error)
     if (.not. allocated(file_error)) call write_history(self%base, self%history, self%digits, file_error)
@@ -166,11 +166,11 @@ contains
     associate (found => self%history%summary)
       self%line = self%file//': '//integer_text(found%cycles)//' cycles, thinnest film '// &
         short_text(1e6_dp*found%min_thickness)//' um, largest pressure '//short_text(1e-6_dp*found%max_pressure)//' MPa -> '// &
-        self%base//'.film_history.csv'
+        printable(self%base, 1000)//'.film_history.csv'
     end associate
     self%notice = history_remarks(self%history, size(self%duty%time) > 1)
-    if (self%notice /= '') self%notice = printable(self%file, 200)//': '//replaced(self%notice, newline, &
-      newline//printable(self%file, 200)//': ')
+    if (self%notice /= '') self%notice = self%file//': '//replaced(self%notice, newline, &
+      newline//self%file//': ')
   end subroutine go
 
   !> The rows `quantity,value,unit`.

@@ -16,6 +16,7 @@ module case_runner
   use report_files, only: result_suffixes
   use run_start, only: try_start
   use case_run, only: case_run_t, name_file
+  use state_file, only: state_suffix
   use bearing_run, only: bearing_run_t
   use result_file, only: fail_with_file
   use posix_files, only: absolute_path, make_directory, interrupted
@@ -156,7 +157,7 @@ contains
     if (allocated(job%error)) call name_file(job%path, job%error)
   end subroutine provide_films
 
-  !> Check that the results do not replace a table that the case reads, such as motor.csv beside motor.nml.
+  !> Check that the results do not replace a table that the case reads, such as motor.csv beside motor.nml, or its own file.
   subroutine keep_tables(case, base, error)
     type(case_t), intent(in) :: case
     character(len=*), intent(in) :: base
@@ -170,6 +171,10 @@ contains
       if (.not. allocated(error) .and. allocated(case%load)) call refuse_table('&bearing_load table', case%load%curve)
       if (allocated(error)) return
     end do
+    if (all(absolute_path(case%file) /= [character(len=4096) :: absolute_path(base//'.resolved.nml'), &
+      absolute_path(base//state_suffix)])) return
+    call fail(error, printable(case%file, 200)//': would be replaced by the results: give another folder with '// &
+      '--out, or another name with --name', status_command_line)
 
   contains
 

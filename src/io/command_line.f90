@@ -1,10 +1,11 @@
 !> Reads the command line: options, overrides and case files. The arguments are passed as an array so that it can be tested.
 module command_line
   use error_handling, only: error_t, fail, status_command_line
-  use text_tools, only: printable, lowercase, nearest_word, likely_word, case_name
+  use text_tools, only: printable, is_clean, lowercase, nearest_word, likely_word, case_name
   use case_templates, only: template_kinds
   use accuracy_presets, only: accuracy_levels
   use case_schema, only: key_table_t, case_schema_of, find_group, is_listed
+  use report_files, only: ending_of_results
   implicit none
   private
   public :: command_line_t, parse_command_line, program_arguments, help_text, option_t, options, subjects, shells, &
@@ -52,6 +53,7 @@ module command_line
   character(len=*), parameter :: subjects = 'case, bearing, study, oils, results, schema'   !! of --reference, beside groups
   character(len=*), parameter :: shells = 'bash, zsh, fish'                   !! of --completion
   character(len=*), parameter :: progress_words = 'auto, always, never'       !! of --progress
+  character(len=*), parameter :: chunks = '.chunks'   !! ending of the folder in which a study collects results
   character(len=*), parameter :: standard_input = '/dev/stdin'
   integer, parameter :: most_jobs = 1024
 
@@ -220,6 +222,8 @@ contains
         line%name = value
         if (value == '' .or. index(value, '/') > 0 .or. value == '.' .or. value == '..') &
           wanted = 'must be a name without folder; --out gives the folder'
+        if (index(value, '-') == 1) wanted = 'must not begin with -'
+        if (.not. is_clean(value)) wanted = 'must not contain control characters or bytes that are not UTF-8'
       case ('reference')
         line%reference = value
         call case_schema_of(table)
@@ -248,21 +252,29 @@ contains
       if (allocated(wanted)) call refuse('--'//trim(name)//' '//printable(value, 60)//': '//wanted)
     end subroutine set_option
 
-    !> Check that no two cases would write files of the same name: a/x.nml and b/x.nml, or x.nml and x.ideal.nml, x.film.nml, ...
+    !> Check that no two files would have results of the same name, as a/x.nml and b/x.nml, and that no name ends as those of the
+    !> results of another one.
     subroutine check_names()
-      character(len=12), parameter :: suffixes(7) = [character(len=12) :: '', '.ideal', '.events', '.summary', '.film', '.wear', &
-        '.certificate']
-      character(len=:), allocatable :: one, other
+      character(len=:), allocatable :: one, path, ending
       integer :: first, second
       do first = 1, size(line%cases)
+        path = printable(trim(line%cases(first)), 100)
         one = case_name(trim(line%cases(first)))
-        do second = 1, size(line%cases)
-          other = case_name(trim(line%cases(second)))
-          if (second == first .or. all(other /= one//suffixes .or. len(other) /= len_trim(one//suffixes))) cycle
-          call fail(error, printable(trim(line%cases(first)), 100)//' and '//printable(trim(line%cases(second)), 100)// &
+        do second = first + 1, size(line%cases)
+          if (one /= case_name(trim(line%cases(second)))) cycle
+          call fail(error, path//' and '//printable(trim(line%cases(second)), 100)// &
             ': their results would have the same names; run them separately with --out', status_command_line)
           return
         end do
+        if (line%name /= '') one = line%name
+        ending = ending_of_results(one)
+        if (line%sweep) ending = ''
+        if (line%sweep .and. index(one, chunks, back=.true.) == max(2, len(one) - len(chunks) + 1)) ending = chunks
+        if (ending == '') cycle
+        call fail(error, path//': '//printable(one(:len(one) - len(ending)), 100)//' has results whose names begin with '// &
+          printable(one, 100)//': give another name'//trim(merge('            ', ' with --name', line%sweep)), &
+          status_command_line)
+        return
       end do
     end subroutine check_names
   end subroutine parse_command_line

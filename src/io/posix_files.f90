@@ -132,8 +132,8 @@ contains
     if (c_stat(path//c_null_char, file) == 0) length = transfer(file%halves(13:14), length)
   end function file_length
 
-  !> The kind of a file; 0 if it cannot be determined. The place of the mode depends on the processor: it is where the root folder is
-  !> a folder.
+  !> The kind of a file; 0 if it cannot be determined. The place of the mode depends on the processor: it is where the root folder
+  !> is a folder.
   integer function kind_of(file, status) result(kind_bits)
     type(file_status_t), intent(in) :: file
     integer(c_int), intent(in) :: status   !! of the call that has filled `file`

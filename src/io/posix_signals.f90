@@ -47,9 +47,9 @@ module posix_signals
 
 contains
 
-  !> Hold SIGINT, SIGTERM and SIGHUP from now on, and what clusters send before they end a job: SIGUSR1, SIGUSR2 and SIGXCPU. Instead
-  !> of ending the program they are reported by `interrupted`. A signal that the program was started to ignore remains ignored. Must
-  !> be called before any thread is started. `before` receives the previous mask, for `restore_interrupts`.
+  !> Hold SIGINT, SIGTERM and SIGHUP from now on, and what clusters send before they end a job: SIGUSR1, SIGUSR2 and SIGXCPU.
+  !> Instead of ending the program they are reported by `interrupted`. A signal that the program was started to ignore remains
+  !> ignored. Must be called before any thread is started. `before` receives the previous mask, for `restore_interrupts`.
   subroutine hold_interrupts(before)
     type(signal_set_t), intent(out), optional :: before
     type(signal_set_t) :: set, old

@@ -8,14 +8,35 @@ module report_files
   use wear_file, only: write_wear_file
   implicit none
   private
-  public :: result_suffixes, write_report_files
+  public :: result_suffixes, write_report_files, ending_of_results
 
   !> Suffixes of all files of results, the summaries first.
   character(len=*), parameter :: result_suffixes(*) = [character(len=32) :: '.summary.csv', '.ideal.summary.csv', '.csv', &
     '.events.csv', '.film.csv', '.wear.csv', '.certificate.csv', '.ideal.csv', '.ideal.events.csv', '.film_history.csv', &
     '.piston_pin.film_history.csv', '.crank_pin.film_history.csv']
 
+  !> Suffixes of the results of studies, beside which a case has its own.
+  character(len=*), parameter :: study_suffixes(3) = [character(len=32) :: '.runs.csv', '.cycles.csv', '.strobe.csv']
+
 contains
+
+  !> The ending that a case of this name has in common with a result of a case or study whose name is shorter: the trace of c.events
+  !> would be the list of contacts of c. Empty if there is none.
+  pure function ending_of_results(name) result(ending)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: ending
+    character(len=*), parameter :: all_suffixes(*) = [result_suffixes, study_suffixes]
+    integer :: i, k, length
+    ending = ''
+    do i = 1, size(all_suffixes)
+      do k = 1, size(result_suffixes)
+        length = len_trim(all_suffixes(i)) - len_trim(result_suffixes(k))
+        if (length < 1 .or. length >= len(name)) cycle
+        if (all_suffixes(i)(length + 1:) /= result_suffixes(k)) cycle
+        if (name(len(name) - length + 1:) == all_suffixes(i)(:length)) ending = all_suffixes(i)(:length)
+      end do
+    end do
+  end function ending_of_results
 
   !> Write them. With a film with memory the fields are its own. Error: a file cannot be written (status_output).
   subroutine write_report_files(base, case, report, error)

@@ -12,7 +12,7 @@ module run_line
   use joint_case, only: joint_case_t
   use result_notes, only: notes_on_results, relative_residual
   use number_text, only: short_text, quantity_text
-  use text_tools, only: integer_text, replaced
+  use text_tools, only: integer_text, printable, replaced
   implicit none
   private
   public :: lines_for_user
@@ -34,7 +34,7 @@ contains
     associate (s => report%statistics, f => report%figures)
       text = 'ended early'
       if (report%status == 'done') text = report%status
-      text = case%name//': '//text//'; '//short_text(abs(f%crank_travel)/two_pi, digits)//' revolutions in '// &
+      text = printable(case%name, 200)//': '//text//'; '//short_text(abs(f%crank_travel)/two_pi, digits)//' revolutions in '// &
         quantity_text(f%time, 's')
       if (report%periods%is_on .and. report%status == 'done') text = text//', '//period_text(report%periods)
       do i = 1, n_places
@@ -52,8 +52,9 @@ contains
       if (allocated(report%histories)) text = text//histories_text(report%histories)
       if (report%exponent%is_known) text = text//'; Lyapunov exponent '//short_text(report%exponent%mean, digits)//' per revolution'
       if (remark /= '') text = text//'; '//remark
-      text = text//newline//'  '//path//'.csv; '//integer_text(s%accepted)//' steps, '//integer_text(s%evaluations)// &
-        ' evaluations, '//short_text(wall_time, digits)//' s; relative energy residual '//short_text(relative_residual(report), 2)
+      text = text//newline//'  '//printable(path, 1000)//'.csv; '//integer_text(s%accepted)//' steps, '// &
+        integer_text(s%evaluations)//' evaluations, '//short_text(wall_time, digits)//' s; relative energy residual '// &
+        short_text(relative_residual(report), 2)
     end associate
     notes = notes_on_results(case, report)
     if (notes /= '') text = text//newline//'  note: '//replaced(notes, newline, newline//'  note: ')

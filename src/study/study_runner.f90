@@ -164,20 +164,13 @@ contains
     type(study_tasks_t), intent(inout) :: tasks
     type(chunk_t), allocatable :: found(:)
     logical :: is_found(tasks%sweep%first:tasks%sweep%last)
-    character(len=:), allocatable :: table
-    integer :: i, size_of, rows, failed, status, ignored
+    integer :: i, size_of
     associate (sweep => tasks%sweep)
-      is_found = .false.
-      call read_whole(sweep%path//trim(suffixes(of_runs)), table, status)
-      call count_rows(tasks, table, chunk_t(1, sweep%design%runs), rows, failed)
-      if (rows == sweep%design%runs) then
-        is_found = .true.
-      else
-        call remove_file(sweep%path//trim(suffixes(of_runs)), ignored)
-      end if
+      is_found = is_whole(tasks, sweep%path, chunk_t(1, sweep%design%runs))
       call find_chunks(tasks, found)
       do i = 1, size(found)
-        is_found(max(found(i)%first, sweep%first):min(found(i)%last, sweep%last)) = .true.
+        if (is_whole(tasks, base_of(tasks, found(i)), found(i))) &
+          is_found(max(found(i)%first, sweep%first):min(found(i)%last, sweep%last)) = .true.
       end do
       tasks%began = count(is_found)
       tasks%done = tasks%began
@@ -196,6 +189,30 @@ contains
       end do
     end associate
   end subroutine find_missing
+
+  !> Whether the results of a chunk, or of all runs, are there with every row: the row of a run says how many the other files have
+  !> of it. (A power cut may take rows, or leave zeros in their place.) Otherwise its table of runs is removed: they are missing.
+  logical function is_whole(tasks, base, chunk)
+    type(study_tasks_t), intent(in) :: tasks
+    character(len=*), intent(in) :: base   !! path of its results, without suffix
+    type(chunk_t), intent(in) :: chunk
+    character(len=:), allocatable :: text
+    integer :: kind, rows, failed, status, ignored, wanted(n_kinds)
+    wanted = 0
+    is_whole = .true.
+    do kind = n_kinds, 1, -1   ! runs first
+      if (.not. (tasks%has_kind(kind) .and. is_whole)) cycle
+      call read_whole(base//trim(suffixes(kind)), text, status)
+      if (kind == of_runs) then
+        call count_rows(tasks, text, chunk, rows, failed, wanted)
+      else
+        call count_rows(tasks, text, chunk, rows, failed)
+      end if
+      is_whole = status == 0 .and. rows == wanted(kind) .and. index(text, header_of(tasks%sweep, kind)) == 1 .and. &
+        index(text, newline, back=.true.) == len(text) .and. index(text, achar(0)) == 0
+    end do
+    if (.not. is_whole) call remove_file(base//trim(suffixes(of_runs)), ignored)
+  end function is_whole
 
   !> The chunks whose results are there, in the order of their runs.
   subroutine find_chunks(tasks, found)
@@ -311,8 +328,15 @@ contains
     type(chunk_t), allocatable :: found(:)
     type(result_file_t) :: file
     character(len=:), allocatable :: path, text, header
-    integer :: i, kind, status, rows, failed, ignored
+    integer :: i, kind, status, ignored
     call find_chunks(tasks, found)
+    do i = 1, size(found)
+      path = base_of(tasks, found(i))
+      if (is_whole(tasks, path, found(i))) cycle
+      call fail(error, printable(path, 200)//trim(suffixes(of_runs))//': damaged; the same command runs its rows again', &
+        status_output)
+      return
+    end do
     do kind = 1, n_kinds
       if (.not. tasks%has_kind(kind)) cycle
       header = header_of(tasks%sweep, kind)
@@ -322,14 +346,6 @@ contains
       do i = 1, size(found)
         path = base_of(tasks, found(i))
         call read_whole(path//trim(suffixes(kind)), text, status)
-        call count_rows(tasks, text, found(i), rows, failed)
-        if (index(text, header) /= 1 .or. index(text, newline, back=.true.) /= len(text) .or. &
-            kind == of_runs .and. rows /= found(i)%last - found(i)%first + 1) then
-          call remove_file(path//trim(suffixes(of_runs)), ignored)
-          call fail(error, path//trim(suffixes(kind))//': damaged; the same command runs its rows again', status_output)
-          call file%abandon()
-          return
-        end if
         call file%append(text(len(header) + 1:))
       end do
       call file%synchronise()
@@ -340,15 +356,25 @@ contains
     call remove_chunks(tasks)
   end subroutine join
 
-  !> Number of rows of the runs of a chunk in the text of a table of runs, and how many of these runs failed.
-  subroutine count_rows(tasks, text, chunk, rows, failed)
+  !> Number of rows of the runs of a chunk in the text of a table of runs, how many of these runs failed, and how many rows the
+  !> files of this chunk have.
+  subroutine count_rows(tasks, text, chunk, rows, failed, wanted)
     type(study_tasks_t), intent(in) :: tasks
     character(len=*), intent(in) :: text
     type(chunk_t), intent(in) :: chunk
     integer, intent(out) :: rows, failed
-    integer :: at, length, run, first, last
+    integer, intent(out), optional :: wanted(n_kinds)
+    character(len=:), allocatable :: header
+    integer :: at, length, run, first, last, fields(of_cycles:of_strobes), kind
     rows = 0
     failed = 0
+    if (present(wanted)) then
+      wanted = 0
+      wanted(of_runs) = chunk%last - chunk%first + 1
+      header = header_of(tasks%sweep, of_runs)
+      at = index(header, ',strobes')
+      fields = [size(tasks%sweep%design%keys) + 3, 1 + count([(header(run:run) == ',', run=1, at)])]
+    end if
     at = index(text, newline) + 1
     do while (at <= len(text) .and. at > 1)
       length = index(text(at:), newline) - 1
@@ -361,6 +387,13 @@ contains
           rows = rows + 1
           call find_field(line, size(tasks%sweep%design%keys) + 2, first, last)
           if (line(first:last) /= 'done') failed = failed + 1
+          if (present(wanted) .and. line(first:last) == 'done') then
+            do kind = of_cycles, of_strobes
+              call find_field(line, fields(kind), first, last)
+              if (tasks%has_kind(kind) .and. verify(line(first:last), '0123456789') == 0 .and. last - first < 9) &
+                wanted(kind) = wanted(kind) + int(whole_number(line(first:last)))
+            end do
+          end if
         end if
       end associate
       at = at + length + 1
@@ -415,7 +448,7 @@ contains
     logical :: is_joined
     associate (sweep => tasks%sweep, done => tasks%done, began => tasks%began)
       total = sweep%last - sweep%first + 1
-      line = sweep%study%name//': '//integer_text(total)//' runs'
+      line = printable(sweep%study%name, 200)//': '//integer_text(total)//' runs'
       if (began > 0) line = line//', '//integer_text(began)//' of them already done'
       if (done > began) line = line//'; '//short_text(wall_time)//' s, '//rate_text((done - began)/max(wall_time, 1e-6_dp))
       if (tasks%noted > 0) line = line//'; '//integer_text(tasks%noted)//' with notes (column notes)'
@@ -426,9 +459,9 @@ contains
       end if
       if (is_joined) then
         call remove_chunks(tasks)
-        line = line//'; '//sweep%path//trim(suffixes(of_runs))
+        line = line//'; '//printable(sweep%path, 1000)//trim(suffixes(of_runs))
       else
-        line = line//'; '//tasks%folder
+        line = line//'; '//printable(tasks%folder, 1000)
       end if
       failed = failures(tasks)
       if (allocated(tasks%error)) then
