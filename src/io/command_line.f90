@@ -257,6 +257,7 @@ contains
     subroutine check_names()
       character(len=:), allocatable :: one, path, ending
       integer :: first, second
+      one = ''
       do first = 1, size(line%cases)
         path = printable(trim(line%cases(first)), 100)
         one = case_name(trim(line%cases(first)))
