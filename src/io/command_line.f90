@@ -258,6 +258,8 @@ contains
       character(len=:), allocatable :: one, path, ending
       integer :: first, second
       one = ''
+      path = ''
+      ending = ''
       do first = 1, size(line%cases)
         path = printable(trim(line%cases(first)), 100)
         one = case_name(trim(line%cases(first)))
