@@ -280,10 +280,11 @@ contains
 
     !> Whether the file, which is in the folder by its name, is outside it once links are followed.
     logical function leads_out()
-      character(len=:), allocatable :: path, whole
+      character(len=:), allocatable :: path, whole, folder
       path = self%folder//'/'//values%values(i)%text(first:)
       whole = absolute_path(path)
-      leads_out = whole /= path .and. index(whole, absolute_path(self%folder)//'/') /= 1   ! it is the path if there is no file
+      folder = absolute_path(self%folder)//'/'
+      leads_out = whole /= path .and. index(whole, folder) /= 1   ! it is the path if there is no file
     end function leads_out
   end subroutine refuse_files
 

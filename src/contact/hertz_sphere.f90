@@ -73,13 +73,13 @@ contains
     elastic_energy = self%elastic_force(penetration)*penetration/(self%exponent + 1)
   end function elastic_energy
 
-  !> The force does not depend on the length of the bearing.
   !> Whether the stiffness is Hertz's, and not given.
   pure logical function is_of_spheres(self)
     class(hertz_sphere_t), intent(in) :: self
     is_of_spheres = .not. self%given_stiffness > 0
   end function is_of_spheres
 
+  !> The force does not depend on the length of the bearing.
   pure logical function needs_length()
     needs_length = .false.
   end function needs_length
