@@ -13,9 +13,10 @@
 !> orthogonal to the first. The change of both over one period is a 2 x 2 matrix; the measurement continues with its eigenvector of
 !> the larger eigenvalue.
 !>
-!> All scenes are integrated with the tolerance 1e-11; differences are 1e-7 of the natural sizes of the state. If a difference
-!> shrinks by more than a factor of about 1e3 in a quarter of a revolution, it is lost in the errors of the integration: exponents
-!> below -30 are upper bounds.
+!> All scenes are integrated with the tolerance 1e-11; differences are 1e-5 of the natural sizes of the state. Within a quarter
+!> of a revolution some directions may grow a hundredfold while others shrink by 1e-8; errors of the integration that are not far
+!> smaller than the difference would turn it and bias the mean. If a difference shrinks by more than a factor of about 1e5 in a
+!> quarter of a revolution, it is lost in these errors: exponents below -45 are upper bounds.
 module lyapunov
   use kinds, only: dp
   use constants, only: two_pi

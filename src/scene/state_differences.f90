@@ -8,7 +8,7 @@ module state_differences
   public :: differences_t, new_differences, most_directions, first_size
 
   integer, parameter :: most_directions = 2            !! followed in the first revolutions
-  real(dp), parameter :: first_size = 1e-7_dp          !! initial size of a difference, relative to the natural sizes of the state
+  real(dp), parameter :: first_size = 1e-5_dp          !! initial size of a difference, relative to the natural sizes of the state
 
   !> Differences of the other scenes from the first one, each of the size 1 relative to the natural sizes, and orthogonal.
   type :: differences_t
