@@ -7,6 +7,11 @@
 !> at most that too: differences d that shrink by the factor q from period to period leave d q/(1 - q). Without this second
 !> condition a motion that approaches its limit slowly would be accepted too early. Differences below a hundredth of the tolerance
 !> are not tested for this, since they are errors of the integration. Periods are multiples of the period of the gas.
+!>
+!> A motion that approaches its limit from alternating sides has small differences over two periods first. Before a period is told,
+!> its divisors are tested: one over which the states differ by the tolerance at most is the period; one over which they still
+!> approach each other, and may come as near, is waited for. Since less than the tolerance is to come over the period itself, states
+!> that differ by more than three tolerances will not.
 module period_watch
   use kinds, only: dp
   use constants, only: two_pi
@@ -187,39 +192,47 @@ contains
   subroutine look_for_period(self)
     class(period_watch_t), intent(inout) :: self
     real(dp) :: range(size(self%at)), newest, oldest, any_of_them, factor
-    integer :: p, k
+    integer :: p, k, told
     do p = self%forcing, self%longest, self%forcing
       if (self%made < (repeats_needed + 1)*p) return
       range = self%smallest_range
       do k = self%made - p + 1, self%made
         range = max(range, self%high(:, mod(k, depth)) - self%low(:, mod(k, depth)))
       end do
-      newest = largest(self%made - p + 1, self%made)
+      newest = largest(self%made - p + 1, self%made, p)
       if (newest > self%tolerance) cycle
-      any_of_them = largest(self%made - repeats_needed*p + 1, self%made)
+      any_of_them = largest(self%made - repeats_needed*p + 1, self%made, p)
       if (any_of_them > self%tolerance) cycle
-      oldest = largest(self%made - repeats_needed*p + 1, self%made - (repeats_needed - 1)*p)
+      oldest = largest(self%made - repeats_needed*p + 1, self%made - (repeats_needed - 1)*p, p)
       if (newest > noise*self%tolerance) then
         if (.not. newest < oldest) cycle
         factor = (newest/oldest)**(1.0_dp/(repeats_needed - 1))
         if (newest*factor > self%tolerance*(1 - factor)) cycle
       end if
-      self%period = p
+      do told = self%forcing, p - 1, self%forcing   ! the divisors
+        if (mod(p, told) /= 0) cycle
+        newest = largest(self%made - p + 1, self%made, told)
+        if (newest <= self%tolerance) exit
+        if (newest <= 3*self%tolerance .and. newest < largest(self%made - 2*p + 1, self%made - p, told)) return
+      end do
+      told = min(told, p)
+      self%period = told
       self%found_after = self%made
-      self%difference = newest
-      self%duration = self%times(mod(self%made, depth)) - self%times(mod(self%made - p, depth))
+      self%difference = largest(self%made - told + 1, self%made, told)
+      self%duration = self%times(mod(self%made, depth)) - self%times(mod(self%made - told, depth))
       return
     end do
 
   contains
 
-    !> Largest difference of states `first` to `last` from those one period earlier, relative to the ranges of their components.
-    real(dp) function largest(first, last)
-      integer, intent(in) :: first, last
+    !> Largest difference of states `first` to `last` from those some revolutions earlier, relative to the ranges of their
+    !> components.
+    real(dp) function largest(first, last, earlier)
+      integer, intent(in) :: first, last, earlier
       integer :: j
       largest = 0
       do j = first, last
-        largest = max(largest, maxval(abs(self%states(:, mod(j, depth)) - self%states(:, mod(j - p, depth)))/range))
+        largest = max(largest, maxval(abs(self%states(:, mod(j, depth)) - self%states(:, mod(j - earlier, depth)))/range))
       end do
     end function largest
   end subroutine look_for_period
