@@ -25,6 +25,8 @@ contains
     call gas_takes_two_revolutions(check)
     call free_crank(check)
     call exponent_is_the_decay(check)
+    call exponents_of_orbits(check)
+    call shortest_period(check)
     call exponent_in_lasting_contact(check)
     call no_exponent(check)
     call exponents_of_machines(check)
@@ -198,6 +200,29 @@ contains
     call check%close_to(trace%report%exponent%mean, log(second/first)/10, 0.02_dp*abs(log(second/first)/10), &
       'damped crank: the exponent is the rate of convergence of the speed')
   end subroutine exponent_is_the_decay
+
+  !> Logarithms of the largest multipliers of orbits, from variational equations of an independent program; the means of twenty
+  !> revolutions have errors of some 1e-5.
+  subroutine exponents_of_orbits(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    trace = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: until, exponent, 'initial.crank_speed=1000', &
+      'output.samples_per_revolution=1', 'output.ideal_twin=F'])
+    call check%close_to(trace%report%exponent%mean, log(0.186731491_dp), 1e-4_dp, 'exponent of an orbit with impacts')
+    trace = run_case(film, [character(len=long) :: until, exponent, 'output.samples_per_revolution=1', 'output.ideal_twin=F'])
+    call check%close_to(trace%report%exponent%mean, log(1.31831949e-4_dp), 1e-4_dp, 'exponent of an orbit with a film')
+  end subroutine exponents_of_orbits
+
+  !> A motion with the multipliers 0.8405 and -0.6961 (from variational equations of its orbit of one revolution) approaches it from
+  !> alternating sides: two revolutions repeat first.
+  subroutine shortest_period(check)
+    class(checks_t), intent(inout) :: check
+    type(trace_t) :: trace
+    trace = run_case('cases/friction/lugre.nml', [character(len=long) :: until, 'output.samples_per_revolution=1', &
+      'output.ideal_twin=F'])
+    call check%that(trace%report%periods%period == 1, 'the shortest period is told')
+    call check%that(trace%report%periods%found_after < 40, 'the shortest period is told soon')
+  end subroutine shortest_period
 
   !> A pin that comes to rest on its bearing keeps the impact speed of its last contact for ever. Whether this contact begins before
   !> the measurement or in its first revolutions, neighbouring motions converge.

@@ -32,6 +32,8 @@ module contact_law
     procedure :: damped_force
     procedure :: damped_force_slopes
     procedure :: find_share
+    procedure :: remembers_impact => forgets_it
+    procedure, non_overridable :: free_impact_speed
     procedure, nopass :: is_elastic => no
   end type contact_law_t
 
@@ -41,6 +43,26 @@ contains
   pure logical function no()
     no = .false.
   end function no
+
+  !> Whether the damping of a contact depends on the speed at which it began, for as long as it lasts. The default is no.
+  pure logical function forgets_it(self)
+    class(contact_law_t), intent(in) :: self
+    forgets_it = .false.
+  end function forgets_it
+
+  !> Impact speed [m/s] of a contact that has not begun with an impact, since it is present at the start: that of the free impact
+  !> which reaches this penetration. It loses its speed while m v^2 [chi - ln(1 + chi)]/chi^2 becomes the elastic energy; without
+  !> damping m v^2/2. The mass is in the deceleration by the elastic force. The energy of a rate is added.
+  pure real(dp) function free_impact_speed(self, penetration, penetration_rate, deceleration) result(speed)
+    class(contact_law_t), intent(in) :: self
+    real(dp), intent(in) :: penetration, penetration_rate   !! [m], > 0; [m/s]
+    real(dp), intent(in) :: deceleration                    !! of the penetration by the elastic force [m/s^2]
+    real(dp) :: share
+    share = 0.5_dp - self%damping/3   ! two terms of the series, where the closed form cancels
+    if (self%damping > 1e-4_dp) share = (self%damping - log(1 + self%damping))/self%damping**2
+    speed = sqrt(penetration_rate**2 + max(0.0_dp, deceleration)/share* &
+      self%geometry%elastic_energy(penetration)/self%geometry%elastic_force(penetration))
+  end function free_impact_speed
 
   !> Prepare the law for a bearing, before the first evaluation of the force.
   subroutine prepare(self, bearing)
@@ -65,9 +87,9 @@ contains
   !> most `ratio_limit`. In this ratio an impact slower than `least_impact_speed` has that speed. Without this limit the damping
   !> would become a discontinuous switch as the impact speed vanishes, and the equations stiffer than any time scale of the contact.
   !> Such an impact loses less energy: a free impact of speed v has the restitution for chi v/least_impact_speed, and becomes more
-  !> elastic as v decreases, as for metals. A pin that is in its bearing at t = 0 has the impact speed 0 and the damping of this
-  !> least speed, and comes to rest where the elastic force balances its load. The difference from the elastic force has the sign of
-  !> the rate, so that the law always dissipates energy. The force is continuous in both arguments.
+  !> elastic as v decreases, as for metals. A pin that is in its bearing at t = 0 has the impact speed of `free_impact_speed`. The
+  !> difference from the elastic force has the sign of the rate, so that the law always dissipates energy. The force is continuous
+  !> in both arguments.
   pure function normal_force(self, penetration, penetration_rate, impact_speed) result(force)
     class(contact_law_t), intent(in) :: self
     real(dp), value, intent(in) :: penetration       !! |e| - c [m]; the force is 0 if it is not positive

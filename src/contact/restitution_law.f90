@@ -19,6 +19,7 @@ module restitution_law
     procedure :: parameters
     procedure :: conflict
     procedure :: prepare
+    procedure :: remembers_impact
     procedure(damping_for), deferred, nopass :: damping_for
     procedure, nopass :: least_restitution => zero
   end type restitution_law_t
@@ -42,8 +43,9 @@ contains
     call list%add('dissipation', self%dissipation, &
       'factor a in force = elastic force (1 + a rate), instead of restitution; 0: from restitution', &
       's/m', '> 0', default='0.0', family='loss', usual='1e-3 to 100')
-    call list%add('least_impact_speed', self%least_impact_speed, 'impacts slower than this are damped as if they had this speed', &
-      'm/s', '>= 1e-9 and <= 1', default='1.0e-5', usual='1e-7 to 0.1')
+    call list%add('least_impact_speed', self%least_impact_speed, &
+      'impacts slower than this are damped as if they had this speed; a contact that lasts keeps the damping of its first '// &
+      'touch: then give the dissipation', 'm/s', '>= 1e-9 and <= 1', default='1.0e-5', usual='1e-7 to 0.1')
   end subroutine parameters
 
   subroutine prepare(self, bearing)
@@ -53,6 +55,12 @@ contains
     if (.not. self%has_own_damping) self%damping = self%damping_for(self%restitution)
     call self%prepare_geometry(bearing)
   end subroutine prepare
+
+  !> Without a `dissipation`: the law divides by the impact speed.
+  pure logical function remembers_impact(self)
+    class(restitution_law_t), intent(in) :: self
+    remembers_impact = self%restitution < 1 .and. .not. self%dissipation > 0
+  end function remembers_impact
 
   !> Report a restitution near 0 for a law whose chi grows as 1/e.
   pure subroutine conflict(self, key, wanted)

@@ -1,6 +1,7 @@
 !> Notes on the results of a run: what no machine can do, and what the models do not describe.
 module result_notes
   use kinds, only: dp
+  use constants, only: two_pi
   use film_history, only: film_history_t
   use simulation, only: run_report_t
   use cycle_answers, only: cycle_quantities
@@ -16,6 +17,7 @@ module result_notes
 
   character(len=*), parameter :: undecided_pin = 'the friction of both dry bearings of the floating pin has the same moment: '// &
     'nothing decides in which one it turns, and its drift follows from inertia and the friction law near rest alone'
+  real(dp), parameter :: longest_cycle = 2*two_pi      !! of a machine [rad]
   real(dp), parameter :: thinnest_film = 10e-9_dp      !! below this oil is no continuous fluid, and no surface is smooth [m]
   real(dp), parameter :: smoothest = 0.1e-6_dp         !! roughness of polished surfaces [m]
   character(len=*), parameter :: no_exponent = 'no Lyapunov exponent: '
@@ -95,6 +97,11 @@ contains
       character(len=*), parameter :: too_much = ': no bearing carries it'
       real(dp) :: length, area, limit
       if (.not. joint%has_bearing()) return
+      if (allocated(joint%contact)) then
+        if (joint%contact%remembers_impact() .and. pin%longest_contact*abs(report%figures%crank_travel) > &
+            longest_cycle*report%figures%time) call add_line(name//'a contact lasts for more than two revolutions and keeps '// &
+          'the damping of its first touch, on which its loss depends: give &contact dissipation')
+      end if
       if (allocated(joint%film) .and. pin%min_film_thickness > 0) then
         if (pin%min_film_thickness < thinnest_film) then
           call add_line(name//'a film of '//quantity_text(pin%min_film_thickness, 'm')//' is thinner than 10 nm, where oil is '// &

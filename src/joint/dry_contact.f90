@@ -26,6 +26,7 @@ module dry_contact
     procedure :: find_slopes
     procedure, non_overridable :: find_friction_slopes
     procedure :: find_share
+    procedure :: free_impact_speed
     procedure :: add_columns
     procedure :: spread
   end type dry_contact_t
@@ -165,6 +166,13 @@ contains
     real(dp), intent(out) :: share, share_rate
     call self%contact%find_share(joint%penetration, joint%penetration_rate, outward_acceleration(joint, rates), share, share_rate)
   end subroutine find_share
+
+  pure real(dp) function free_impact_speed(self, joint, deceleration) result(speed)
+    class(dry_contact_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    real(dp), intent(in) :: deceleration
+    speed = self%contact%free_impact_speed(joint%penetration, joint%penetration_rate, deceleration)
+  end function free_impact_speed
 
   pure subroutine add_columns(self, joint, row)
     class(dry_contact_t), intent(in) :: self

@@ -75,6 +75,7 @@ module load_element
     procedure :: find_gap => round_gap
     procedure :: normal_force => no_force
     procedure :: find_share => no_loss
+    procedure :: free_impact_speed => no_impact
     procedure :: see_film => no_film
     procedure :: carry => carry_nothing
     procedure :: spread => on_a_line
@@ -166,6 +167,15 @@ contains
     share = 1
     share_rate = 0
   end subroutine no_loss
+
+  !> Impact speed [m/s] of a contact that is present at the start, whose elastic force decelerates the penetration as given.
+  !> Elements with a contact law override this.
+  pure real(dp) function no_impact(self, joint, deceleration) result(speed)
+    class(load_element_t), intent(in) :: self
+    type(joint_evaluation_t), intent(in) :: joint
+    real(dp), intent(in) :: deceleration   !! [m/s^2]
+    speed = joint%impact_speed
+  end function no_impact
 
   !> The film of the element: the motion on which it depends, the velocity with which it gives way [m/s], the share of the full film
   !> that acts, 0 if none does, and a further factor of its pressures.

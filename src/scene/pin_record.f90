@@ -125,6 +125,9 @@ contains
     if (self%joint > 0) known(of_penetration) = -figures%pin(self%pin)%min_film_thickness
     if (present(cycles)) call cycles%lower_to_peaks(self%pin, known)
     if (touches) then
+      associate (f => figures%pin(self%pin))
+        f%longest_contact = max(f%longest_contact, t - self%contact%time)
+      end associate
       known(of_penetration) = min(known(of_penetration), self%contact%max_penetration)
       known(of_normal_force) = self%contact%max_normal_force
     end if

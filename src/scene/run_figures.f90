@@ -16,6 +16,7 @@ module run_figures
     integer :: impacts_beyond_validity = 0    !! number of impacts faster than the contact law is valid for
     integer :: contacts_beyond_validity = 0   !! number of contacts deeper than the contact geometry is valid for
     real(dp) :: contact_time = 0              !! [s]
+    real(dp) :: longest_contact = 0           !! longest time for which one contact has lasted [s]
     real(dp) :: max_penetration = 0           !! [m]
     real(dp) :: max_entry_penetration = 0     !! penetration at the first accepted point of a contact [m]
     real(dp) :: max_force = 0                 !! magnitude of the force of the joint on the pin [N]

@@ -309,6 +309,7 @@ contains
     do i = 1, self%n_joints
       if (self%joints(i)%phase == phase_contact) call decide_at_wall(self, i, y)
       call decide_at_kink(self, i, y)
+      call find_impact_speed(self, i, 0.0_dp, y)
     end do
     call find_lost_forces(self, 0.0_dp, y)
     self%smooth_in_root = .not. self%entry_time < 0
@@ -319,13 +320,83 @@ contains
   end procedure prepare_start
 
   module procedure complete_state
+    real(dp) :: contact(2)
+    logical :: begins(self%n_joints)
+    integer :: i
     if (allocated(self%guide)) then
       if (self%guide%is_loose .and. .not. any(self%guide%touches)) call prepare_corners(self, y)
+      call find_corner_speeds(self, t, y, self%guide%touches .and. .not. self%guide%impact_speed > 0)
     end if
     if (allocated(self%given_load)) call self%given_load%start(self%crank_angle(t, y), self%start_speed)
+    begins = .false.
+    do i = 1, self%n_joints   ! in a bearing of another shape a pin may be in contact that was not
+      if (.not. may_touch(self%joints(i))) cycle
+      contact = penetration_and_rate(self%joints(i), y)
+      begins(i) = self%joints(i)%phase /= phase_contact .and. contact(1) > rounding*self%joints(i)%bearing%clearance
+      if (begins(i)) call self%joints(i)%begin_contact(contact(2))
+    end do
+    do i = 1, self%n_joints
+      if (begins(i) .or. .not. self%joints(i)%impact_speed > 0) call find_impact_speed(self, i, t, y)
+    end do
     call find_lost_forces(self, t, y)
     self%mode = mode_of(self)
+    do i = 1, self%n_joints
+      if (begins(i)) call find_sliding_direction(self, i, t, y, .true.)
+    end do
   end procedure complete_state
+
+  !> Find the impact speed of a pin that is in its bearing at the start and has not struck it: that of a free impact to this depth.
+  subroutine find_impact_speed(scene, i, t, y)
+    class(scene_t), intent(inout) :: scene
+    integer, intent(in) :: i
+    real(dp), intent(in) :: t, y(:)
+    type(evaluation_t) :: now
+    real(dp) :: contact(2), without
+    logical :: in_domain
+    if (scene%joints(i)%phase /= phase_contact) return
+    contact = penetration_and_rate(scene%joints(i), y)
+    if (contact(1) <= rounding*scene%joints(i)%bearing%clearance) return
+    associate (joint => scene%joints(i), element => scene%joints(i)%slots(scene%joints(i)%acting(phase_contact))%element, &
+               before => scene%joints(i)%impact_speed)
+      element%force_is_lost = .true.
+      call scene%evaluate(t, y, now, in_domain)
+      without = outward_acceleration(now%joint(i), joint%relative_rates(now%accelerations))
+      element%force_is_lost = .false.
+      before = huge(before)   ! an elastic force
+      if (in_domain) call scene%evaluate(t, y, now, in_domain)
+      before = max(contact(2), 0.0_dp)
+      if (in_domain) before = element%free_impact_speed(now%joint(i), &
+        without - outward_acceleration(now%joint(i), joint%relative_rates(now%accelerations)))
+    end associate
+  end subroutine find_impact_speed
+
+  !> The same for corners of the skirt. The forces of all that are in contact act together.
+  subroutine find_corner_speeds(scene, t, y, wanted)
+    class(scene_t), intent(inout) :: scene
+    real(dp), intent(in) :: t, y(:)
+    logical, intent(in) :: wanted(n_corners)
+    type(evaluation_t) :: free, pressed
+    logical :: in_domain
+    integer :: i
+    if (.not. any(wanted)) return
+    associate (guide => scene%guide)
+      guide%force_is_lost = guide%touches
+      call scene%evaluate(t, y, free, in_domain)
+      guide%force_is_lost = .false.
+      if (.not. in_domain) return
+      where (wanted) guide%impact_speed = huge(guide%impact_speed)   ! elastic forces
+      call scene%evaluate(t, y, pressed, in_domain)
+      do i = 1, n_corners
+        associate (corner => pressed%guide%corner(i))
+          if (.not. wanted(i)) cycle
+          guide%impact_speed(i) = max(corner%depth_rate, 0.0_dp)
+          if (corner%depth > 0) guide%impact_speed(i) = guide%contact%free_impact_speed(corner%depth, corner%depth_rate, &
+            inward_acceleration(i, corner, free%motion, free%accelerations) - &
+            inward_acceleration(i, corner, pressed%motion, pressed%accelerations))
+        end associate
+      end do
+    end associate
+  end subroutine find_corner_speeds
 
   !> Find the contacts that have no force at the start, since their pins or corners move out too fast.
   subroutine find_lost_forces(scene, t, y)
@@ -439,6 +510,7 @@ contains
       if (corner(i)%depth > 0 .or. onwards >= 0) call begin_corner_contact(scene%guide, i, corner(i)%depth_rate)
       if (.not. corner(i)%depth > 0 .and. corner(i)%depth_rate > 0 .and. contact_has_kink(scene%guide)) scene%entry_time = 0
     end do
+    call find_corner_speeds(scene, 0.0_dp, y, scene%guide%touches)
   end subroutine prepare_corners
 
   !> Give the walls of elastic films the initial deflection at which the pin has no acceleration in its bearing, as in an ideal

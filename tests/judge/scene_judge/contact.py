@@ -150,6 +150,7 @@ class Contact:
         begins = [event for event in run.events if event["event"] == "contact_begins"]
         self.begin = [float(event["time[s]"]) for event in begins]
         self.speed = [float(event["normal_speed[m/s]"]) for event in begins]
+        self.pressed = False   # the first contact is present at the start, and its impact speed is not known yet
 
     @staticmethod
     def exact(e: float) -> float:
@@ -158,6 +159,17 @@ class Contact:
             h = 1 - e
             return 3 / 2 * h * (1 + h)   # two terms of the series
         return root(lambda chi: math.log1p(chi) - math.log1p(-chi * e) - chi * (1 + e), (1 - e) / 2, (1 - 1e-15) / e)
+
+    def learn(self, depth: float, rate: float, time: float, normal: float) -> bool:
+        """The impact speed of a contact that is present at the start follows from the first row with a clear damping force. Whether the
+        contact at this time has a known speed."""
+        if not (self.pressed and self.loss and depth > 0) or bisect.bisect_right(self.begin, time * (1 + 1e-9)) > 1:
+            return True
+        damping = normal / self.geometry.force(depth) - 1
+        if normal <= 0 or abs(damping) < 0.01:
+            return False
+        self.speed[0], self.pressed = self.loss * rate / damping, False
+        return True
 
     def force(self, depth: float, rate: float, time: float) -> float:
         return max(0.0, sum(self.terms(depth, rate, time)))

@@ -191,13 +191,17 @@ class RowChecks:
         get, t = row.get, row.get["time"]
         depth, rate = -get["film_thickness"], n[0] * row.slip[0] + n[1] * row.slip[1]
         share = self.share(depth)
+        if i == 0 and depth > 0:
+            self.contact.pressed = True
+        known = self.contact.learn(depth, rate, t, get["normal_force"] / share if share else 0.0)
         low, high = (share * self.contact.force(depth, rate + d, t) for d in (-give, give))
         normal, friction = get["normal_force"], get["friction_force"]
         # the depth is the difference of two lengths, and the force may have ended in a row at the rounded time of this event
         exponent = self.contact.geometry.exponent + 2 * self.weighted
         rounding = 1e-15 * self.run.number("joint.clearance") + 4e-16 * abs(t * rate)
         blur = exponent * rounding / depth + self.blur_of_share(row, i) if depth > 0 else 0.0
-        self.take("contact law", inside(normal, low, high), (LAW + blur) * max(abs(normal), share * self.contact.size(depth, rate, t)), t)
+        if known:
+            self.take("contact law", inside(normal, low, high), (LAW + blur) * max(abs(normal), share * self.contact.size(depth, rate, t)), t)
         if "contact_half_angle" in get:
             self.check_arc(row, depth, normal, blur, t)
         want = -normal * n[0] - friction * n[1], -normal * n[1] + friction * n[0]
