@@ -262,15 +262,18 @@ contains
     class(case_handle_t), intent(in) :: self
     type(case_values_t), intent(inout) :: values
     integer :: i, first
+    logical :: outside
     if (self%folder == '/') return
     do i = 1, size(values%keys)
       associate (key => values%keys(i), file => values%values(i)%text)
         if (.not. key%is_path .or. file == '') cycle
         first = 1
         if (index(file, self%folder//'/') == 1) first = len(self%folder) + 2
+        outside = index(file(first:), '/') == 1 .or. index('/'//file//'/', '/../') > 0
+        if (.not. outside) outside = leads_out()
         if (self%folder == '') then
           call values%refuse(trim(key%group), trim(key%name), 'must not be given: the case has no folder')
-        else if (index(file(first:), '/') == 1 .or. index('/'//file//'/', '/../') > 0 .or. leads_out()) then
+        else if (outside) then
           call values%refuse(trim(key%group), trim(key%name), 'must be a file in the folder of the case')
         end if
       end associate
