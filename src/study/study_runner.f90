@@ -166,7 +166,7 @@ contains
     logical :: is_found(tasks%sweep%first:tasks%sweep%last)
     integer :: i, size_of
     associate (sweep => tasks%sweep)
-      is_found = is_whole(tasks, sweep%path, chunk_t(1, sweep%design%runs))
+      is_found(:) = is_whole(tasks, sweep%path, chunk_t(1, sweep%design%runs))
       call find_chunks(tasks, found)
       do i = 1, size(found)
         if (is_whole(tasks, base_of(tasks, found(i)), found(i))) &
@@ -196,7 +196,7 @@ contains
     type(study_tasks_t), intent(in) :: tasks
     character(len=*), intent(in) :: base   !! path of its results, without suffix
     type(chunk_t), intent(in) :: chunk
-    character(len=:), allocatable :: text
+    character(len=:), allocatable :: text, header
     integer :: kind, rows, failed, status, ignored, wanted(n_kinds)
     wanted = 0
     is_whole = .true.
@@ -208,7 +208,8 @@ contains
       else
         call count_rows(tasks, text, chunk, rows, failed)
       end if
-      is_whole = status == 0 .and. rows == wanted(kind) .and. index(text, header_of(tasks%sweep, kind)) == 1 .and. &
+      header = header_of(tasks%sweep, kind)
+      is_whole = status == 0 .and. rows == wanted(kind) .and. index(text, header) == 1 .and. &
         index(text, newline, back=.true.) == len(text) .and. index(text, achar(0)) == 0
     end do
     if (.not. is_whole) call remove_file(base//trim(suffixes(of_runs)), ignored)
