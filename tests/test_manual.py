@@ -432,9 +432,14 @@ def check_law() -> None:
     page = (ROOT / "data/manual/adding_a_law.md").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder)
-        for name in ("src", "cases", "data", "fpm.toml", "fpm.rsp", "tests", "scripts", "build"):   # what is built is not built again
-            if (ROOT / name).exists():
-                (shutil.copytree if (ROOT / name).is_dir() else shutil.copy)(ROOT / name, copy / name)
+        for name in ("src", "cases", "data", "fpm.toml", "fpm.rsp", "tests", "scripts"):
+            (shutil.copytree if (ROOT / name).is_dir() else shutil.copy)(ROOT / name, copy / name)
+        (copy / "build").mkdir()
+        for path in (ROOT / "build").glob("*"):   # what fpm has built here is not built again; other folders may be changing
+            if path.is_file():
+                shutil.copy(path, copy / "build" / path.name)
+            elif path.name.startswith("gfortran_") or path.name == "dependencies":
+                shutil.copytree(path, copy / "build" / path.name)
         law = copy / "src/friction/linear_ramp.f90"
         law.write_text(code_after(page, "**1. "), encoding="utf-8")
         use, _, line = code_after(page, "**2. ").partition("...")

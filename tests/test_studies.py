@@ -158,8 +158,18 @@ class Files(InDirectory):
         np.testing.assert_allclose(pd.read_csv(self.work / "o" / "t.csv"), [[1e-6, 1.0], [2.0, 3.0]], rtol=1e-12)
         self.assertIn("settle_cycles = 2", table.read_text(encoding="utf-8"))
 
+    def test_ranges_with_units(self) -> None:
+        found = study.read_study(self.write(
+            "s.nml", "&study case = 'c.nml' / &parameter key = 'a.b', from = 20 um, to = '60 um' / &parameter key = 'a.c', from = 1d0, to = 3 /\n"))
+        self.assertEqual(found.parameters, (Parameter("a.b", 20.0, 60.0, unit="um"), Parameter("a.c", 1.0, 3.0)))
+        study.write_table_study(found, np.array([[20.0, 1.0]]), self.work / "o", "t", "")
+        cell, plain = (self.work / "o" / "t.csv").read_text(encoding="utf-8").splitlines()[1].split(",")
+        self.assertEqual((float(cell.removesuffix(" um")), float(plain)), (20.0, 1.0))
+
     def test_what_is_no_range_is_refused(self) -> None:
         for text in (
+            "&study case = 'c' / &parameter key = 'a.b', from = 20 um, to = 0.1 mm /",
+            "&study case = 'c' / &parameter key = 'a.b', from = 'many', to = 2 /",
             "&study case = 'c' /",
             "&parameter key = 'a.b', from = 1, to = 2 /",
             "&study case = 'c' / &parameter key = 'a.b', values = 1, 2 /",

@@ -16,12 +16,13 @@ from gudgeon.results import MissingResult, read_table
 
 @dataclass(frozen=True)
 class Parameter:
-    """A key of the case that varies between two values, evenly in its logarithm if `log`."""
+    """A key of the case that varies between two values in a unit (empty: that of the key), evenly in its logarithm if `log`."""
 
     key: str
     low: float
     high: float
     log: bool = False
+    unit: str = ""
 
     @property
     def bounds(self) -> list[float]:
@@ -63,13 +64,26 @@ def read_study(path: Path) -> Study:
     for group in found if isinstance(found, list) else [found]:
         if not {"key", "from", "to"} <= group.keys():
             raise MissingResult(f"{path}: &parameter key = {group.get('key')}: needs key, from and to here")
-        low, high, scale = float(group["from"]), float(group["to"]), group.get("scale", "linear")
+        (low, unit), (high, other) = (number_and_unit(path, group, end) for end in ("from", "to"))
+        scale = group.get("scale", "linear")
+        if unit != other:
+            raise MissingResult(f"{path}: &parameter key = {group['key']}: needs from and to in one unit here")
         if scale not in ("linear", "log") or low >= high or (scale == "log" and low <= 0):
             raise MissingResult(f"{path}: &parameter key = {group['key']}: from {low} to {high}, {scale}: not a range")
-        parameters.append(Parameter(group["key"], low, high, scale == "log"))
+        parameters.append(Parameter(group["key"], low, high, scale == "log", unit))
     if "case" not in groups.get("study", {}) or not parameters:
         raise MissingResult(f"{path}: needs &study case and at least one &parameter")
     return Study(path, dict(groups["study"]), tuple(parameters))
+
+
+def number_and_unit(path: Path, group: f90nml.Namelist, key: str) -> tuple[float, str]:
+    """Number and unit of a value such as `20 um`, which f90nml reads as a list of both."""
+    value = group[key]
+    text = " ".join(str(part) for part in value) if isinstance(value, list) else str(value)
+    found = re.fullmatch(r"([-+]?[\d.]+(?:[ed][-+]?\d+)?)\s*(.*)", text.strip(), re.IGNORECASE)
+    if found is None:
+        raise MissingResult(f"{path}: &parameter key = {group['key']}, {key} = {text}: not a number")
+    return float(found[1].lower().replace("d", "e")), found[2]
 
 
 def write_table_study(study: Study, values: np.ndarray, directory: Path, name: str, title: str) -> Path:
@@ -77,6 +91,9 @@ def write_table_study(study: Study, values: np.ndarray, directory: Path, name: s
     NAME.csv. Returns the path of NAME.nml."""
     directory.mkdir(parents=True, exist_ok=True)
     table = pd.DataFrame(values, columns=[parameter.key for parameter in study.parameters])
+    for parameter in study.parameters:
+        if parameter.unit:
+            table[parameter.key] = table[parameter.key].map(f"{{:.12e}} {parameter.unit}".format)
     table.to_csv(directory / f"{name}.csv", index=False, lineterminator="\n", float_format="%.12e")
     group = study.settings | {"title": title, "case": str(study.case), "table": f"{name}.csv"}
     f90nml.Namelist({"study": group}).write(directory / f"{name}.nml", force=True)
