@@ -213,7 +213,7 @@ TEXTS = {
     "Orbit of the crank pin in its clearance circle": "Órbita do pino da manivela em seu círculo da folga",
     "crank-pin centre in its clearance circle": "centro do pino da manivela em seu círculo da folga",
     "Orbit of the piston pin in its clearance circle": "Órbita do pino do pistão em seu círculo da folga",
-    "Orbit of the journal in the main bearing": "Órbita do munhão no mancal principal",
+    "Orbit in the main bearing": "Órbita no mancal principal",
     "journal centre in the clearance circle of the main bearing": "centro do munhão no círculo da folga do mancal principal",
     "The piston in its bore, with the forces on its skirt": "O pistão no cilindro, com as forças na saia",
     "Film thickness and contacts over time": "Espessura do filme e contatos no tempo",

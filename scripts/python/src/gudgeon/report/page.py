@@ -251,7 +251,7 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
             )
         )
     for place, title in (("small_end", "Orbit of the pin in the small end"), ("crank_pin", "Orbit of the crank pin"),
-                         ("main_bearing", "Orbit of the journal in the main bearing")):
+                         ("main_bearing", "Orbit in the main bearing")):
         if f"{place}_phase" in columns:
             found.append(
                 plane(
