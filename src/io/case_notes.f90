@@ -296,6 +296,7 @@ contains
         'soft for a pin in its bearing: geometry = ''conformal''', '')
     end subroutine note_defaults
 
+    !> Name of the group in which the law of a joint is given.
     function law_group(name, place) result(group)
       character(len=*), intent(in) :: name
       integer, intent(in) :: place   !! index in `places`
@@ -303,6 +304,7 @@ contains
       group = values%law_group(name, trim(places(place)%name))
     end function law_group
 
+    !> Whether the case gives a key itself.
     logical function is_given(group, name)
       character(len=*), intent(in) :: group, name
       is_given = values%values(values%place_of(group, name))%given(1)
@@ -392,6 +394,7 @@ contains
         ': phase_deg and bank_deg?')
     end subroutine note_firing
 
+    !> Heat for the volume of the cylinder.
     subroutine note_heat()
       call expect('combustion', 'heat', c%combustion%heat_of_cycle(), 1e6_dp*pi/4*bore**2*stroke, 0.03_dp, 10.0_dp, &
         'is # J for each cm^3 of displacement (@ cm^3)', 'mechanism.crank_length combustion.bore')
