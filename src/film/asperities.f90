@@ -129,7 +129,7 @@ contains
     integer :: i
     force = 0
     depth = (farthest_of(self) - (self%bearing%clearance - distance)/self%roughness)*per_roughness
-    if (depth <= 0) return
+    if (.not. depth > 0) return   ! also if it is not a number
     i = int(depth) + 1
     if (i > self%last) then   ! also without a table
       force = self%integrated_force(distance)

@@ -302,8 +302,8 @@ contains
     integer :: i, j
     x = min(atan2(eps, w)*self%per_tau, real(self%points - 1, dp))
     y = chi_of(b, a, w)*self%per_chi
-    i = min(int(x), self%points - 2)
-    j = min(int(y), self%points - 2)
+    i = max(0, min(int(x), self%points - 2))   ! within the table also if x or y is not a number
+    j = max(0, min(int(y), self%points - 2))
     place = place_t(i + 1 - before, j, x - i, y - j)
   end subroutine find_place
 

@@ -48,6 +48,7 @@ contains
     real(dp), intent(out) :: pressing, friction   !! as in `mixed_forces` [N]
     real(dp), parameter :: centred = 1e-3_dp      !! over the clearance; nearer to the centre no roughness is felt
     real(dp), parameter :: close_enough = 1e-13_dp
+    real(dp), parameter :: flattest = 1e-100_dp   !! slope of the mean gap with which a velocity can still be computed
     type(bracket_t) :: bracket
     type(film_motion_t) :: seen
     real(dp) :: distance, n(2), t(2), gap, slope, ratio, sliding, limit, u, next, factor
@@ -99,7 +100,7 @@ contains
       real(dp), intent(out) :: v(2)
       real(dp) :: driven(2)
       call driven_velocity(film, ratio*motion%eccentricity, (load - pressing*n + force*t)/factor, driven)
-      v = dot_product(n, driven)/slope*n + (dot_product(t, driven)/ratio + 0.5_dp*motion%pin_speed*distance)*t
+      v = dot_product(n, driven)/max(slope, flattest)*n + (dot_product(t, driven)/ratio + 0.5_dp*motion%pin_speed*distance)*t
     end subroutine carry
   end subroutine mixed_velocity
 

@@ -30,7 +30,7 @@ module certificate
 
   !> Results of the whole run that are compared, at any joint, besides those of the last whole cycle.
   character(len=*), parameter :: compared(*) = [character(len=21) :: 'max_pin_force', 'contact_time_fraction', &
-    'min_film_thickness', 'mean_crank_speed', 'worn_volume_pin', 'worn_volume_bore']
+    'min_film_thickness', 'mean_crank_speed', 'worn_volume_pin', 'worn_volume_bore', 'film_temperature', 'heat_in', 'heat_to_oil']
   !> Units of coordinates and speeds, and parts of names of other columns with these units. Of an elastic rod stretch and deflection
   !> midway count; a single shape may have a thousandth of their ranges. The deflection of bristles jumps as a force does.
   character(len=*), parameter :: of_states(*) = [character(len=7) :: '[m]', '[rad]', '[m/s]', '[rad/s]']

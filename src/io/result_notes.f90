@@ -12,7 +12,7 @@ module result_notes
   use number_text, only: short_text, quantity_text
   implicit none
   private
-  public :: notes_on_results, history_remarks, relative_residual, energy_warning, no_exponent, &
+  public :: notes_on_results, history_remarks, relative_residual, heat_residual, energy_warning, no_exponent, &
     pin_is_undecided, undecided_pin
 
   character(len=*), parameter :: undecided_pin = 'the friction of both dry bearings of the floating pin has the same moment: '// &
@@ -25,6 +25,9 @@ module result_notes
   real(dp), parameter :: least_period_tolerance = 10   !! of a periodic motion, over the relative tolerance of its integration
   real(dp), parameter :: largest_pressure = 5e9_dp     !! beyond the strength of every bearing [Pa]
   real(dp), parameter :: most_energy_change = 0.02_dp  !! in a cycle, of the work of the gas: more is no settled motion
+  character(len=*), parameter :: too_much = ': no bearing carries it'
+  character(len=*), parameter :: too_thin = ' is thinner than 10 nm, where oil is not a continuous fluid'
+  character(len=*), parameter :: newline = achar(10)
 
 contains
 
@@ -47,6 +50,8 @@ contains
       end do
     end if
     if (report%energy_is_poor) call add_line(energy_warning(case, report))
+    if (report%heat_is_poor) call add_line('the heat of a film is kept only to '//short_text(heat_residual(report))// &
+      ': compare with a run with a tenth of &integrator relative_tolerance')
     call note_period()
     call note_power()
     if (report%figures%floating%is_present .and. pin_is_undecided(case)) call add_line(undecided_pin)
@@ -94,7 +99,6 @@ contains
       type(joint_case_t), intent(in) :: joint
       type(pin_figures_t), intent(in) :: pin
       character(len=*), intent(in) :: name
-      character(len=*), parameter :: too_much = ': no bearing carries it'
       real(dp) :: length, area, limit
       if (.not. joint%has_bearing()) return
       if (allocated(joint%contact)) then
@@ -104,8 +108,7 @@ contains
       end if
       if (allocated(joint%film) .and. pin%min_film_thickness > 0) then
         if (pin%min_film_thickness < thinnest_film) then
-          call add_line(name//'a film of '//quantity_text(pin%min_film_thickness, 'm')//' is thinner than 10 nm, where oil is '// &
-            'not a continuous fluid')
+          call add_line(name//'a film of '//quantity_text(pin%min_film_thickness, 'm')//too_thin)
         else if (pin%min_film_thickness < smoothest .and. .not. allocated(joint%asperities)) then
           call add_line(name//'a film of '//quantity_text(pin%min_film_thickness, 'm')//' is thinner than the roughness of '// &
             'polished surfaces, 0.1 um: &asperities')
@@ -165,6 +168,12 @@ contains
     if (report%figures%max_energy > 0) relative_residual = report%figures%max_energy_residual/report%figures%max_energy
   end function relative_residual
 
+  !> Largest residual of the heat of a film, over the heat that it turned over [-].
+  pure real(dp) function heat_residual(report)
+    type(run_report_t), intent(in) :: report
+    heat_residual = maxval(report%figures%pin%heat%relative_residual())
+  end function heat_residual
+
   !> Warning about a completed run with a large energy residual.
   function energy_warning(case, report) result(text)
     type(case_t), intent(in) :: case
@@ -174,21 +183,26 @@ contains
       short_text(relative_residual(report)/case%integrator%relative_tolerance)// &
       ' relative tolerances: compare with a run with a tenth of &integrator relative_tolerance'
   end function energy_warning
-  !> What a user should know of a march: its film is not settled, or its grid is too coarse; one line each, else empty.
+
+  !> What a user should know of a march: no bearing carries its pressure, no oil its thickness, its film is not settled, or its grid
+  !> is too coarse; one line each, else empty.
   pure function history_remarks(history, is_cycle) result(text)
     type(film_history_t), intent(in) :: history
     logical, intent(in) :: is_cycle   !! the duty is a cycle, not a steady state
     character(len=:), allocatable :: text
     text = ''
     associate (found => history%summary)
+      if (size(history%rows) > 0 .and. found%max_pressure > largest_pressure) text = 'film_history: a film pressure of '// &
+        quantity_text(found%max_pressure, 'Pa')//' is larger than 5 GPa'//too_much//newline
+      if (size(history%rows) > 0 .and. found%min_thickness < thinnest_film) text = text//'film_history: a film of '// &
+        quantity_text(found%min_thickness, 'm')//too_thin//newline
       if (found%cycles == history%most_cycles .and. is_cycle .and. found%content_change >= history%cycle_tolerance) &
-        text = 'film_history: the oil still changes by '//short_text(found%content_change)// &
-        ' from cycle to cycle: raise &film_history most_cycles'
-      if (found%cycles > 0 .and. found%cells_per_gap < least_cells_per_gap) then
-        if (text /= '') text = text//achar(10)
+        text = text//'film_history: the oil still changes by '//short_text(found%content_change)// &
+        ' from cycle to cycle: raise &film_history most_cycles'//newline
+      if (found%cycles > 0 .and. found%cells_per_gap < least_cells_per_gap) &
         text = text//'film_history: the thinnest part of the film has '//short_text(found%cells_per_gap)// &
-          ' cells, fewer than 4: raise &film_history around'
-      end if
+        ' cells, fewer than 4: raise &film_history around'//newline
+      if (text /= '') text = text(:len(text) - 1)
     end associate
   end function history_remarks
 end module result_notes

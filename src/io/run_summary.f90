@@ -217,6 +217,7 @@ contains
         call table%add('heat_extrapolated', heat%extrapolated, prefix)
       end if
       call table%add('heat_residual', heat%residual, prefix)
+      call table%add('heat_residual_relative', heat%relative_residual(), prefix)
     end subroutine add_heat
 
     !> Rows of the worn surfaces of a joint.

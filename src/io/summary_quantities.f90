@@ -104,6 +104,7 @@ module summary_quantities
     quantity_t('heat_extrapolated', 'J', 'the part of the heat stored that comes from these changes'), &
     quantity_t('heat_residual', 'J', &
       'heat that came in less what has left and what was stored otherwise: a measure of the integration error'), &
+    quantity_t('heat_residual_relative', '1', 'the same over the largest of the heats that came in, left or were stored'), &
     quantity_t('film_energy_lost', 'J', &
       'energy that the film took from the bodies; negative: it gave energy, as an oscillating film may'), &
     quantity_t('neglected_shear_loss', 'J', &

@@ -14,6 +14,8 @@ module carried_bearing
   private
   public :: carried_bearing_t
 
+  real(dp), parameter :: fastest = 1e30_dp   !! velocity of the pin, whose square is still finite [m/s]
+
   type :: carried_bearing_t
     integer :: joint = 0        !! index of its joint in the scene, which has one element, a film
     real(dp) :: load_share = 1  !! part of the load of its place that it carries
@@ -66,8 +68,8 @@ contains
   end subroutine declare
 
   !> Motion and loads of the bearing under a load (force of the pin on its bearing); the rate of the position is that of the
-  !> eccentricity. `in_domain` is false at the wall, where the film is not defined, and for temperatures out of range; then only the
-  !> position is set.
+  !> eccentricity. `in_domain` is false at the wall, where the film is not defined, for temperatures out of range, and where the
+  !> velocity or the moment is beyond all bounds (deep in the roughness, or under an infinite load); then only the position is set.
   pure subroutine look(self, joint, load, speeds, y, now, in_domain)
     class(carried_bearing_t), intent(in) :: self
     type(clearance_joint_t), intent(in) :: joint
@@ -89,6 +91,8 @@ contains
       if (joint%limits_states) in_domain = sum(place**2) < joint%bearing%clearance**2
       in_domain = in_domain .and. joint%admits_temperature(now)
       if (in_domain) call joint%slots(1)%element%carry(place, load, now)
+      in_domain = in_domain .and. all(abs(now%eccentricity_rate) <= fastest) .and. abs(now%moment) <= huge(now%moment)
+      if (.not. in_domain) call clear_loads(now)
       now%power = power_of(now, now%force, now%eccentricity_rate, now%moment)
       call find_polar(joint%bearing%clearance, now)
       call find_sliding(joint%pin_radius, now)

@@ -66,6 +66,9 @@ module film_heat
     real(dp) :: extrapolated = 0        !! the part of it that stands for times that were left out [J]
     real(dp) :: residual = 0            !! heat that came in less what has left and is stored: the error of the integration [J]
     integer :: jumps = 0
+    real(dp), private :: least = 0      !! heat of a hundredth of a kelvin [J]
+  contains
+    procedure :: relative_residual
   end type heat_totals_t
 
 contains
@@ -74,7 +77,8 @@ contains
     class(heat_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     character(len=*), parameter :: temperatures = '>= 200 and <= 700'
-    call list%add('heat_capacity', self%heat_capacity, 'heat capacity of the film and of the metal that follows its temperature', &
+    call list%add('heat_capacity', self%heat_capacity, &
+      'heat capacity of the film and of the metal that follows its temperature, which is that of the oil at the outlet', &
       'J/K', '> 0', example='60.0', usual='1 to 1e4')
     call list%add('inlet_temperature', self%inlet_temperature, 'temperature of the oil that replaces the side flow', 'K', &
       temperatures, example='363.15', usual='250 to 450')
@@ -196,5 +200,15 @@ contains
     totals%extrapolated = self%given%heat_capacity*self%jumped
     totals%residual = totals%came_in - totals%to_oil - totals%to_housing - (totals%stored - totals%extrapolated)
     totals%jumps = self%jumps
+    totals%least = 1e-2_dp*self%given%heat_capacity
   end function totals
+
+  !> Size of the residual over the heat that came in, left or was stored, whichever is largest [-]; at least over the heat of a
+  !> hundredth of a kelvin, below which rounding would be judged.
+  elemental real(dp) function relative_residual(self)
+    class(heat_totals_t), intent(in) :: self
+    relative_residual = 0
+    if (self%is_known) relative_residual = abs(self%residual)/ &
+      max(abs(self%came_in), abs(self%to_oil) + abs(self%to_housing), abs(self%stored), self%least)
+  end function relative_residual
 end module film_heat

@@ -40,6 +40,7 @@ contains
     call self%asperities%prepare(self%bearing)
     if (makes_tables) call self%asperities%make_table()
     self%is_unbounded = .false.
+    self%change_length = self%asperities%roughness
     self%rubs = .true.
     self%normal_kind = of_asperities
     self%friction_kind = of_asperities

@@ -77,7 +77,7 @@ contains
       row(of_thickness) = -it%penetration
       film = joint%film_figures(it)
       row(of_pressure) = film%max_pressure
-      row(of_viscosity) = it%viscosity_ratio
+      row(of_viscosity) = joint%viscosity(it)/self%history%viscosity
     end associate
   end subroutine add
 
@@ -104,7 +104,8 @@ contains
     end do
   end function first_row
 
-  !> March the film over the last cycle, with the mean viscosity of the run there. `watch` receives its progress and may stop it.
+  !> March the film over the last cycle, with the mean over its rows of the viscosity of the run's film, which follows its
+  !> temperature and, if it thins, its mean shear rate in each row. `watch` receives its progress and may stop it.
   !> Errors (status_integration): the run has no whole cycle; the film cannot be marched; `watch` stopped it.
   subroutine march(self, watch, error)
     class(history_record_t), intent(inout) :: self
@@ -129,7 +130,7 @@ contains
       self%angle = kept(of_angle, 2:)
       self%quick_thickness = kept(of_thickness, 2:)
       self%quick_pressure = kept(of_pressure, 2:)
-      self%history%viscosity = self%history%viscosity*sum(kept(of_viscosity, 2:))/size(self%angle)   ! as warm as in the run
+      self%history%viscosity = self%history%viscosity*sum(kept(of_viscosity, 2:))/size(self%angle)   ! that of the run
     end associate
     call self%history%march(self%duty, error, watch)
     if (allocated(error)) error%message = 'film_history: '//error%message

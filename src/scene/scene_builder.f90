@@ -315,14 +315,15 @@ contains
   end function sample_interval
 
   !> Settings of the integrator for a scene. The tolerance of component i is relative_tolerance*|y_i| (unless it grows without
-  !> bound) + a*scale_i, where a is absolute_tolerance or, if that is 0, relative_tolerance; it is smaller for crank and work. A
-  !> hundred events within 1e-6 of a revolution, at most 1e-8 s, count as chatter.
+  !> bound) + a*scale_i, where a is absolute_tolerance or, if that is 0, relative_tolerance; it is smaller for crank, work and
+  !> pins that asperities carry. A hundred events within 1e-6 of a revolution, at most 1e-8 s, count as chatter.
   pure function settings_for(case, scene) result(settings)
     type(case_t), intent(in) :: case
     type(scene_t), intent(in) :: scene
     type(ode_settings_t) :: settings
     real(dp) :: scales(scene%n), factor, tolerance, steps(2)
     logical :: growing(scene%n)
+    integer :: i, k
 
     settings%span = simulated_time(case)
     tolerance = min(case%integrator%relative_tolerance, loosest_tolerance)
@@ -337,6 +338,13 @@ contains
       call tighten(settings, scene%crank%rate, lasting_share)
       call tighten(settings, scene%crank%position, angle_share)
     end if
+    do i = 1, size(scene%carried)   ! the velocity follows from the loads: a pin between asperities is placed within their height
+      associate (place => scene%carried(i)%place, joint => scene%joints(scene%carried(i)%joint))
+        do k = place%first, place%last
+          call tighten(settings, k, joint%slots(1)%element%change_length/joint%bearing%clearance)
+        end do
+      end associate
+    end do
     where (growing .and. scales > 0) settings%relative = rounding_share
     settings%first_step = first_angle/scene%speed_scale()
     steps = [case%integrator%max_step, 0.0_dp]   ! limits; 0: there is none

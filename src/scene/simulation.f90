@@ -44,6 +44,7 @@ module simulation
     real(dp), allocatable :: time_with(:, :)  !! method auto: time with Adams and with Radau, for each mode, (2, 0:highest mode) [s]
     logical :: can_go_on = .false.  !! the run was stopped from outside or by a limit
     logical :: energy_is_poor = .false.          !! the run is done, but the user must be told of its energy residual
+    logical :: heat_is_poor = .false.            !! the same of the heat of a film
     type(period_watch_t) :: periods              !! search for a periodic motion that ends the run
     type(answer_t), allocatable :: answers(:)    !! of the last whole cycle, if the case asks for them
     type(train_result_t), allocatable :: train(:)    !! of several cylinders on one crankshaft
@@ -387,8 +388,15 @@ contains
                energy_limit(case%integrator%relative_tolerance, report%figures%crank_travel)) then
         report%status = 'energy not kept: the residual is beyond its limit, so the results are wrong; run to '//place(scene, t, y)
         call fail(error, report%status, status_integration)
+      else if (.not. all(report%figures%pin%heat%relative_residual() <= &
+               energy_limit(case%integrator%relative_tolerance, report%figures%crank_travel))) then
+        report%status = 'heat of a film not kept: the residual is beyond its limit, so the results are wrong; run to '// &
+          place(scene, t, y)
+        call fail(error, report%status, status_integration)
       else
         report%energy_is_poor = report%figures%max_energy_residual > report%figures%max_energy* &
+          remarkable_residual(case%integrator%relative_tolerance)
+        report%heat_is_poor = maxval(report%figures%pin%heat%relative_residual()) > &
           remarkable_residual(case%integrator%relative_tolerance)
       end if
     end associate
@@ -418,9 +426,10 @@ contains
     end select
   end subroutine judge_turns
 
-  !> Largest energy residual of a completed run, relative to the largest energy: ten tolerances for each revolution, since local
-  !> errors add up, and at least a thousand tolerances, which hardly any scene reaches (data/manual/choices.md). The limit is
-  !> never above 5 %, which makes any result useless, and never below 1e-10, which may be rounding.
+  !> Largest residual of the energy of a completed run, relative to the largest energy, and of the heat of a film: ten tolerances for
+  !> each revolution, since local errors add up, and at least a thousand tolerances, which hardly any scene reaches
+  !> (data/manual/choices.md). The limit is never above 5 %, which makes any result useless, and never below 1e-10, which may be
+  !> rounding.
   pure real(dp) function energy_limit(tolerance, crank_travel)
     real(dp), intent(in) :: tolerance      !! relative
     real(dp), intent(in) :: crank_travel   !! [rad]

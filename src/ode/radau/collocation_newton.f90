@@ -6,6 +6,9 @@ submodule (collocation) collocation_newton
 
   !> Newton steps larger than this, in tolerances, are not made: forces and their squares may overflow there.
   real(dp), parameter :: farthest = 1e30_dp
+  !> Largest defect that is explained by rounding of the state, over the Newton step that it causes; a stiffer Jacobian, times the
+  !> step size, belongs to another state.
+  real(dp), parameter :: stiffest = 1e10_dp
 contains
 
   module procedure decompose_matrices
@@ -109,6 +112,7 @@ contains
       outcome = newton_diverged
       if (.not. change < farthest) return
       if (change <= self%rounding) then
+        if (.not. defect <= stiffest*self%rounding) return
         rest = 0
       else if (last_change > 0) then
         ratio = max(change/last_change, defect/last_defect)
