@@ -467,6 +467,39 @@ def marched(runs: Runs) -> None:
         check(abs(thin[name] / same[name] - 1) < 0.01, f"film that thins, {name}", f"{thin[name]} {same[name]}")
 
 
+IMPOSSIBLE = """
+&mechanism crank_length=45 mm, crank_mass=1.1, crank_inertia=0.004, crank_com=0.006, -0.002, rod_length=150 mm, rod_mass=0.62,
+  rod_inertia=0.0024, rod_com=0.042, 0.003, piston_mass=664814.3 /
+&drive /
+&initial crank_speed=314.1592653589793 /
+&joint kind='quasi_static', clearance=10 um, bearing_radius=10.01 mm, bearing_length=30 mm /
+&contact law='hertz', geometry='conformal', youngs_modulus=2*207 GPa, poissons_ratio=2*0.3 /
+&lubrication law='finite_bearing', variant='short', viscosity=9 mPa.s, elastic_film=.true., pressure_viscosity=1.8e-8 /
+&integrator revolutions=1, max_evaluations=7500, method='adams' /
+"""
+CRUSHED = """
+&joint clearance=10 um, bearing_radius=12 mm, bearing_length=6 mm /
+&lubrication viscosity=0.1 /
+&film_history table='crushed.csv', drive='orbit', around=48, along=2, most_cycles=2, substeps=1 /
+"""
+
+
+def impossible(runs: Runs) -> None:
+    """A pin whose film would need 1e10 N: no row has a value that is not finite. A pin that is driven into its film at 100 m/s: the
+    pressure, of the order of 6 mu v R^2/c^2 L^2/(4 R^2) = 5e12 Pa and more, is noted in the summary of the bearing."""
+    outcome = runs.start(IMPOSSIBLE, "impossible")
+    text = (runs.folder / "impossible.csv").read_text()
+    check(outcome.returncode == 4, "a film without bounds ends the run", str(outcome.returncode))
+    check(not {"inf", "nan", "infinity"} & set(text.lower().replace("\n", ",").split(",")), "only finite numbers in rows", text[-300:])
+    (runs.folder / "crushed.csv").write_text(
+        "time[s],pin_speed[rad/s],eccentricity_x[m],eccentricity_y[m]\n0,100,0,0\n1e-7,100,5e-6,0\n3e-7,100,-5e-6,0\n4e-7,100,0,0\n")
+    outcome = runs.start(CRUSHED, "crushed")
+    found = runs.summary("crushed")
+    check(found["film_history_max_film_pressure"] > 5e9, "the film is crushed", str(found["film_history_max_film_pressure"]))
+    check(any("larger than 5 GPa" in str(value) for key, value in found.items() if key.startswith("note_")), "said in its summary",
+          outcome.stderr)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", type=Path, help="the program; default: the release build")
@@ -475,7 +508,7 @@ def main() -> int:
     program = (options.program or release_program()).resolve()
     with tempfile.TemporaryDirectory() as folder:
         runs = Runs(program, Path(folder))
-        for part in (balance, other_elements, settled, halves, thinning, carried, rough_reversal, marched, refusals):
+        for part in (balance, other_elements, settled, halves, thinning, carried, rough_reversal, marched, impossible, refusals):
             if not options.parts or part.__name__ in options.parts:
                 part(runs)
     return assertions.report()

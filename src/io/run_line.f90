@@ -162,7 +162,7 @@ contains
       if (joint%can_touch() .and. pin%contacts == 0) text = 'no contact, '
       if (pin%min_film_thickness < 0) then
         text = text//'penetration up to '//quantity_text(-pin%min_film_thickness, 'm')//', '
-      else if (allocated(joint%film)) then
+      else if (allocated(joint%film) .and. pin%min_film_thickness < huge(1.0_dp)) then   ! there was a state in the model
         text = text//'film of at least '//quantity_text(pin%min_film_thickness, 'm')// &
           cycle_text(report, 'cycle_min_film_thickness', place, pin%min_film_thickness)//', '
         if (joint%film%table_of /= '' .and. joint%film%table_error > tolerance) &

@@ -35,7 +35,7 @@ module load_element
   type, abstract :: load_element_t
     type(bearing_t) :: bearing
     real(dp) :: pin_radius = 0              !! of the pin [m]
-    real(dp) :: change_length = huge(1.0_dp)   !! eccentricity over which its loads change severalfold, if that is less than c [m]
+    real(dp) :: change_length = 0           !! eccentricity over which its loads change severalfold; 0: the clearance [m]
     class(film_law_t), allocatable :: film                !! not allocated: the element has no film
     class(contact_geometry_t), allocatable :: walls       !! elasticity of the walls under the film; not allocated: they are rigid
     logical :: is_unbounded = .false.       !! the film has a force without bound at |e| = c, which the state must not reach

@@ -415,6 +415,7 @@ contains
     call hand_over_row(self, scene, t, y, now)
   end subroutine write_row
 
+  !> Hand over a row, unless one of its values is not a finite number: then the run is to end.
   subroutine hand_over_row(self, scene, t, y, now)
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
@@ -428,6 +429,8 @@ contains
     end if
     if (size(self%values) == 0) return
     call self%row(scene, t, y, now, self%values)
+    if (.not. all(abs(self%values) <= huge(self%values))) self%has_left = .true.
+    if (self%has_left) return
     associate (f => self%extremes%figures)
       f%row_energy_residual = max(f%row_energy_residual, abs(scene%chain%energy(now%motion) - self%initial_energy - scene%work(y)))
     end associate

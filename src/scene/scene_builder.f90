@@ -340,6 +340,7 @@ contains
     end if
     do i = 1, size(scene%carried)   ! the velocity follows from the loads: a pin between asperities is placed within their height
       associate (place => scene%carried(i)%place, joint => scene%joints(scene%carried(i)%joint))
+        if (.not. joint%slots(1)%element%change_length > 0) cycle
         do k = place%first, place%last
           call tighten(settings, k, joint%slots(1)%element%change_length/joint%bearing%clearance)
         end do

@@ -426,8 +426,8 @@ contains
     end select
   end subroutine judge_turns
 
-  !> Largest residual of the energy of a completed run, relative to the largest energy, and of the heat of a film: ten tolerances for
-  !> each revolution, since local errors add up, and at least a thousand tolerances, which hardly any scene reaches
+  !> Largest residual of the energy of a completed run, relative to the largest energy, and of the heat of a film: ten tolerances
+  !> for each revolution, since local errors add up, and at least a thousand tolerances, which hardly any scene reaches
   !> (data/manual/choices.md). The limit is never above 5 %, which makes any result useless, and never below 1e-10, which may be
   !> rounding.
   pure real(dp) function energy_limit(tolerance, crank_travel)
