@@ -10,6 +10,7 @@ import contextlib
 import importlib
 import io
 import math
+import os
 import re
 import subprocess
 import sys
@@ -38,6 +39,7 @@ from gudgeon.plots import columns, compare, figures, film_pressure, laws, ringin
 from gudgeon.plots import film as film_pictures
 from gudgeon.plots.figure_map import read_figures
 from gudgeon.plots.quantities import QUANTITIES, once_a_cycle
+from gudgeon.program import release_program
 from gudgeon.report import page as report_page
 from gudgeon.results import (
     FineResults,
@@ -48,6 +50,7 @@ from gudgeon.results import (
     case_files,
     drawable,
     load_run,
+    located,
     read_case,
 )
 
@@ -1118,8 +1121,81 @@ class Reading(unittest.TestCase):
         with tempfile.TemporaryDirectory() as work:
             with self.assertRaisesRegex(MissingResult, "run: gudgeon -o .*cases/sim_I.nml"):
                 Results(Path(work), run_missing=False).make(["sim_I", "sim_I.ideal"])
-            with self.assertRaisesRegex(MissingResult, "nor a shipped case: nonsense"):
+            with self.assertRaisesRegex(MissingResult, "nor a shipped case: nonsense$"):
                 Results(Path(work)).make(["nonsense"])
+
+
+class ResultsOfACase(unittest.TestCase):
+    """Which results belong to a case file: here a/pin.nml and b/pin.nml, two machines of one name."""
+
+    def setUp(self) -> None:
+        work = tempfile.TemporaryDirectory()
+        self.addCleanup(work.cleanup)
+        self.addCleanup(os.chdir, Path.cwd())
+        os.chdir(work.name)
+        self.case("a/pin.nml", "20 um")
+        self.case("b/pin.nml", "50 um")
+
+    def case(self, path: str, clearance: str) -> None:
+        Path(path).parent.mkdir(exist_ok=True)
+        text = subprocess.run([release_program(), "--template=dry"], capture_output=True, text=True, check=True).stdout
+        Path(path).write_text(text.replace("clearance = 20 um", f"clearance = {clearance}"))
+
+    def run_case(self, path: str, *options: str) -> None:
+        subprocess.run([release_program(), "-q", *options, path], check=True)
+
+    def clearance(self, word: str, **options: object) -> float:
+        results, name = located(word, **options)
+        return results[name].clearance
+
+    def test_results_are_beside_the_case_or_where_they_were_put(self) -> None:
+        self.run_case("b/pin.nml")
+        self.run_case("a/pin.nml", "-o", "a")
+        self.assertEqual([self.clearance(f"{place}/pin.nml") for place in "ab"], [20e-6, 50e-6])
+        self.assertEqual((self.clearance("pin"), self.clearance("a/pin.csv"), self.clearance("a/pin.events.csv")), (50e-6, 20e-6, 20e-6))
+        self.run_case("a/pin.nml", "-o", "c")
+        self.assertEqual(self.clearance("a/pin.nml", folder=Path("c")), 20e-6)
+
+    def test_a_case_without_results_is_run(self) -> None:
+        with self.assertRaisesRegex(MissingResult, "run: gudgeon -o results b/pin.nml"):
+            located("b/pin.nml", run_missing=False)
+        self.assertEqual(self.clearance("b/pin.nml"), 50e-6)
+        self.assertTrue(Path("results/pin.csv").exists())
+
+    def test_results_of_another_machine_are_said(self) -> None:
+        self.run_case("b/pin.nml")
+        with self.assertRaisesRegex(MissingResult, r"results/pin.csv is not .* a/pin.nml as it is now \(joint.clearance is 2e-05, was 5e-05\)"):
+            located("a/pin.nml")
+        self.case("b/pin.nml", "30 um")
+        with self.assertRaisesRegex(MissingResult, r"\(joint.clearance is 3e-05, was 5e-05\): run b/pin.nml again"):
+            located("b/pin.nml")
+        with Path("a/pin.nml").open("a") as case:
+            case.write("&gas cycle = 'two_stroke' /\n")
+        with self.assertRaisesRegex(MissingResult, "a/pin.nml:20: &gas: unknown group"):
+            located("a/pin.nml")
+        Path("results/pin.resolved.nml").unlink()
+        with self.assertRaisesRegex(MissingResult, "pin.resolved.nml is missing"):
+            located("b/pin.nml")
+        self.run_case("b/pin.nml")
+        self.assertEqual(self.clearance("b/pin.nml"), 30e-6)
+
+    def test_a_table_that_has_changed_is_another_case(self) -> None:
+        for name in ("motor.nml", "motor.csv"):
+            Path(name).write_text((TOP / "cases" / "drive" / name).read_text())
+        self.run_case("motor.nml", "-s", "integrator.end_time=0.001")
+        with self.assertRaisesRegex(MissingResult, "integrator.end_time is"):
+            located("motor.nml")
+        self.run_case("motor.nml")
+        self.assertEqual(located("motor.nml")[1], "motor")
+        Path("motor.csv").write_text(Path("motor.csv").read_text().replace("100,15", "100,16"))
+        with self.assertRaisesRegex(MissingResult, "drive.torque_table_digest is"):
+            located("motor.nml")
+
+    def test_shipped_cases_are_given_by_their_paths(self) -> None:
+        with self.assertRaisesRegex(MissingResult, "no trace results/sim_I.csv: give the trace of a run, its case file"):
+            located("sim_I")
+        with self.assertRaisesRegex(MissingResult, "c/pin.nml: no such case file"):
+            located("c/pin.nml")
 
 
 class Columns(unittest.TestCase):

@@ -88,6 +88,9 @@ check "no NaN" [ "$(grep -ci -e nan -e inf "$work/r/sim_I.csv")" = 0 ]
 cp "$work/r/sim_I.resolved.nml" "$work/again.nml"
 run -o "$work/r" "$work/again.nml"
 check "the resolved case gives the same trace" cmp -s "$work/r/sim_I.csv" "$work/r/again.csv"
+run --resolved -o "$work/refused" -s integrator.revolutions=0.1 -s integrator.method=auto cases/sim_I.nml
+check "a resolved case without a run is that of the run" cmp "$work/out" "$work/r/sim_I.resolved.nml"
+check "and nothing is written" [ ! -e "$work/refused" ]
 for jobs in 1 4; do
   run -j $jobs -o "$work/j$jobs" -s integrator.revolutions=0.1 cases/sim_I.nml cases/sim_II.nml cases/sim_III.nml \
     cases/flores/dry_0500um.nml cases/flores/dry_0100um.nml cases/flores/friction_100.nml
@@ -225,8 +228,10 @@ run -o "$work/certified" --certify -s integrator.revolutions=0.5 cases/wear/flor
 check "a certificate states the error of the worn volume" [ "$(awk -F, '{ value[$1] = $2 }
   END { ratio = value["worn_volume_bore_difference"] / value["worn_volume_bore"]; print (ratio > 1e-9 && ratio < 1e-3) }' \
   "$work/certified/flores.summary.csv")" = 1 ]
-run sweep --certify cases/studies/map_I.nml
-check "--certify is refused for sweeps, status $status" [ "$status" = 2 ]
+for option in --certify --resolved; do
+  run sweep $option cases/studies/map_I.nml
+  check "$option is refused for sweeps, status $status" [ "$status" = 2 ]
+done
 
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

@@ -300,7 +300,7 @@ def main() -> int:
         for case in CASES if not pages else ():
             page = Path(work) / f"{case}.html"
             made = subprocess.run(
-                [TOP / ".venv" / "bin" / "gudgeon-plot", "report", case, "--results", work, "-o", str(page)],
+                [TOP / ".venv" / "bin" / "gudgeon-plot", "report", next((TOP / "cases").rglob(f"{case}.nml")), "--results", work, "-o", str(page)],
                 check=False,
             )
             checks.check(made.returncode == 0, f"{case}: the page is made")

@@ -31,7 +31,8 @@ module bearing_run
 
   type :: bearing_run_t
     character(len=:), allocatable :: line, notice      !! texts for the user: the outcome, and remarks
-    character(len=:), allocatable, private :: file, base, resolved
+    character(len=:), allocatable :: resolved          !! the case with all keys
+    character(len=:), allocatable, private :: file, base
     type(film_history_t), private :: history
     type(film_duty_t), private :: duty
     integer, private :: digits = 0

@@ -105,6 +105,8 @@ contains
       base = options%out//'/'//options%name
       if (options%name == '') base = base//case_name(path)
       if (.not. allocated(job%error)) call job%bearing%prepare(values, path, base, job%error)
+      if (options%resolved .and. .not. allocated(job%error)) &
+        job%bearing%line = job%bearing%resolved(:len(job%bearing%resolved) - 1)
       return
     end if
     if (.not. allocated(job%error)) call complete_case(values, path, case, job%error)
@@ -126,7 +128,8 @@ contains
       allocated(case%shaft))
     call job%run%prepare(case, text, .false., list, base, options, shows_progress)
     if (job%has_twin) call job%twin%prepare(case, text, .true., ideal_list, base//'.ideal', options, shows_progress)
-    if (.not. options%check) return
+    if (options%resolved) job%run%line = text(:len(text) - 1)
+    if (options%resolved .or. .not. options%check) return
     call tell_tables(case, tables, job%error)
     if (allocated(job%error)) then
       call name_file(path, job%error)

@@ -25,6 +25,7 @@ module command_line
     character(len=:), allocatable :: kind         !! of a short template; empty: the complete one
     character(len=:), allocatable :: completion   !! shell whose completion script is printed; empty: none
     logical :: manual = .false.                   !! print the page of the manual
+    logical :: resolved = .false.                 !! print the complete cases instead of running them
     logical :: check = .false., template = .false., quiet = .false., help = .false., version = .false.
     character(len=:), allocatable :: progress     !! auto, always, never
     character(len=:), allocatable :: cases(:)     !! paths of case files or study files, padded with blanks
@@ -41,9 +42,10 @@ module command_line
     logical :: may_take_value = .false.   !! in the form --NAME=VALUE alone
   end type option_t
 
-  type(option_t), parameter :: options(18) = [ &
+  type(option_t), parameter :: options(19) = [ &
     option_t('out', 'o', .true.), option_t('set', 's', .true.), option_t('accuracy', 'a', .true.), &
     option_t('jobs', 'j', .true.), option_t('progress', '', .true.), option_t('check', '', .false.), &
+    option_t('resolved', '', .false.), &
     option_t('certify', '', .false.), option_t('name', '', .true.), &
     option_t('template', '', .false., .true.), option_t('quiet', 'q', .false.), option_t('help', 'h', .false.), &
     option_t('version', 'V', .false.), option_t('fresh', '', .false.), option_t('rows', '', .true.), &
@@ -110,8 +112,8 @@ contains
       call refuse('no '//trim(merge('study', 'case ', line%sweep))//' file given')
     else if (line%name /= '' .and. (line%sweep .or. size(line%cases) > 1)) then
       call refuse('--name is for one case')
-    else if (line%sweep .and. line%certify) then
-      call refuse('--certify is not for gudgeon sweep')
+    else if (line%sweep .and. (line%certify .or. line%resolved)) then
+      call refuse('--certify and --resolved are not for gudgeon sweep')
     else if (line%sweep .and. line%from /= '') then
       call refuse('--from is not for gudgeon sweep: give &initial from in the base case')
     else if (.not. line%sweep .and. (line%fresh .or. line%last_row > 0)) then
@@ -213,6 +215,9 @@ contains
         if (.not. is_listed(value, progress_words)) wanted = 'must be auto, always or never'
       case ('check')
         line%check = .true.
+      case ('resolved')
+        line%check = .true.
+        line%resolved = .true.
       case ('template')
         line%template = .true.
         line%kind = value
@@ -346,6 +351,7 @@ contains
       '      --certify             estimate the accuracy of each case by running it again at a hundredth of its tolerance'//n// &
       '                            and with another method; results in the summary and in CASE.certificate.csv'//n// &
       '      --check               read and validate the cases without running them'//n// &
+      '      --resolved            print the cases with all defaults, as in CASE.resolved.nml, without running them'//n// &
       '      --template            print a complete, commented case file (sweep: study file) with every key'//n// &
       '      --template=KIND       print a short case that runs; KIND is one of '//template_kinds//n// &
       '      --reference SUBJECT   print a reference page in Markdown; SUBJECT is case, bearing, study,'//n// &

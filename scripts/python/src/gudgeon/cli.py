@@ -27,7 +27,8 @@ WHAT = {
 def usage() -> str:
     lines = ["usage: gudgeon-plot WHAT [RUN...] [-o PATH] [--language pt]", ""]
     lines += [f"  {what:12} {said}" for what, said in WHAT.items()]
-    lines += ["", "RUN is a name, which is looked for in results/, a trace or a case file. Pictures are written beside the data.",
+    lines += ["", "RUN is a case file, whose results are in results/ or beside it, a trace, or the name of a run in results/.",
+              "Pictures are written beside the data.",
               "gudgeon-plot WHAT --help has the options of each."]
     return "\n".join(lines)
 

@@ -2,6 +2,7 @@
 
 import shutil
 import subprocess
+from functools import cache
 from pathlib import Path
 
 _TOP = Path(__file__).resolve().parents[4]
@@ -14,8 +15,9 @@ class MissingResult(Exception):
     """Raised for a result that does not exist and cannot be made."""
 
 
+@cache
 def release_program() -> Path:
-    """The release build of the checkout, brought up to date; without a checkout the program on the PATH."""
+    """The release build of the checkout, brought up to date once; without a checkout the program on the PATH."""
     if CHECKOUT is None:
         if found := shutil.which("gudgeon"):
             return Path(found)

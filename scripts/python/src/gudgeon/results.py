@@ -234,20 +234,36 @@ def case_files() -> dict[str, Path]:
     return {path.stem: path for path in sorted((CHECKOUT / "cases").rglob("*.nml")) if path.parent.name != "studies"}
 
 
+def shipped_case(name: str) -> Path:
+    """The shipped case file of this name. Raises MissingResult without a checkout."""
+    if name not in case_files():
+        raise MissingResult(f"no shipped case {name}: the shipped cases are in a checkout")
+    return case_files()[name]
+
+
 def default_folder() -> Path:
     """The folder of the results of shipped cases: results/ of the checkout, or of the current folder."""
     return (CHECKOUT or Path()) / "results"
+
+
+def resolved(path: Path, settings: Iterable[str] = ()) -> str:
+    """A case file as it is now, changed by the settings, with all defaults: the text of a NAME.resolved.nml."""
+    words = [word for setting in settings for word in ("--set", setting)]
+    outcome = subprocess.run([release_program(), "--resolved", *words, path], capture_output=True, text=True, check=False)
+    if outcome.returncode != 0:
+        raise MissingResult(outcome.stderr.strip())
+    return outcome.stdout
 
 
 class Results:
     """The runs in a folder; missing runs are made with the release build."""
 
     def __init__(
-        self, directory: Path, run_missing: bool = True, rerun: bool = False, case: Path | None = None
+        self, directory: Path, run_missing: bool = True, rerun: bool = False, files: dict[str, Path] | None = None
     ) -> None:
-        """`case` is a case file in addition to those in cases/."""
+        """`files` are the case files by their names; by default the shipped ones."""
         self.directory = directory
-        self.files = case_files() | ({case.stem: case.resolve()} if case else {})
+        self.files = case_files() if files is None else files
         self.run_missing = run_missing
         self.rerun = rerun
         self._runs: dict[str, Run] = {}
@@ -263,15 +279,36 @@ class Results:
         """Additional settings for the runs of these cases: none."""
         return []
 
+    def difference(self, name: str) -> str:
+        """In what the case of a result differs from its case file as it is now; empty if it does not."""
+        path = self.directory / f"{name}.resolved.nml"
+        if not path.exists():
+            return f"{path.name} is missing"
+        now, then = parse_case(resolved(self.files[name], self.settings([name]))), read_case(path)
+        for group in {**now, **then}:
+            if group not in now or group not in then:
+                return f"&{group} is there in one of them"
+            ours, theirs = now[group], then[group]
+            for key in {**ours, **theirs}:
+                if ours.get(key) != theirs.get(key) and f"{key}_digest" not in ours:   # of a table: what it contains
+                    return f"{group}.{key} is {ours.get(key)}, was {theirs.get(key)}"
+        return ""
+
     def make(self, names: Iterable[str]) -> None:
-        """Run the cases among `names` that have no result. The name of an ideal joint's run stands for its case."""
+        """Run the cases among `names` that have no result. The name of an ideal joint's run stands for its case. Raises MissingResult
+        for a result that is not that of its case as it is now."""
+        names = set(names)
         wanted = {name.removesuffix(".ideal") for name in names if self.rerun or not self.path(name).exists()}
+        for name in sorted({name.removesuffix(".ideal") for name in names} & self.files.keys() - wanted):
+            if found := self.difference(name):
+                case = os.path.relpath(self.files[name])
+                raise MissingResult(
+                    f"{self.path(name)} is not the result of {case} as it is now ({found}): run {case} again, or give the CSV file"
+                )
         if not wanted:
             return
         if unknown := wanted - self.files.keys():
-            raise MissingResult(
-                f"neither a trace in {self.directory} nor a shipped case: {' '.join(sorted(unknown))} (give the trace or the case file)"
-            )
+            raise MissingResult(f"neither a trace in {self.directory} nor a shipped case: {' '.join(sorted(unknown))}")
         paths = [os.path.relpath(self.files[name]) for name in sorted(wanted)]
         settings = [word for setting in self.settings(wanted) for word in ("--set", setting)]
         command = ["-o", str(self.directory), *settings, *paths]
@@ -391,19 +428,28 @@ class WindowResults(Results):
 
 
 def located(word: str | Path, folder: Path | None = None, run_missing: bool = True) -> tuple[Results, str]:
-    """Where the results of a run are, and its name. A run is given by its name, its trace (or another of its CSV files) or its case
-    file. A name is looked for in results/ of the current folder, then in that of the checkout. A case without results is run,
-    if `run_missing`; so is a shipped case that is given by its name."""
+    """Where the results of a run are, and its name. A run is given by its case file, by one of its CSV files, or by its name in a
+    folder, which is results/ unless given. Results of a case file are in that folder or beside the file; a case without results is
+    run, if `run_missing`. Raises MissingResult for a case file that is not there or has changed since its run."""
     given = Path(word)
-    name = re.sub(r"((\.(events|summary|film|wear))?\.csv|\.nml)$", "", given.name)
-    if folder is None and given.suffix == ".csv":
-        folder = given.parent
-    elif folder is None:
-        folder = Path("results") if (Path("results") / f"{name}.csv").exists() or CHECKOUT is None else default_folder()
-    results = Results(folder, run_missing, case=given if given.suffix == ".nml" and given.exists() else None)
-    if not results.has(name):
+    if given.suffix == ".nml":
+        if not given.is_file():
+            raise MissingResult(f"{given}: no such case file")
+        name = given.stem
+        places = [Results(place, run_missing, files={name: given}) for place in ([folder] if folder else [Path("results"), given.parent])]
+        there = [results for results in places if results.has(name)]
+        results = next((results for results in there if not results.difference(name)), (there or places)[0])
         results.make([name])
-    return results, name
+        return results, name
+    if given.suffix == ".csv":
+        given = given.with_name(re.sub(r"(\.(events|summary|film|wear))?\.csv$", "", given.name))
+        path = (folder or given.parent) / given.name
+    else:
+        path = (folder or Path("results")) / given
+    results = Results(path.parent, run_missing, files={})
+    if not results.has(path.name):
+        raise MissingResult(f"no trace {results.path(path.name)}: give the trace of a run, its case file, or its name in results/")
+    return results, path.name
 
 
 def file_of(word: str | Path, kind: str, folder: Path | None = None, run_missing: bool = True) -> Path:

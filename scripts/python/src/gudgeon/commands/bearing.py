@@ -1,7 +1,7 @@
 """Draws the orbit of a pin in its clearance circle over the last cycle of a run, in fixed axes and in those of the load.
 
-    gudgeon-plot bearing big_end                     results/big_end.csv; the case is run if it is missing
-    gudgeon-plot bearing engine --place main_bearing
+    gudgeon-plot bearing cases/bearings/big_end.nml    its results, or the case is run
+    gudgeon-plot bearing engine --place main_bearing   of results/engine.csv
     gudgeon-plot bearing --shipped -o cases/bearings   the picture that is shipped
 
 The thinnest film and every 90 degrees of the crank are marked. The load, the force of the pin on its bearing, is drawn to its own scale.
@@ -11,13 +11,13 @@ import argparse
 
 from gudgeon.commands import Refused, add_output, add_results, save
 from gudgeon.plots import bearing as pictures
-from gudgeon.results import located
+from gudgeon.results import located, shipped_case
 
 SHIPPED = "big_end"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("source", nargs="?", metavar="RUN", help="name of a run, its trace or its case file")
+    parser.add_argument("source", nargs="?", metavar="RUN", help="case file, trace, or name of a run in results/")
     parser.add_argument("--place", choices=tuple(pictures.PLACES), help="which bearing (default: the first that has a film)")
     parser.add_argument("--shipped", action="store_true", help="draw the shipped case")
     add_results(parser)
@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     if options.shipped == bool(options.source):
         raise Refused("give a run, or --shipped")
-    results, name = located(options.source or SHIPPED, options.results, not options.no_run)
+    results, name = located(options.source or shipped_case(SHIPPED), options.results, not options.no_run)
     one = results[name]
     place = options.place or next((place for place in pictures.PLACES if pictures.has_film(one, place)), "")
     if not place or not pictures.has_film(one, place):

@@ -1,7 +1,7 @@
 """Draws critical speeds of a crankshaft with several cylinders: natural frequencies against the orders of the excitation, and shapes.
 
-    gudgeon-plot campbell six_mwm                        the results of the case, which is run if they are missing
-    gudgeon-plot campbell six_mwm --highest 9 --speed 3000
+    gudgeon-plot campbell cases/cylinders/six_mwm.nml    the results of the case, which is run if they are missing
+    gudgeon-plot campbell diesel --highest 9 --speed 3000
 
 At the speed 60 f/h the order h excites the natural frequency f. How strongly depends on the vector sum of the shape's amplitudes at
 the cylinders, each turned by h times the crank angle between it and the full cylinder: all cylinders excite a mode together, or
@@ -19,7 +19,7 @@ from gudgeon.results import located
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("case", metavar="RUN", help="name of a run, its trace or its case file")
+    parser.add_argument("case", metavar="RUN", help="case file, trace, or name of a run in results/")
     parser.add_argument("--highest", type=number(0, itself=False), default=12.0, metavar="ORDER", help="highest order (default: 12)")
     parser.add_argument("--speed", type=number(0, itself=False), metavar="RPM", help="largest speed in the picture (default: twice that of the case)")
     add_results(parser)

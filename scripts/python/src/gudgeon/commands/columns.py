@@ -1,7 +1,7 @@
 """Draws columns of one or several runs over the crank angle or the time.
 
-    gudgeon-plot columns sim_V                                     those that most readers want
-    gudgeon-plot columns sim_V sim_V_oscillating --columns pin_force film_thickness --cycle -1
+    gudgeon-plot columns cases/sim_V.nml                           those that most readers want
+    gudgeon-plot columns cases/sim_V.nml cases/sim_V_oscillating.nml --columns pin_force film_thickness --cycle -1
     gudgeon-plot columns engine.csv --columns all --over time -o engine.pdf
 
 A vector's name, such as pin_force, stands for the magnitude of pin_force_x and pin_force_y.
@@ -16,7 +16,7 @@ from gudgeon.results import located
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("runs", nargs="+", metavar="RUN", help="name of a run, its trace or its case file")
+    parser.add_argument("runs", nargs="+", metavar="RUN", help="case file, trace, or name of a run in results/")
     parser.add_argument("--columns", nargs="+", metavar="NAME", help="columns without units, or all")
     parser.add_argument("--over", choices=("crank_angle", "time"), default="crank_angle", help="(default: crank_angle)")
     parser.add_argument("--cycle", type=int, metavar="N", help="only this cycle, counted from 0; -1 is the last whole one")

@@ -1,7 +1,7 @@
 """Compares two runs: one picture with their difference, and how long they agree.
 
     gudgeon-plot compare A.csv B.csv
-    gudgeon-plot compare sim_I sim_I_oscillating --columns film_thickness --agreement 0.05
+    gudgeon-plot compare cases/sim_I.nml cases/sim_I_oscillating.nml --columns film_thickness --agreement 0.05
 """
 
 import argparse
@@ -13,7 +13,7 @@ from gudgeon.results import located
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("runs", nargs=2, metavar="RUN", help="name of a run, its trace or its case file")
+    parser.add_argument("runs", nargs=2, metavar="RUN", help="case file, trace, or name of a run in results/")
     parser.add_argument("--columns", nargs="+", metavar="NAME", help="columns to compare, without units (default: speeds and film thickness)")
     parser.add_argument("--agreement", type=number(0, itself=False), metavar="SHARE", default=compare.AGREEMENT,
                         help="runs agree as long as they differ by less than this share of the range (default: %(default)g)")

@@ -1,8 +1,8 @@
 """Draws results of films: the pressure in the bearing at chosen times, and the six simulations with each film.
 
-    gudgeon-plot film sim_I_finite                                        the pressures of a run with &output film_times
+    gudgeon-plot film results/engine.film.csv                             the pressures of a run with &output film_times
     gudgeon-plot film cases/film/sim_I_finite.nml --at 0.0942,0.0985      run the case, draw its pressures at these times [s]
-    gudgeon-plot film engine_pin                                          a run with &film_history: its film beside that of the run
+    gudgeon-plot film cases/film/engine_pin.nml                           a run with &film_history: its film beside that of the run
     gudgeon-plot film --simulations                                       thickness and force in simulations I to VI, three films
 
 The pressures are computed by the program.
@@ -20,7 +20,7 @@ from gudgeon.results import MissingResult, Results, default_folder, demand_numbe
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("source", nargs="?", metavar="RUN", help="name of a run, one of its files or its case file")
+    parser.add_argument("source", nargs="?", metavar="RUN", help="case file, a CSV file of a run, or name of a run in results/")
     parser.add_argument("--simulations", action="store_true", help="draw the six simulations with each film")
     parser.add_argument("--at", metavar="TIMES", help="times [s] at which the pressures of the case are drawn: t1,t2,.. or from:to:count")
     parser.add_argument("--set", action="append", default=[], metavar="GROUP.KEY=VALUE", help="change a key of the case; repeatable")
@@ -60,7 +60,7 @@ def pressures_of(options: argparse.Namespace) -> Path:
     source = Path(options.source)
     if options.at and source.suffix == ".nml":
         overrides = [part for value in (*options.set, f"output.film_times='{options.at}'") for part in ("-s", value)]
-        out = options.results or default_folder()
+        out = options.results or Path("results")
         outcome = subprocess.run([release_program(), "-q", "-o", out, *overrides, source], capture_output=True, text=True, check=False)
         if outcome.returncode != 0:
             raise MissingResult(outcome.stderr.strip())

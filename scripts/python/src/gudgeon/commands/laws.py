@@ -1,8 +1,8 @@
 """Draws what the rows of runs say about their laws: normal force over penetration, friction force over sliding speed, film force over
 eccentricity ratio. Rows in contact, or in the film, are points.
 
-    gudgeon-plot laws dry_0500um
-    gudgeon-plot laws spheres_hertz spheres_lankarani -o laws.pdf
+    gudgeon-plot laws cases/flores/dry_0500um.nml
+    gudgeon-plot laws results/hertz.csv results/lankarani.csv -o laws.pdf
 """
 
 import argparse
@@ -14,7 +14,7 @@ from gudgeon.results import located
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("runs", nargs="+", metavar="RUN", help="name of a run, its trace or its case file")
+    parser.add_argument("runs", nargs="+", metavar="RUN", help="case file, trace, or name of a run in results/")
     add_results(parser)
     add_output(parser, "beside the first run")
 

@@ -1,8 +1,8 @@
 """Analyses the settled cycles of a run: orders and spectra, means and their scatter, work and losses, loads on the bearings.
 
-    gudgeon-plot orders sim_IV                                 the results of the case, which is run if they are missing
+    gudgeon-plot orders cases/sim_IV.nml                       the results of the case, which is run if they are missing
     gudgeon-plot orders results/sim_IV.csv --columns crank_speed guide_force
-    gudgeon-plot orders dry_0500um --settle 20 --highest 60    cycles after 20 revolutions, orders up to 60
+    gudgeon-plot orders engine --settle 20 --highest 60    cycles after 20 revolutions, orders up to 60
 
 A cycle is one revolution of the crank, or two if there is gas. The analysis takes the whole cycles after the first half of the run,
 or after --settle revolutions. A trace with `&output sampling = 'crank_angle'` is used as it is; other traces are interpolated to
@@ -26,7 +26,7 @@ from gudgeon.results import located
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("case", metavar="RUN", help="name of a run, its trace or its case file")
+    parser.add_argument("case", metavar="RUN", help="case file, trace, or name of a run in results/")
     parser.add_argument("--columns", nargs="+", metavar="COLUMN",
                         help=f"columns to analyse, without units (default: {' '.join(COLUMNS)}, those that vary)")
     parser.add_argument("--settle", type=number(0), metavar="REVOLUTIONS",

@@ -1,13 +1,13 @@
 """Writes an HTML page about one run: the mechanism in motion, interactive plots, the case, the summary, warnings.
 
-    gudgeon-plot report sim_V_oscillating             -> results/sim_V_oscillating.html
+    gudgeon-plot report cases/sim_V_oscillating.nml   -> results/sim_V_oscillating.html
     gudgeon-plot report cases/flores/dry_0500um.nml -o dry.html
     gudgeon-plot report engine                        from results/engine.csv in the current folder
-    gudgeon-plot report sim_IV --cycles crank_speed guide_force
+    gudgeon-plot report cases/sim_IV.nml --cycles crank_speed guide_force
 
 The page is one file and needs no network. It shows the pressure around the pin in a film of finite length if the run has written
-it (&output film_times = 'from:to:count'), and the worn surfaces of a run with &wear. If the result of a shipped case or of a case
-file is missing, the case is run.
+it (&output film_times = 'from:to:count'), and the worn surfaces of a run with &wear. A case file without
+results is run.
 """
 
 import argparse
@@ -23,7 +23,7 @@ from gudgeon.results import MissingResult, located
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("case", metavar="RUN", help="name of a run, its trace or its case file")
+    parser.add_argument("case", metavar="RUN", help="case file, trace, or name of a run in results/")
     parser.add_argument("-o", "--out", type=Path, metavar="PATH", help="file of the page, or its folder (default: RUN.html beside the trace)")
     parser.add_argument("--cycles", nargs="+", metavar="COLUMN",
                         help="columns whose cycles and orders are shown, even if the run has not settled")

@@ -1,6 +1,6 @@
 """Draws the worn surfaces of pins and bores of runs with the group &wear.
 
-    gudgeon-plot wear flores                           results/flores.wear.csv; the case is run if it is missing
+    gudgeon-plot wear cases/wear/flores.nml            its results, or the case is run
     gudgeon-plot wear a.wear.csv b.wear.csv -o both.png
     gudgeon-plot wear --shipped -o cases/wear          the picture that is shipped, of both cases in cases/wear
 
@@ -14,7 +14,7 @@ from gudgeon import language
 from gudgeon.commands import Refused, add_output, add_results, save
 from gudgeon.names import PLACES
 from gudgeon.plots import wear as pictures
-from gudgeon.results import MissingResult, file_of
+from gudgeon.results import MissingResult, file_of, shipped_case
 
 #: Shipped cases and their titles.
 SHIPPED = {
@@ -24,7 +24,7 @@ SHIPPED = {
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("runs", nargs="*", metavar="RUN", help="name of a run, its NAME.wear.csv or its case file")
+    parser.add_argument("runs", nargs="*", metavar="RUN", help="case file, NAME.wear.csv, or name of a run in results/")
     parser.add_argument("--shipped", action="store_true", help="draw the shipped cases")
     add_results(parser)
     add_output(parser)
@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
     if options.shipped == bool(options.runs):
         raise Refused("give runs, or --shipped")
     worn, titles = [], []
-    for word in options.runs or SHIPPED:
+    for word in options.runs or [shipped_case(name) for name in SHIPPED]:
         path = file_of(word, "wear", options.results, not options.no_run)
         name = path.name.removesuffix(".wear.csv")
         found = pictures.surfaces_of(path)
