@@ -217,6 +217,7 @@ def check_commands(program: Path) -> None:
                 check(done.returncode == 0, f"{name}: runs {command}", done.stderr[-300:])
     check(met == set(excused), "tests/commands_not_run.csv has no other commands", str(set(excused) - met))
     check_words(program)
+    check_locale()
 
 
 def check_words(program: Path) -> None:
@@ -235,6 +236,13 @@ def check_words(program: Path) -> None:
             check(not found or found[1] in words, f"{page.name}: {code}: is there")
             for option in re.findall(r"(?<!\S)(--[a-z-]+)", code):
                 check(option in (words.get(found[1], "") + common if found else options), f"{page.name}: {code}: has the option {option}")
+
+
+def check_locale() -> None:
+    """Pages and scripts call awk in the locale C: elsewhere it may read and write numbers with a decimal comma."""
+    for path in [*pages(), *(ROOT / "scripts").glob("*.sh"), *(ROOT / "scripts/bench").glob("*.sh")]:
+        bare = re.findall(r"^(?!#).*(?<!LC_ALL=C )\bawk\b.*$", path.read_text(encoding="utf-8"), re.MULTILINE)
+        check(not bare, f"{path.relative_to(ROOT)}: awk in the locale C", str(bare[:1]))
 
 
 def check_keys(program: Path) -> None:

@@ -19,7 +19,7 @@ for compiler in "$@"; do
   version=$("$compiler" -dumpfullversion) || exit 1
   export FPM_FC="$compiler"
   program=$(scripts/build.sh) || exit 1
-  tests=$(fpm @strict 2>&1 | awk '/ passed, / { p += $1; f += $3 } END { if (NR) print p " passed, " f " failed" }')
+  tests=$(fpm @strict 2>&1 | LC_ALL=C awk '/ passed, / { p += $1; f += $3 } END { if (NR) print p " passed, " f " failed" }')
   case $tests in *' 0 failed') ;; *) status=1 ;; esac
   for group in cases cases/*/; do
     name=$(basename "$group")
