@@ -15,14 +15,14 @@ if [ "$1" = --stage ]; then   # --stage FOLDER NAME|COMMAND: run the command, pr
   status=$?
   seconds=$(($(date +%s) - began))
   times >"$log.times"
-  processor=$(tail -n 1 "$log.times" | tr 'ms' '  ' | awk '{ printf "%.0f", 60*($1 + $3) + $2 + $4 }')
+  processor=$(tail -n 1 "$log.times" | tr 'ms' '  ' | LC_ALL=C awk '{ printf "%.0f", 60*($1 + $3) + $2 + $4 }')
   {
     echo "== ${3%%|*}"
     echo "   $seconds s, $processor s of processor time"
     grep -v '^\[ *[0-9]*%\]' "$log"
   } >"$log.said"
   cat "$log.said"
-  awk -v status=$status '/^[0-9]+ passed, [0-9]+ failed$/ { passed = $1; failed = $3; counted = 1 }
+  LC_ALL=C awk -v status=$status '/^[0-9]+ passed, [0-9]+ failed$/ { passed = $1; failed = $3; counted = 1 }
     END { print passed + 0, failed + 0, (!counted || (status && !failed)) }' "$log" >>"$2/counts"   # not built, or crashed: wrong
   exit 0
 fi
@@ -116,4 +116,4 @@ if $all; then
   done
 fi
 
-awk '{ passed += $1; failed += $2 + $3 } END { print passed " passed, " failed " failed"; exit failed > 0 }' "$work/counts"
+LC_ALL=C awk '{ passed += $1; failed += $2 + $3 } END { print passed " passed, " failed " failed"; exit failed > 0 }' "$work/counts"
