@@ -91,6 +91,8 @@ class Browser:
         for _ in range(50):
             try:
                 self.session = self.call("POST", "/session", {"capabilities": capabilities})["sessionId"]
+                # a headless page may have no focus, without which elements have no focus events
+                self.call("POST", "/goog/cdp/execute", {"cmd": "Emulation.setFocusEmulationEnabled", "params": {"enabled": True}})
                 return
             except (urllib.error.URLError, ConnectionError):
                 time.sleep(0.2)
