@@ -116,6 +116,19 @@ def check_refused(program: Path, folder: Path) -> None:
     check(not (folder / "refused").exists(), "no result of a refused case")
 
 
+def check_constant(program: Path, folder: Path) -> None:
+    """A bearing under a constant load comes to rest, by every method; errors of the integration are no motion."""
+    (folder / "constant.load.csv").write_text("crank_angle[deg],load_x[N],load_y[N]\n0,-6200,900\n360,-6200,900\n720,-6200,900\n")
+    text = (TOP / "cases" / "bearings" / "main_bearing.nml").read_text().replace("main_bearing.load.csv", "constant.load.csv")
+    (folder / "constant.nml").write_text(text)
+    for method in ("adams", "radau", "auto"):
+        done = run(program, folder / "constant.nml", folder / "at_rest", f"integrator.method={method}")
+        check(done.returncode == 0, f"constant load, {method}: runs", done.stderr)
+        found = summary_of(folder / "at_rest" / "constant.summary.csv")
+        check(found["motion"] == "periodic" and int(found["periodic_after"]) < 40, f"constant load, {method}: comes to rest",
+              f"{found['motion']} after {found.get('periodic_after')}")
+
+
 def write_table(path: Path, head: str, rows: list[tuple[float, ...]]) -> None:
     path.write_text(head + "\n" + "".join(",".join(repr(value) for value in row) + "\n" for row in rows))
 
@@ -257,6 +270,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as name:
         check_references(program, Path(name))
         check_limits(program, Path(name))
+        check_constant(program, Path(name))
         check_refused(program, Path(name))
         check_after_runs(program, Path(name))
     return assertions.report()

@@ -222,6 +222,9 @@ contains
       'output.ideal_twin=F'])
     call check%that(trace%report%periods%period == 1, 'the shortest period is told')
     call check%that(trace%report%periods%found_after < 40, 'the shortest period is told soon')
+    trace = run_case('cases/flores/dry_0100um.nml', [character(len=long) :: until, 'output.samples_per_revolution=1', &
+      'output.ideal_twin=F'])
+    call check%that(trace%report%periods%period == 2, 'a doubled period that is as near is not told')
   end subroutine shortest_period
 
   !> A pin that comes to rest on its bearing keeps the impact speed of its last contact for ever. Whether this contact begins before

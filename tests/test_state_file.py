@@ -140,6 +140,29 @@ def test_settled(gudgeon: Gudgeon, work: Path) -> None:
           "in a wider bearing a pin on its film keeps its place relative to the clearance", first["eccentricity_x[m]"])
 
 
+def test_pressed(gudgeon: Gudgeon, work: Path) -> None:
+    """A state whose pin is in the wall, with a contact that has no speed of impact: it leaves as from the same start in the case."""
+    text = (CASES / "flores" / "dry_0100um.nml").read_text()
+    case = work / "pressed.nml"
+    case.write_text(text)
+    common = settings("initial.crank_speed=0", "contact.restitution=0.8", "output.interval=1e-5", "integrator.revolutions=0",
+                      "output.ideal_twin=F", "integrator.relative_tolerance=1e-9")
+    gudgeon.run("-q", "-o", work / "in_case", *common, "-s", "integrator.end_time=3e-4", "-s", "initial.eccentricity=1.05e-4,0", case)
+    gudgeon.run("-q", "-o", work / "start", *common, "-s", "integrator.end_time=1e-9", "-s", "initial.eccentricity=9.5e-5,0", case)
+    state = (work / "start" / "pressed.state.nml").read_text()
+    for phase in (0, 2):
+        edited = re.sub(r"phase = \d", f"phase = {phase}", re.sub(r"eccentricity = \S+,\s*\S+", "eccentricity = 1.05e-4, 0", state))
+        (work / "edited.nml").write_text(re.sub(r"eccentricity_rate = \S+,\s*\S+", "eccentricity_rate = 0, 0", edited))
+        status, _, error = gudgeon.run("-q", "-o", work / "from", "--from", work / "edited.nml", *common, "-s", "initial.goes_on=F", "-s",
+                                       "integrator.end_time=3e-4", case)
+        check(not status, f"a state whose pin is in the wall, phase {phase}", error)
+        ends = [[row for row in table(work / folder / "pressed.events.csv") if row["event"] == "contact_ends"] for folder in ("in_case", "from")]
+        check(all(ends), f"a pin in the wall leaves it, phase {phase}")
+        if all(ends):
+            left, found = (float(rows[0]["normal_speed[m/s]"]) for rows in ends)
+            check(left < 0 and not differs(left, found, abs(left), 1e-5), f"it leaves as from a case, phase {phase}", f"{found}, {left}")
+
+
 def test_study(gudgeon: Gudgeon, work: Path) -> None:
     """&study start = 'previous': each run starts from the end of the run before it, as --from does."""
     case, text = CASES / "flores" / "dry_0100um.nml", "1e-4, 9e-5, 1.1e-4"
@@ -243,7 +266,7 @@ def main() -> int:
         work = Path(folder)
         for case, (length, part, tolerance) in HALVES.items():
             test_halves(gudgeon, work / case.replace("/", "_"), case, length, part, tolerance)
-        for test in (test_settled, test_study, test_refusals, test_stops):
+        for test in (test_settled, test_pressed, test_study, test_refusals, test_stops):
             (work / test.__name__).mkdir()
             test(gudgeon, work / test.__name__)
     return assertions.report()

@@ -112,12 +112,13 @@ contains
     if (self%has_force) force = (pressure - self%crankcase_pressure)*self%cylinder%area
   end function force
 
-  !> Add pressure [Pa], force and volume at a crank angle with this sine and cosine to a row.
+  !> Add pressure [Pa], force and volume at a crank angle with this sine and cosine to a row; nothing of a gas that does not act.
   pure subroutine add_columns(self, sin_crank, cos_crank, pressure, row)
     class(working_gas_t), intent(in) :: self
     real(dp), intent(in) :: sin_crank, cos_crank, pressure
     type(trace_row_t), intent(inout) :: row
     real(dp) :: volume
+    if (.not. self%has_force) return
     call row%add('cylinder_pressure[Pa]', pressure, 'absolute pressure of the gas in the cylinder')
     volume = 0
     if (row%wants(1)) volume = self%cylinder%volume_at(sin_crank, cos_crank)

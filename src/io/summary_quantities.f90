@@ -119,7 +119,8 @@ module summary_quantities
     quantity_t('max_rod_mid_deflection', 'm', 'largest bending deflection midway between the pins'), &
     quantity_t('max_rod_stretch', 'm', 'largest elongation or shortening'), &
     quantity_t('max_rod_strain_energy', 'J', 'largest elastic energy in the rod'), &
-    quantity_t('crankshaft_frequency', 'Hz', 'natural frequency of the crank and the flywheel on the elastic shaft'), &
+    quantity_t('crankshaft_frequency', 'Hz', &
+      'natural frequency of the crank and the flywheel on the elastic shaft, with the mean inertia of rod and piston'), &
     quantity_t('max_crankshaft_twist', 'rad', 'largest twist'), &
     quantity_t('film_history_cycles', '1', 'cycles that the film with memory was marched (film_history)'), &
     quantity_t('film_history_cycle_change', '1', 'change of its oil from the end of a cycle to that of the next, over the oil'), &
@@ -150,6 +151,9 @@ module summary_quantities
     quantity_t('cycle_front_twist_order_H', 'rad', 'amplitude at order H of the twist of the first station against the '// &
       'driven one in the last cycle'), &
     quantity_t('cycle_segment_J_torque_order_H', 'N.m', 'amplitude at order H of the torque of segment J in the last cycle'), &
+    quantity_t('cycle_max_segment_J_torque', 'N.m', 'largest torque of segment J of the crankshaft in the last cycle'), &
+    quantity_t('cycle_max_station_J_twist', 'rad', &
+      'largest twist of station J against the crank of the full cylinder in the last cycle'), &
     quantity_t('max_segment_J_torque', 'N.m', 'largest torque of segment J of the crankshaft'), &
     quantity_t('max_station_J_twist', 'rad', 'largest twist of station J against the crank of the full cylinder'), &
     quantity_t('version', '', 'version of the program'), &

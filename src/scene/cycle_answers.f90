@@ -190,7 +190,11 @@ contains
       associate (joint => scene%joints(i), pin => cycle%pin(scene%joints(i)%place))
         call add('cycle_min_film_thickness', pin%min_film_thickness, i)
         call add('cycle_min_film_thickness_angle', degrees(pin%thinnest_angle), i)
-        call add('cycle_max_eccentricity_ratio', 1 - pin%min_film_thickness/joint%bearing%clearance, i)
+        if (joint%has_own_gap) then
+          call add('cycle_max_eccentricity_ratio', pin%max_eccentricity/joint%bearing%clearance, i)
+        else
+          call add('cycle_max_eccentricity_ratio', 1 - pin%min_film_thickness/joint%bearing%clearance, i)
+        end if
         call add('cycle_max_force', pin%max_force, i)
         call add('cycle_contact_share', pin%contact_time/cycle%duration, i)
         film = work_of(of_film, i)

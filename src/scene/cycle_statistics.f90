@@ -20,6 +20,7 @@ module cycle_statistics
     real(dp) :: contact_time = 0                      !! [s]
     integer :: impacts = 0                            !! number of contacts that began
     real(dp) :: max_force = 0                         !! [N]
+    real(dp) :: max_eccentricity = 0                  !! |e| [m], where the gap does not follow from it
     real(dp) :: force_integral = 0                    !! integral of the magnitude of the force over time [N s]
     real(dp) :: thinnest_angle = 0                    !! crank angle at the smallest film thickness [rad]
     real(dp) :: max_film_pressure = 0                 !! [Pa] if results of the film are requested
@@ -92,6 +93,7 @@ contains
       total%contact_time = total%contact_time + one%contact_time
       total%impacts = total%impacts + one%impacts
       total%max_force = max(total%max_force, one%max_force)
+      total%max_eccentricity = max(total%max_eccentricity, one%max_eccentricity)
       total%force_integral = total%force_integral + one%force_integral
     end associate
     do i = 1, skirt

@@ -8,7 +8,7 @@ module cycle_watch
   use scene_problem, only: scene_t, evaluation_t, phase_contact
   use crank_passage, only: find_passage
   use revolutions, only: revolutions_t
-  use step_peaks, only: n_peaks, of_pin_force, of_penetration
+  use step_peaks, only: n_peaks, of_pin_force, of_penetration, of_eccentricity
   use trace_columns, only: column_list_t, row_values
   use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt, most_parts
   use run_length, only: longest_period
@@ -142,14 +142,16 @@ contains
   end subroutine record_strobes
 
   !> Lower the values above which peaks are searched from those of the run to those of the present revolution, if that is counted.
-  pure subroutine lower_to_peaks(self, pin, known)
+  pure subroutine lower_to_peaks(self, pin, has_own_gap, known)
     class(cycle_watch_t), intent(in) :: self
     integer, intent(in) :: pin
+    logical, intent(in) :: has_own_gap          !! the gap does not follow from the eccentricity, whose peak is searched too
     real(dp), intent(inout) :: known(n_peaks)   !! huge: this quantity is not searched
     if (self%ended < self%uncounted) return
     associate (c => self%present%pin(pin))
       known(of_pin_force) = min(known(of_pin_force), c%max_force)
       if (known(of_penetration) < huge(known)) known(of_penetration) = min(known(of_penetration), -c%min_film_thickness)
+      if (has_own_gap) known(of_eccentricity) = c%max_eccentricity
     end associate
   end subroutine lower_to_peaks
 
@@ -264,6 +266,7 @@ contains
     real(dp), intent(in) :: thinnest_angle   !! crank angle of the value of the penetration [rad]
     associate (c => self%present%pin(pin))
       c%max_force = max(c%max_force, values(of_pin_force))
+      c%max_eccentricity = max(c%max_eccentricity, values(of_eccentricity))
       if (self%is_thinner(pin, values)) c%thinnest_angle = thinnest_angle
       c%min_film_thickness = min(c%min_film_thickness, -values(of_penetration))
       if (is_touching) c%max_penetration = max(c%max_penetration, values(of_penetration))

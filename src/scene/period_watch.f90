@@ -11,7 +11,7 @@
 !> A motion that approaches its limit from alternating sides has small differences over two periods first. Before a period is told,
 !> its divisors are tested: one over which the states differ by the tolerance at most is the period; one over which they still
 !> approach each other, and may come as near, is waited for. Since less than the tolerance is to come over the period itself, states
-!> that differ by more than three tolerances will not.
+!> that differ by more than five tolerances will not, with room for the range of a component that is still settling.
 module period_watch
   use kinds, only: dp
   use constants, only: two_pi
@@ -25,12 +25,16 @@ module period_watch
   integer, parameter :: depth = (repeats_needed + 1)*longest_period       !! number of revolutions that are stored
   real(dp), parameter :: least_range = 1e-3_dp  !! least range of a component, relative to its natural size, so that a component at
                                                 !! rest does not require infinite accuracy
+  real(dp), parameter :: resolved = 10          !! of a bearing by itself: least difference that is told from an error of the
+                                                !! integration, over the tolerance of that
+  real(dp), parameter :: near = 5   !! differences over a divisor of a period that may still come within the tolerance, over it
   real(dp), parameter :: noise = 1e-2_dp            !! differences due to the integration, relative to the tolerance
 
   type :: period_watch_t
     logical :: is_on = .false.             !! a periodic motion ends the run; else the revolutions are only compared
     integer :: longest = longest_period    !! longest period searched [revolutions]
     real(dp) :: tolerance = 0
+    real(dp) :: of_integration = 0         !! relative tolerance of the integration
     integer :: most_revolutions = 0        !! largest number of revolutions of the run
     logical :: keeps_one_more = .false.    !! the run continues for one more period, the window of the output
     integer :: period = 0                  !! found [revolutions]; 0: none
@@ -45,7 +49,7 @@ module period_watch
     integer :: made = 0           !! number of complete revolutions
     integer, private :: earlier = 0        !! number of revolutions before the beginning
     integer, allocatable, private :: at(:)       !! indices of the components that are compared
-    real(dp), allocatable, private :: smallest_range(:)
+    real(dp), allocatable, private :: natural_size(:), smallest_range(:)
     real(dp), allocatable, private :: turning(:)  !! 1 for an angle that grows with the crank angle, which is subtracted from it;
                                                   !! else 0
     logical, allocatable, private :: is_slow(:)   !! temperatures
@@ -74,12 +78,17 @@ contains
     integer :: i
     self%at = scene%compared_states()
     call scene%layout%natural_scales(scales, growing)
-    self%smallest_range = least_range*scales(self%at)
+    self%natural_size = scales(self%at)
     self%turning = merge(1.0_dp, 0.0_dp, growing(self%at))
     allocate (self%is_slow(size(self%at)), source=.false.)
+    self%smallest_range = least_range*self%natural_size
     do i = 1, size(scene%joints)
       if (allocated(scene%joints(i)%heat)) where (self%at == scene%joints(i)%heat%at%first) self%is_slow = .true.
     end do
+    if (allocated(scene%given_load)) then   ! a load that is constant lets its bearing come to rest
+      where (.not. self%is_slow) self%smallest_range = max(self%smallest_range, &
+        min(1.0_dp, resolved*self%of_integration/max(self%tolerance, tiny(1.0_dp)))*self%natural_size)
+    end if
     self%forcing = scene%forced_revolutions()
     self%earlier = int(abs(scene%crank_angle(t, y) - scene%start_angle)/two_pi)
     allocate (self%states(size(self%at), 0:depth - 1), source=0.0_dp)
@@ -161,7 +170,7 @@ contains
     integer :: k
     change = huge(change)
     if (self%made - p < 1) return   ! the start is not stored
-    range = self%smallest_range/least_range
+    range = self%natural_size
     do k = self%made - p + 1, self%made
       range = max(range, self%high(:, mod(k, depth)) - self%low(:, mod(k, depth)))
     end do
@@ -213,7 +222,7 @@ contains
         if (mod(p, told) /= 0) cycle
         newest = largest(self%made - p + 1, self%made, told)
         if (newest <= self%tolerance) exit
-        if (newest <= 3*self%tolerance .and. newest < largest(self%made - 2*p + 1, self%made - p, told)) return
+        if (newest <= near*self%tolerance .and. newest < largest(self%made - 2*p + 1, self%made - p, told)) return
       end do
       told = min(told, p)
       self%period = told

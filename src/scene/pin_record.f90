@@ -26,6 +26,7 @@ module pin_record
     real(dp) :: deepest = huge(1.0_dp)         !! largest penetration for which the contact geometry is valid [m]
     type(trace_event_t), private :: contact    !! present or last contact
     logical, private :: reports_film = .false.
+    logical, private :: has_own_gap = .false.  !! its gap does not follow from the eccentricity
     logical, private :: floats = .false.       !! it is one end of a floating pin
     real(dp), private :: film_time = 0         !! time up to which the results of its film have been integrated [s]
     real(dp), private :: film_pressure = 0     !! largest pressure at that time [Pa]
@@ -54,6 +55,7 @@ contains
     self%contact%pin = pin
     if (self%joint == 0) return
     self%reports_film = scene%joints(self%joint)%reports_film
+    self%has_own_gap = scene%joints(self%joint)%has_own_gap
     self%floats = scene%joints(self%joint)%site%pin_body == body_pin
     if (allocated(scene%joints(self%joint)%wear)) then
       allocate (self%wear)
@@ -123,7 +125,7 @@ contains
     known(of_pin_force) = figures%pin(self%pin)%max_force
     known(of_penetration:) = huge(known)
     if (self%joint > 0) known(of_penetration) = -figures%pin(self%pin)%min_film_thickness
-    if (present(cycles)) call cycles%lower_to_peaks(self%pin, known)
+    if (present(cycles)) call cycles%lower_to_peaks(self%pin, self%has_own_gap, known)
     if (touches) then
       associate (f => figures%pin(self%pin))
         f%longest_contact = max(f%longest_contact, t - self%contact%time)

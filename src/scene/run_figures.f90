@@ -51,7 +51,7 @@ module run_figures
     real(dp) :: twist = 0                     !! largest magnitude of the twist of the crankshaft [rad]
     real(dp) :: bending_frequency = 0         !! of the rod between two fixed pins [rad/s]
     real(dp) :: axial_frequency = 0           !! of the axial vibration of the rod with the piston [rad/s]
-    real(dp) :: twist_frequency = 0           !! of the crankshaft at the starting angle [rad/s]
+    real(dp) :: twist_frequency = 0           !! of the crankshaft, with the mean inertia of a turn [rad/s]
   contains
     procedure :: declare => declare_elastic
   end type elastic_figures_t

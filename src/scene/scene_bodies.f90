@@ -1,6 +1,7 @@
 !> Parts of a scene other than rigid bodies and an ideal guide: elastic members, a guide with friction, a piston with clearance in
 !> its bore.
 submodule (scene_problem) scene_bodies
+  use constants, only: two_pi
   use chain_loads, only: unloaded
   use ideal_chain, only: ideal_motion
   use loose_piston, only: place_piston, move_centre
@@ -233,10 +234,16 @@ contains
   end procedure other_cranks
 
   module procedure twist_frequency
+    integer, parameter :: angles = 256
+    real(dp) :: inertia   ! of the crank with rod and piston, mean over a turn [kg m^2]
+    integer :: k
+    inertia = 0
     associate (bodies => self%chain%bodies)
-      twist_frequency = self%chain%elastic%crankshaft%natural_frequency(2*bodies%kinetic_energy(ideal_motion(bodies, &
-        self%start_angle, 1.0_dp)), self%chain%elastic%holds_flywheel)
+      do k = 1, angles
+        inertia = inertia + 2*bodies%kinetic_energy(ideal_motion(bodies, k*two_pi/angles, 1.0_dp))/angles
+      end do
     end associate
+    twist_frequency = self%chain%elastic%crankshaft%natural_frequency(inertia, self%chain%elastic%holds_flywheel)
   end procedure twist_frequency
 
   !> Normal force of the piston on an ideal guide, from the force of the joint of the pin [N].

@@ -168,7 +168,10 @@ contains
       if (allocated(case%crankshaft)) allocate (scene%chain%elastic%crankshaft, source=case%crankshaft)
     end if
     if (case%has_train()) call build_train(case, ideal_joint, scene%chain%train)
-    if (allocated(case%combustion) .or. allocated(case%measured)) allocate (scene%gas)
+    if (.not. (allocated(case%combustion) .or. allocated(case%measured))) return
+    allocate (scene%gas)
+    if (allocated(scene%chain%train) .and. allocated(case%cylinders)) &
+      scene%gas%has_force = case%cylinders(scene%chain%train%full_number)%gas
   end subroutine assemble_scene
 
   !> Let the piston pin turn in both of its joints.
@@ -209,7 +212,9 @@ contains
     type(scene_t), intent(inout) :: scene
     type(error_t), allocatable, intent(out) :: error
     real(dp) :: tolerance
+    logical :: has_force
     if (.not. allocated(scene%gas)) return
+    has_force = scene%gas%has_force
     tolerance = gas_margin*case%integrator%relative_tolerance
     associate (m => case%mechanism)
       if (allocated(case%measured)) then
@@ -219,6 +224,7 @@ contains
       end if
     end associate
     if (allocated(error)) return
+    scene%gas%has_force = has_force
     scene%gas%sense = sign(1.0_dp, scene%start_speed)   ! an engine that turns backwards is the mirror image of the other
     call scene%gas%start(scene%start_angle, merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
     if (.not. allocated(scene%chain%train)) return

@@ -284,8 +284,8 @@ module scene_problem
       real(dp) :: works(size(self%parts))
     end function works
 
-    !> Natural frequency of crank and flywheel on an elastic crankshaft at the starting angle [rad/s], with ideal joints and a rigid
-    !> rod.
+    !> Natural frequency of crank and flywheel on an elastic crankshaft [rad/s], with ideal joints, a rigid rod and the mean inertia
+    !> of rod and piston over a turn.
     pure real(dp) module function twist_frequency(self)
       class(scene_t), intent(in) :: self
     end function twist_frequency

@@ -134,6 +134,7 @@ contains
       recorder%periods%is_on = case%run%is_until_periodic()
       recorder%periods%longest = case%run%period_revolutions
       recorder%periods%tolerance = case%run%periodic_tolerance
+      recorder%periods%of_integration = case%integrator%relative_tolerance
       recorder%periods%most_revolutions = case%run%most_revolutions
       recorder%periods%keeps_one_more = recorder%periods%is_on .and. case%output%window == 'last_period'
       recorder%rows%end_time = latest_end(case)

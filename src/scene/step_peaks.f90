@@ -1,7 +1,9 @@
-!> Searches the largest force on a pin, the largest penetration and the largest normal force between accepted points.
+!> Searches the largest force on a pin, the largest penetration, the largest normal force and the largest eccentricity between
+!> accepted points.
 !>
 !> A step is searched only if a quantity may exceed the largest value known so far. Penetration and normal force follow from the
-!> eccentricity alone and are taken from the interpolant of the method. The force on the pin needs evaluations of the scene: unless
+!> eccentricity alone and are taken from the interpolant of the method. The force on the pin needs evaluations of the scene, as the
+!> eccentricity between walls that give way: unless
 !> three points show that it only rises or only falls, its slopes at both ends are computed, and the peak is searched if it rises
 !> and then falls.
 module step_peaks
@@ -14,16 +16,18 @@ module step_peaks
   use peak_search, only: sample_t, peak_search_t, may_peak
   implicit none
   private
-  public :: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks
+  public :: peak_watch_t, of_pin_force, of_penetration, of_normal_force, of_eccentricity, n_peaks
 
   !> The quantities: indices into arrays of values.
   integer, parameter :: of_pin_force = 1     !! magnitude of the force of the joint on the pin [N]
   integer, parameter :: of_penetration = 2   !! |e| - c, negative without contact: the negative of the film thickness [m]
   integer, parameter :: of_normal_force = 3  !! normal force of the contact [N]
-  integer, parameter :: n_peaks = 3
+  integer, parameter :: of_eccentricity = 4  !! |e| [m]
+  integer, parameter :: n_peaks = 4
 
   real(dp), parameter :: no_peak = -huge(1.0_dp)
-  real(dp), parameter :: short = 1e-4_dp      !! fraction of an interval over which a slope is taken
+  real(dp), parameter :: short = 3e-3_dp      !! fraction of an interval over which a slope is taken: over much less, the difference
+                                              !! of the interpolant from the value at the end of a step would hide it
 
   !> Follows one pin through a run, interval by interval. An interval is a step, or a part of it that ends at an event or at the end
   !> of a revolution.
@@ -84,9 +88,11 @@ contains
     values(of_pin_force) = force_size(scene%pin_force(now, self%pin))
     values(of_penetration) = 0
     values(of_normal_force) = 0
+    values(of_eccentricity) = 0
     if (self%joint == 0) return
     values(of_penetration) = now%joint(self%joint)%penetration
     values(of_normal_force) = now%joint(self%joint)%normal_force
+    values(of_eccentricity) = now%joint(self%joint)%distance
   end function values
 
   !> The rate of the penetration in one evaluation [m/s].
@@ -123,6 +129,7 @@ contains
     if (t_to > self%t) then
       if (known(of_pin_force) < huge(known)) call search_force(of_pin_force)
       if (known(of_normal_force) < huge(known)) call search_force(of_normal_force)
+      if (known(of_eccentricity) < huge(known)) call search_force(of_eccentricity)
       if (known(of_penetration) < huge(known)) call search_between(self, method, scene, of_penetration, &
         sample_t(self%t, self%last(of_penetration), self%slope(of_penetration)), sample_t(t_to, ends(of_penetration), rate), &
         known(of_penetration), largest(of_penetration))
@@ -157,7 +164,8 @@ contains
     if (self%joint > 0) then
       associate (joint => scene%joints(self%joint))
         call joint%find_contact_state(method%y_old, motion, normal_force)
-        call stand_at(self, method%t_old, [normal_force, motion%penetration, normal_force], motion%penetration_rate)
+        call stand_at(self, method%t_old, [normal_force, motion%penetration, normal_force, motion%distance], &
+          motion%penetration_rate)
         if (joint%phase == phase_free) return
         if (joint%phase == phase_contact .and. normal_force <= next_to_none*later_force) return
       end associate
@@ -254,7 +262,7 @@ contains
     largest = max(largest, peak%value(1))
   end subroutine search_peak
 
-  !> The value of a quantity at a time inside the step; `no_peak` for a pin force where the scene is not defined.
+  !> The value of a quantity at a time inside the step; `no_peak` where the scene is not defined and the value needs its evaluation.
   real(dp) function value_inside(self, method, scene, quantity, t) result(value)
     class(peak_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
@@ -265,10 +273,12 @@ contains
     type(joint_evaluation_t) :: motion
     real(dp) :: normal_force, y(size(method%y))
     logical :: in_domain
-    if (quantity == of_pin_force) then
+    if (quantity == of_pin_force .or. quantity == of_eccentricity) then
       call evaluate_inside(scene, method, t, y, now, in_domain, self%evaluations)
       value = no_peak
-      if (in_domain) value = force_size(scene%pin_force(now, self%pin))
+      if (.not. in_domain) return
+      if (quantity == of_pin_force) value = force_size(scene%pin_force(now, self%pin))
+      if (quantity == of_eccentricity) value = now%joint(self%joint)%distance
     else
       call method%interpolate(t, y)
       call scene%joints(self%joint)%find_contact_state(y, motion, normal_force)

@@ -114,7 +114,8 @@ contains
     train%driven = 1
   end subroutine make_rigid
 
-  !> The gas in the other cylinders, whose states `start` finds. The gas of the mechanism gets the factor of its own cylinder.
+  !> The gas in the other cylinders, whose states `start` finds. The pressure of the mechanism's own gas gets the factor of its
+  !> cylinder.
   subroutine build_other_gas(case, gas, train, other)
     type(case_t), intent(in) :: case
     type(working_gas_t), intent(inout) :: gas
@@ -130,7 +131,6 @@ contains
       other%has_gas(i) = case%cylinders(other%number(i))%gas
     end do
     gas%scale = case%cylinders(train%full_number)%pressure_scale
-    gas%has_force = case%cylinders(train%full_number)%gas
   end subroutine build_other_gas
 
   !> Gravity along the axis of the mechanism's cylinder and across it [m/s^2].

@@ -46,6 +46,7 @@ module train_record
     real(dp) :: duration = 0
     real(dp) :: largest(2) = -huge(1.0_dp), smallest(2) = huge(1.0_dp)   !! speeds [rad/s]
     real(dp) :: loss(most_rings) = 0              !! [J]
+    real(dp) :: twist(most_stations) = 0, torque(most_stations) = 0   !! largest sizes [rad], [N m]
     complex(dp) :: order(most_orders, most_curves) = 0   !! integrals over the angle
   end type turn_t
 
@@ -143,12 +144,13 @@ contains
       if (h > 0) then
         if (self%has_jumped) call straighten(self%last, next, h)
         do j = 1, merge(train%n, 0, train%is_chain)
-          call climb(h, self%last%twist(j), self%last%twist_rate(j), next%twist(j), next%twist_rate(j), self%max_twist(j))
-          call climb(h, -self%last%twist(j), -self%last%twist_rate(j), -next%twist(j), -next%twist_rate(j), self%max_twist(j))
-          call climb(h, self%last%torque(j), self%last%torque_rate(j), next%torque(j), next%torque_rate(j), self%max_torque(j))
-          call climb(h, -self%last%torque(j), -self%last%torque_rate(j), -next%torque(j), -next%torque_rate(j), &
-            self%max_torque(j))
+          call climb(h, self%last%twist(j), self%last%twist_rate(j), next%twist(j), next%twist_rate(j), turn%twist(j))
+          call climb(h, -self%last%twist(j), -self%last%twist_rate(j), -next%twist(j), -next%twist_rate(j), turn%twist(j))
+          call climb(h, self%last%torque(j), self%last%torque_rate(j), next%torque(j), next%torque_rate(j), turn%torque(j))
+          call climb(h, -self%last%torque(j), -self%last%torque_rate(j), -next%torque(j), -next%torque_rate(j), turn%torque(j))
         end do
+        self%max_twist = max(self%max_twist, turn%twist)
+        self%max_torque = max(self%max_torque, turn%torque)
         do j = 1, 2
           call climb(h, self%last%speed(j), self%last%speed_rate(j), next%speed(j), next%speed_rate(j), turn%largest(j))
           turn%smallest(j) = -turn%smallest(j)
@@ -306,13 +308,16 @@ contains
             cycle%largest = max(cycle%largest, turn%largest)
             cycle%smallest = min(cycle%smallest, turn%smallest)
             cycle%loss = cycle%loss + turn%loss
+            cycle%twist = max(cycle%twist, turn%twist)
+            cycle%torque = max(cycle%torque, turn%torque)
             cycle%order = cycle%order + turn%order
           end associate
         end do
         call add('cyclic_irregularity', 'cyclic_irregularity', irregularity(1))
         if (train%is_chain) call add_cycle()
+        if (train%is_chain) call add_extremes('cycle_', cycle%torque, cycle%twist)
       end if
-      if (train%is_chain) call add_extremes()
+      if (train%is_chain) call add_extremes('', self%max_torque, self%max_twist)
     end associate
     list = list(:n)
 
@@ -374,13 +379,15 @@ contains
       end do
     end subroutine add_cycle
 
-    subroutine add_extremes()
+    subroutine add_extremes(of, torque, twist)
+      character(len=*), intent(in) :: of   !! the beginning of the names: of the last cycle or of the run
+      real(dp), intent(in) :: torque(:), twist(:)
       do j = 1, scene%chain%train%n - 1
-        call add('max_segment_J_torque', 'max_segment_'//integer_text(j)//'_torque', self%max_torque(j))
+        call add(of//'max_segment_J_torque', of//'max_segment_'//integer_text(j)//'_torque', torque(j))
       end do
       do j = 1, scene%chain%train%n
         if (j /= scene%chain%train%full) &
-          call add('max_station_J_twist', 'max_station_'//integer_text(j)//'_twist', self%max_twist(j))
+          call add(of//'max_station_J_twist', of//'max_station_'//integer_text(j)//'_twist', twist(j))
       end do
     end subroutine add_extremes
   end function results
