@@ -26,8 +26,6 @@ module result_notes
   real(dp), parameter :: largest_pressure = 5e9_dp     !! beyond the strength of every bearing [Pa]
   real(dp), parameter :: most_energy_change = 0.02_dp  !! in a cycle, of the work of the gas: more is no settled motion
   character(len=*), parameter :: too_much = ': no bearing carries it'
-  character(len=*), parameter :: too_thin = ' is thinner than 10 nm, where oil is not a continuous fluid'
-  character(len=*), parameter :: newline = achar(10)
 
 contains
 
@@ -108,7 +106,8 @@ contains
       end if
       if (allocated(joint%film) .and. pin%min_film_thickness > 0) then
         if (pin%min_film_thickness < thinnest_film) then
-          call add_line(name//'a film of '//quantity_text(pin%min_film_thickness, 'm')//too_thin)
+          call add_line(name//'a film of '//quantity_text(pin%min_film_thickness, 'm')//' is thinner than 10 nm, where oil is '// &
+            'not a continuous fluid')
         else if (pin%min_film_thickness < smoothest .and. .not. allocated(joint%asperities)) then
           call add_line(name//'a film of '//quantity_text(pin%min_film_thickness, 'm')//' is thinner than the roughness of '// &
             'polished surfaces, 0.1 um: &asperities')
@@ -192,17 +191,26 @@ contains
     character(len=:), allocatable :: text
     text = ''
     associate (found => history%summary)
-      if (size(history%rows) > 0 .and. found%max_pressure > largest_pressure) text = 'film_history: a film pressure of '// &
-        quantity_text(found%max_pressure, 'Pa')//' is larger than 5 GPa'//too_much//newline
-      if (size(history%rows) > 0 .and. found%min_thickness < thinnest_film) text = text//'film_history: a film of '// &
-        quantity_text(found%min_thickness, 'm')//too_thin//newline
+      if (size(history%rows) > 0) then
+        if (found%max_pressure > largest_pressure) call add_line('film_history: a film pressure of '// &
+          quantity_text(found%max_pressure, 'Pa')//' is larger than 5 GPa'//too_much)
+        if (found%min_thickness < thinnest_film) call add_line('film_history: a film of '// &
+          quantity_text(found%min_thickness, 'm')//' is thinner than 10 nm, where oil is not a continuous fluid')
+      end if
       if (found%cycles == history%most_cycles .and. is_cycle .and. found%content_change >= history%cycle_tolerance) &
-        text = text//'film_history: the oil still changes by '//short_text(found%content_change)// &
-        ' from cycle to cycle: raise &film_history most_cycles'//newline
+        call add_line('film_history: the oil still changes by '//short_text(found%content_change)// &
+          ' from cycle to cycle: raise &film_history most_cycles')
       if (found%cycles > 0 .and. found%cells_per_gap < least_cells_per_gap) &
-        text = text//'film_history: the thinnest part of the film has '//short_text(found%cells_per_gap)// &
-        ' cells, fewer than 4: raise &film_history around'//newline
-      if (text /= '') text = text(:len(text) - 1)
+        call add_line('film_history: the thinnest part of the film has '//short_text(found%cells_per_gap)// &
+          ' cells, fewer than 4: raise &film_history around')
     end associate
+
+  contains
+
+    pure subroutine add_line(line)
+      character(len=*), intent(in) :: line
+      if (text /= '') text = text//achar(10)
+      text = text//line
+    end subroutine add_line
   end function history_remarks
 end module result_notes

@@ -391,9 +391,9 @@ contains
         call fail(error, report%status, status_integration)
       else if (.not. all(report%figures%pin%heat%relative_residual() <= &
                energy_limit(case%integrator%relative_tolerance, report%figures%crank_travel))) then
-        report%status = 'heat of a film not kept: the residual is beyond its limit, so the results are wrong; run to '// &
-          place(scene, t, y)
-        call fail(error, report%status, status_integration)
+        call fail(error, 'heat of a film not kept: the residual is beyond its limit, so the results are wrong; run to '// &
+          place(scene, t, y), status_integration)
+        report%status = error%message
       else
         report%energy_is_poor = report%figures%max_energy_residual > report%figures%max_energy* &
           remarkable_residual(case%integrator%relative_tolerance)
