@@ -53,6 +53,7 @@ contains
     call test_joint(check)
     call test_films(check)
     call test_places(check)
+    call test_groups_of_one_joint(check)
     call test_runs(check)
     call test_ends_of_runs(check)
     call test_groups_taken_out(check)
@@ -473,6 +474,48 @@ contains
     call refused_on(check, whole//second, [character(len=40) :: 'contact=none', 'crank_pin.contact.law=hertz'], &
                     'x.nml: &joint kind = clearance: needs contact or lubrication: without them no force would act on the pin')
   end subroutine test_places
+
+  !> Overrides of a group that the case has for all joints or for single ones: the text of the case written out by hand is what
+  !> they must give, and a key that would act elsewhere is refused.
+  subroutine test_groups_of_one_joint(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: second = '&joint place=''crank_pin'' kind=''clearance'' clearance=1e-4 '// &
+      'bearing_radius=0.012 bearing_length=0.02 /'//n, own = '&contact place=''crank_pin'' law=''hertz'' /'//n, &
+      film = 'law=''finite_bearing'' variant=''short'' oil=''SAE 30'' temperature=', &
+      length = 'joint.bearing_length=0.015', hot = 'crank_pin.lubrication.temperature=370'
+    character(len=*), parameter :: alone = bodies//second//own//run
+    type(case_t) :: c
+    type(error_t), allocatable :: error
+    character(len=:), allocatable :: text, written, again
+    call refused_on(check, alone, ['contact.law=exact'], 'x.nml: --set contact.law=exact: &contact: the case has this group '// &
+      'for crank_pin: write crank_pin.contact.law')
+    call refused_on(check, alone, ['contact=none'], 'x.nml: --set contact=none: &contact: the case has this group for '// &
+      'crank_pin: write crank_pin.contact=none')
+    call refused_on(check, alone, ['joint.clearance=2e-5'], 'x.nml: --set joint.clearance=2e-5: &joint: the case has this '// &
+      'group for crank_pin: write crank_pin.joint.clearance')
+    call refused_on(check, whole//second//own//'&friction place=''piston_pin'' law=''coulomb'' coefficient=0.1 /'//n// &
+      '&friction place=''crank_pin'' law=''coulomb'' coefficient=0.1 /', ['friction.coefficient=0'], &
+      'x.nml: --set friction.coefficient=0: &friction: the case has this group for piston_pin and crank_pin: write '// &
+      'piston_pin.friction.coefficient or crank_pin.friction.coefficient')
+    call refused_on(check, whole, [character(len=40) :: 'piston_pin.contact.law=hertz', 'contact.restitution=0.5'], &
+      'x.nml: --set contact.restitution=0.5: &contact: the case has this group for piston_pin: write '// &
+      'piston_pin.contact.restitution')
+    call accepted(check, whole//second//own, 'a law for all joints that one joint follows', ['contact.restitution=0.5'])
+    call accepted(check, alone, 'a further joint', [character(len=40) :: 'joint.kind=clearance', 'joint.clearance=1e-5', &
+      'joint.bearing_radius=0.01', 'piston_pin.contact.law=hertz'])
+    call refused_on(check, bodies//run, ['joint.bearing_radius=0.01'], 'x.nml: &joint bearing_radius = 0.01: needs kind = '// &
+      '''clearance''; the default is ideal (m)')
+    call parse_case(whole//second//'&lubrication '//film//'355 /', 'x.nml', [character(len=40) :: length, hot], c, error, text)
+    call check%that(.not. allocated(error), 'a key of one joint beside a group for all joints')
+    call parse_case(whole//second//'&lubrication '//film//'355 /'//n//'&lubrication place=''crank_pin'' '//film//'370 /', 'x.nml', &
+      [length], c, error, written)
+    call check%equal_text(text, written, 'a group of one joint begins with the values for all joints')
+    call parse_case(bodies//second//own//run//'&lubrication '//film//'355 /', 'x.nml', [hot], c, error, text)
+    call check%that(.not. allocated(error), 'a group for all joints gives way to one that has its values')
+    call parse_case(alone//'&lubrication place=''crank_pin'' '//film//'370 /', 'x.nml', ['output.digits=10'], c, error, written)
+    call parse_case(text, 'x.nml', ['output.digits=10'], c, error, again)
+    call check%equal_text(again, written, 'it is not in the resolved case, which is read back')
+  end subroutine test_groups_of_one_joint
 
   subroutine test_runs(check)
     class(checks_t), intent(inout) :: check

@@ -44,8 +44,24 @@ refused "bad override" 3 "joint.clearance" --set joint.clearance=-1 cases/sim_I.
 refused "override without value" 2 "GROUP.KEY=VALUE" --set joint.clearance cases/sim_I.nml
 
 refused "a study without sweep" 3 "map_I.nml:[0-9]*: &study: .*gudgeon sweep cases/studies/map_I.nml" cases/studies/map_I.nml
-refused "a law that acts in no joint" 3 "ticking.nml: &friction: acts nowhere, since every joint has a group of its own" -s friction.law=coulomb -s friction.coefficient=0.1 cases/pin/ticking.nml
+refused "a law that acts in no joint" 3 "ticking.nml: --set friction.law=coulomb: &friction: the case has this group for piston_pin and small_end: write piston_pin.friction.law or small_end.friction.law" -s friction.law=coulomb cases/pin/ticking.nml
 refused "two ends of a run" 3 "end_time = 1: .*integrator.revolutions=0" -s integrator.revolutions=3 -s integrator.end_time=1 cases/sim_I.nml
+refused "an angle without limit" 3 "&initial crank_angle_deg = 9e29: must be >= -1e6 and <= 1e6" -s initial.crank_angle_deg=9e29 cases/sim_I.nml
+run --check cases/bearings/car_diesel.nml
+check "every part in its column" grep -q '^  main bearing quasi-static, ' "$work/out"
+for speed in 1 200 -200; do   # the table is from 0 to 16 rad/s: a fall from 200 or a rise from -200 begins beyond it
+  cat >"$work/motor/beyond.nml" <<END
+&mechanism crank_length=0.05, crank_mass=1, crank_inertia=0.5, rod_length=0.2, rod_mass=0, rod_inertia=0, piston_mass=0.001, gravity=0 /
+&drive torque_table='motor.csv' /
+&initial crank_speed=$speed /
+&integrator end_time=0.1 /
+END
+  printf 'speed[rad/s],torque[N.m]\n0,20\n8,10\n16,1\n' >"$work/motor/motor.csv"
+  run -o "$work/motor/results" "$work/motor/beyond.nml"
+  count=$(grep -c ',&drive torque_table: the speed is from ' "$work/motor/results/beyond.summary.csv")
+  count=$((count + $(grep -c '"&drive torque_table: the speed is from ' "$work/motor/results/beyond.summary.csv")))
+  check "a note where the torque table is left, from $speed rad/s: $count" [ "$count" = "$([ "$speed" = 1 ] && echo 0 || echo 1)" ]
+done
 refused "decimal comma" 3 "0,05 has a decimal comma" -s joint.clearance=0,05 cases/sim_I.nml
 refused "an unknown group to be removed" 3 "lubricaton: unknown group; did you mean lubrication" -s lubricaton=none cases/sim_I.nml
 run --check -s drive.torque=1 cases/wiebe/wiebe_320.nml

@@ -140,9 +140,15 @@ def cases() -> None:
         case_of("sim_I").set({"joint.clearance": -1}).check()
     except gudgeon.CaseError as error:
         check(error.key == "joint.clearance", f"an error names its key: {error.key}")
+    for change in (lambda: setattr(case_of("film/heat").lubrication, "temperature", 380.0), lambda: case_of("film/heat").set({"heat.conductance": 3}),
+                   lambda: gudgeon.sweep(case_of("film/heat"), {"lubrication.temperature": [370, 380]}, errors="raise"), lambda: case_of("film/heat").add("heat", conductance=1)):
+        refuses((gudgeon.CaseError, RuntimeError), "the case has this group for crank_pin: write crank_pin.", change)
+    shared = case_of("bearings/big_end_heat").set({"crank_pin.lubrication.temperature": 365})
+    check(shared.crank_pin.lubrication.oil == shared.lubrication.oil and shared.check() == [], "a group of one joint begins with the values for all joints")
+    refuses(gudgeon.CaseError, "write crank_pin.lubrication.temperature", lambda: setattr(shared.lubrication, "temperature", 350.0))
     key = gudgeon.keys["contact.restitution"]
     check(key.bounds == (0, 1, True, True) or key.bounds[:2] == (0, 1), f"bounds: {key.bounds}")
-    long = [k.name for k in gudgeon.keys.values() if len(k.meaning) > 250 or len(", ".join(k.words)) > 500]
+    long = [k.name for k in gudgeon.keys.values() if len(k.meaning) >= 250 or len(", ".join(k.words)) > 500]
     check(len(gudgeon.keys) > 200 and not long, f"no declaration is cut: {long}")
     check(gudgeon.template("film").run(end=0.001).status == "done", "a template runs")
     check({c.name for c in case_of("sim_I").columns} == set(case_of("sim_I").run(end=0.001).names), "columns are known before the run")

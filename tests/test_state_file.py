@@ -199,6 +199,8 @@ def test_refusals(gudgeon: Gudgeon, work: Path) -> None:
         "half a phase": (r"phase = \d", "phase = 0.5", "&initial phase: must be a whole number"),
         "a state without place": (r"\n *phase", "\n film_eccentricity = 0, 0\n phase", "film_eccentricity: the case has no place"),
         "a total that is missing": (r"\n *work[^\n]*", "", "&so_far work: missing"),
+        "a time before 0": (r"( time =) \S+", r"\1 -5", "&so_far time: must be >= 0"),
+        "an angle without limit": (r"(crank_angle =) \S+", r"\1 1e30", "&initial crank_angle: must be at most 1e9 rad"),
         "a time after the end": (r"( time =) \S+", r"\1 9.0", "&so_far time: is not before the end"),
     }
     for what, (old, new, message) in changes.items():

@@ -480,6 +480,11 @@ run sweep -o "$work/t" "$work/table.nml"
 check "failed runs are not repeated and still count as failed" [ "$status" = 4 ]
 
 # messages
+study own <<END
+&study case='$PWD/cases/film/heat.nml' /
+&parameter key='lubrication.temperature' values='370, 380' /
+END
+refused "a group that the case has for one joint" 3 "&lubrication: the case has this group for crank_pin: write crank_pin.lubrication.temperature" "$work/own.nml"
 study bad <<'END'
 &study case = 'base.nml' /
 &parameter key = 'joint.clearence', from = 1e-5, to = 2e-5, count = 2 /

@@ -11,6 +11,7 @@ module case_handle
   use case_schema, only: find_group, real_kind, integer_kind
   use case_values, only: case_values_t
   use value_reader, only: set_to_default
+  use own_groups, only: enter_group
   use case_file, only: parse_values, apply_override, complete_case
   use case_text, only: resolved_text, value_text
   use accuracy_presets, only: with_preset, accuracy_levels
@@ -78,7 +79,7 @@ contains
     group = find_group(self%values%groups, lowercase(key))
     dot = index(key, '.', back=.true.)
     if (group > 0 .and. value /= 'none') then
-      self%values%is_present(group) = .true.
+      call enter_group(self%values, lowercase(key), '', '', error)
     else if (has_value) then
       call apply_override(self%values, key//'='//value, behind_file, error)
       call settle(self%values)
@@ -134,6 +135,7 @@ contains
           trim(merge(': must be 0 or of a size from 1e-30 to 1e30', ': must be a whole number                   ', &
           schema%kind == real_kind)), status_case_file)
       end if
+      if (.not. allocated(error)) call enter_group(self%values, trim(schema%group), '.'//trim(schema%name), '', error)
       call self%keep(error, status)
       if (allocated(error)) return
       given%reals(element) = value
@@ -141,7 +143,6 @@ contains
       if (schema%is_list) given%whole = max(given%whole, element)
       given%given(element) = .true.
       given%written(element) = short_text(value)
-      self%values%is_present(find_group(self%values%groups, trim(schema%group))) = .true.
       if (schema%family /= '') call self%values%prefer(key)
     end associate
     self%is_checked = .false.

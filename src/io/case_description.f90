@@ -60,9 +60,7 @@ contains
 
     subroutine add(part, line)
       character(len=*), intent(in) :: part, line
-      character(len=12) :: name
-      name = part
-      if (line /= '') text = text//achar(10)//'  '//name//line
+      if (line /= '') text = text//achar(10)//'  '//part//repeat(' ', max(1, 12 - len(part)))//line
     end subroutine add
   end function description
 

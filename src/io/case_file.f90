@@ -15,6 +15,7 @@ module case_file
   use bearing_definition, only: bearing_schema_of
   use namelist_reader, only: namelist_t, read_namelist
   use oil_values, only: replace_oils
+  use own_groups, only: enter_group
   use problem_list, only: behind_file
   implicit none
   private
@@ -311,7 +312,8 @@ contains
           ' alone is given: the group '//group(dot + 1:)//' is for all pins, and --set '//group(dot + 1:)// &
           '=none removes it from all', status_case_file)
       else
-        call values%remove_group(group, at, error)
+        if (find_group(values%groups, group) > 0) call enter_group(values, group, '=none', at, error)
+        if (.not. allocated(error)) call values%remove_group(group, at, error)
       end if
       return
     else if (dot == 0) then
@@ -322,7 +324,8 @@ contains
     key = trim(adjustl(lowercase(override(dot + 1:equals - 1))))
     call values%find(group, key, at, place, error)
     if (allocated(error)) return
-    values%is_present(find_group(values%groups, group)) = .true.
+    call enter_group(values, group, '.'//key, at, error)
+    if (allocated(error)) return
     text = trim(adjustl(override(equals + 1:)))
     call values%assign_text(place, text, .false., at, error)
     values%values(place)%line = line

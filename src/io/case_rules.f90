@@ -9,6 +9,7 @@ module case_rules
   use measured_pressure, only: measured_pressure_periods
   use case_schema, only: find_group
   use case_values, only: case_values_t
+  use problem_list, only: behind_file
   use archard_wear, only: of_bore
   use friction_law, only: friction_law_t
   use history_rules, only: check_history
@@ -174,8 +175,7 @@ contains
           group, 'kind', &
           'must be clearance (or quasi_static) with contact, friction or lubrication: an ideal joint has no '// &
           'clearance; remove these groups, for example with --set contact=none')
-        call forbid(joint%clearance > 0 .and. .not. values%is_given(group, 'kind'), group, 'clearance', &
-          'needs kind = ''clearance''; the default is ideal')
+        call check_ideal(group)
         return
       end if
       if (allocated(joint%film)) call check_oil(joint, law_group('lubrication', place))
@@ -209,6 +209,18 @@ contains
       call check_transition(joint, law_group('lubrication', place))
       call check_elastic_film(joint, law_group('lubrication', place), law_group('contact', place))
     end subroutine check_joint
+
+    !> Check that a joint that is ideal by default has no values of a bearing.
+    subroutine check_ideal(group)
+      character(len=*), intent(in) :: group   !! of the joint
+      integer :: i
+      if (values%is_given(group, 'kind')) return
+      associate (range => values%groups(find_group(values%groups, group)))
+        do i = range%first, range%last
+          call forbid(values%is_said(i), group, trim(values%keys(i)%name), 'needs kind = ''clearance''; the default is ideal')
+        end do
+      end associate
+    end subroutine check_ideal
 
     !> Check the groups of a film with memory.
     subroutine check_film_history(joint, group, place)
@@ -467,8 +479,8 @@ contains
         short_text(speed)//' m/s: must be > 0')
     end subroutine check_friction
 
-    !> Check that a law for all joints acts in one of them, where joints have laws of their own. A law of the file may give way to
-    !> one that an override sets.
+    !> Check that a law for all joints acts in one of them, where joints have laws of their own. It gives way to those that an
+    !> override has begun, with its values.
     subroutine check_shared_laws()
       character(len=len(values%groups%name)) :: name, own
       logical :: acts, gives_way
@@ -483,18 +495,14 @@ contains
           if (.not. c%joints(i)%has_bearing()) cycle
           own = law_group(trim(name), i)
           acts = acts .or. own == name
-          gives_way = gives_way .or. is_overridden(own)
+          gives_way = gives_way .or. values%line(find_group(values%groups, own)) == behind_file
         end do
-        if (.not. acts .and. (is_overridden(name) .or. .not. gives_way)) call values%refuse_group(trim(name), &
+        if (acts) cycle
+        if (.not. gives_way) call values%refuse_group(trim(name), &
           'acts nowhere, since every joint has a group of its own (place = ...): set that one')
+        values%is_present(k) = .false.
       end do
     end subroutine check_shared_laws
-
-    !> Whether an override sets a key of a group.
-    pure logical function is_overridden(group)
-      character(len=*), intent(in) :: group
-      is_overridden = any(values%values%is_override .and. values%keys%group == group)
-    end function is_overridden
 
     !> Whether the case has a law for the joint at this place alone.
     logical function has_own_law(place)

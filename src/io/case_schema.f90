@@ -19,7 +19,7 @@ module case_schema
     logical :: is_law = .false.           !! group of a law, valid for every joint that has no such group of its own
     logical :: is_model = .false.
     character(len=24) :: instead_of = ''  !! group that a case cannot have together with this one
-    character(len=170) :: description = ''
+    character(len=250) :: description = ''
     integer :: number = 0                 !! of a group that may be repeated, and end of its name: cylinder_3; 0: it may not
     integer :: first = 1, last = 0        !! range of its keys in the table
   end type group_definition_t

@@ -52,6 +52,7 @@ contains
       ': compare with a run with a tenth of &integrator relative_tolerance')
     call note_period()
     call note_power()
+    call note_torque_table()
     if (report%figures%floating%is_present .and. pin_is_undecided(case)) call add_line(undecided_pin)
     if (.not. report%exponent%is_known .and. allocated(report%exponent%reason)) &
       call add_line(no_exponent//report%exponent%reason)
@@ -73,6 +74,18 @@ contains
           short_text(allowed)//' is less than 10 times the &integrator relative_tolerance, '//short_text(tolerance))
       end associate
     end subroutine note_period
+
+    !> Speeds beyond the ends of a table of the torque. Other tables are periodic, or the run ends with them.
+    subroutine note_torque_table()
+      character(len=:), allocatable :: reached
+      if (.not. (case%drive%table%is_wanted() .and. allocated(case%drive%table%x))) return
+      associate (speed => case%drive%table%x, n => size(case%drive%table%x))
+        reached = short_text(report%figures%driven_speeds(1))//' to '//short_text(report%figures%driven_speeds(2))
+        if (report%figures%driven_speeds(1) < speed(1) .or. report%figures%driven_speeds(2) > speed(n)) &
+          call add_line('&drive torque_table: the speed is from '//reached//' rad/s, the table from '//short_text(speed(1))// &
+            ' to '//short_text(speed(n))//': beyond it the torque is that at its nearer end')
+      end associate
+    end subroutine note_torque_table
 
     !> The brake power of the last cycle: losses that the motion does not feel, and a speed that is not settled.
     subroutine note_power()

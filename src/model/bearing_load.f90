@@ -56,7 +56,8 @@ contains
     call list%add('offset_deg', self%offset_deg, 'crank angle of the simulation at angle 0 of the table', 'degrees', &
       '>= -5760 and <= 5760', '0.0', usual='0 to 5760')
     call list%add('direction_deg', self%direction_deg, &
-      'turns the load, with one column its direction, from x towards y of the frame', 'degrees', default='0.0', usual='0 to 720')
+      'turns the load, with one column its direction, from x towards y of the frame', 'degrees', '>= -1e6 and <= 1e6', &
+      default='0.0', usual='0 to 720')
     call list%add('factor', self%factor, 'multiplies the load', range='> 0', default='1.0', usual='1e-6 to 1e6')
     call list%word('frame', self%frame, bodies, 'fixed', &
       'axes of the load: fixed; crank: x from its axis to its pin; rod: x from the crank pin to the piston pin')

@@ -30,7 +30,7 @@ module model_parameters
     character(len=:), allocatable :: words   !! allowed words, separated by a comma and a blank
     character(len=:), allocatable :: choice  !! key that names the laws with this parameter; not allocated: all laws have it
     character(len=:), allocatable :: laws    !! those laws, separated by a comma and a blank
-    character(len=170) :: description = ''
+    character(len=250) :: description = ''
     character(len=12) :: family = ''         !! keys of the group with the same family are alternatives, of which one may be given
     character(len=32) :: beside = ''         !! key of the family that may be given together with this one, as a bound
     logical :: is_path = .false.             !! a text that names a file, relative to the case file

@@ -20,6 +20,8 @@ module run_state
     logical :: is_set = .false.                !! a part has accepted it
   end type state_number_t
 
+  real(dp), parameter :: largest_angle = 1e9_dp   !! [rad]; beyond it turns are lost in rounding
+
   type :: run_state_t
     character(len=:), allocatable :: file      !! where it comes from, for messages
     type(state_number_t), allocatable :: numbers(:)
@@ -60,7 +62,11 @@ contains
         if (number%name /= name .or. (number%is_total .neqv. self%of_totals)) cycle
         number%is_set = .true.
         if (size(number%values) == size(values)) then
-          values = number%values
+          if (unit == 'rad' .and. any(abs(number%values) > largest_angle)) then
+            call self%refuse(name, 'must be at most 1e9 rad in size')
+          else
+            values = number%values
+          end if
         else
           write (counts, '(i0, a, i0)') size(number%values), ' values, but the case needs ', size(values)
           call self%refuse(name, trim(counts))

@@ -243,7 +243,8 @@ contains
       'acceleration of gravity; acts from the cylinder towards the crank unless gravity_angle_deg turns it', 'm/s^2', &
       default='9.80665', usual='0.1 to 30')
     call list%add('gravity_angle_deg', self%gravity_angle_deg, &
-      'direction of gravity: 0 from piston to crank along the cylinder; 90 across it, along -y', 'degrees', default='0.0', &
+      'direction of gravity: 0 from piston to crank along the cylinder; 90 across it, along -y', 'degrees', &
+      '>= -1e6 and <= 1e6', default='0.0', &
       usual='0 to 360')
   end subroutine mechanism_parameters
 
@@ -261,7 +262,8 @@ contains
       'moment of inertia of a flywheel fixed to the crank, added to crank_inertia', 'kg m^2', '>= 0', default='0.0', &
       usual='1e-7 to 1e6')
     call self%table%parameters(list, 'torque_table', &
-      'CSV file with columns speed[rad/s],torque[N.m], path relative to the case file; added to torque', &
+      'CSV file with columns speed[rad/s],torque[N.m], path relative to the case file; added to torque; '// &
+      'beyond its first and last speed the torque is that at the nearer end', &
       default='')
     call list%add('ramp_time', self%ramp_time, 'time in which the held speed rises to crank_speed; 0: crank_speed from the start', &
       's', '> 0', default='0.0', usual='1e-4 to 1e3')
@@ -274,7 +276,8 @@ contains
     class(parameter_list_t), intent(inout) :: list
     character(len=:), allocatable :: name
     integer :: i
-    call list%add('crank_angle_deg', self%crank_angle_deg, 'crank angle from the cylinder axis', 'degrees', default='0.0', &
+    call list%add('crank_angle_deg', self%crank_angle_deg, 'crank angle from the cylinder axis', 'degrees', &
+      '>= -1e6 and <= 1e6', '0.0', &
       usual='0 to 720')
     call list%add('crank_speed', self%crank_speed, &
       'crank speed; with drive kind constant_speed it is held', 'rad/s', example='250.0', usual='0 to 2100')
@@ -344,7 +347,8 @@ contains
     call list%add('samples_per_revolution', self%samples_per_revolution, &
       'number of rows for each revolution', '>= 1 and <= 1000000', '720')
     call list%add('angle_origin_deg', self%angle_origin_deg, &
-      'one of the crank angles at which sampling = ''crank_angle'' takes rows', 'degrees', default='0.0', usual='0 to 720')
+      'one of the crank angles at which sampling = ''crank_angle'' takes rows', 'degrees', '>= -1e6 and <= 1e6', '0.0', &
+      usual='0 to 720')
     call list%add('interval', self%interval, 'time between rows; 0: given by samples_per_revolution', 's', '> 0', default='0.0', &
       usual='1e-9 to 1')
     call list%add('start_time', self%start_time, 'time of the first row', 's', '>= 0', default='0.0', usual='0 to 1e4')

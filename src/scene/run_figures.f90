@@ -68,6 +68,7 @@ module run_figures
     real(dp) :: row_energy_residual = 0       !! the same in the rows of the trace, also inside the steps [J]
     real(dp) :: crank_travel = 0              !! crank angle turned through, signed [rad]
     real(dp) :: time = 0                      !! time simulated [s]
+    real(dp) :: driven_speeds(2) = [huge(1.0_dp), -huge(1.0_dp)]   !! least and largest speed of the driven part [rad/s]
   contains
     procedure :: declare
   end type run_figures_t

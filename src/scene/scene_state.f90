@@ -4,6 +4,8 @@ submodule (scene_problem) scene_state
   use crank_turns, only: new_crank_turns
   implicit none
 
+  real(dp), parameter :: longest_time = 1e9_dp   !! [s]
+
 contains
 
   module procedure declare
@@ -13,6 +15,10 @@ contains
     integer :: i
     list%of_totals = .true.
     call list%add('time', t, 's', 'time that the run has reached')
+    if (list%sets .and. .not. (t >= 0 .and. t <= longest_time)) then
+      call list%refuse('time', 'must be >= 0 and <= 1e9')
+      t = 0
+    end if
     call list%add('work', y(self%work_at), 'J', 'work of all forces and the drive on the bodies')
     list%of_totals = .false.
     angle = self%crank_angle(t, y)

@@ -8,6 +8,7 @@ module study_case
   use case_schema, only: find_group
   use case_values, only: case_values_t
   use case_file, only: complete_case
+  use own_groups, only: enter_group
   use case_loader, only: load_case
   use case_rules, only: check_rules
   use case_notes, only: note_case
@@ -58,6 +59,7 @@ contains
       key = trim(keys(i))
       dot = index(key, '.', back=.true.)
       call values%find(key(:dot - 1), key(dot + 1:), at, self%places(i), error)
+      if (.not. allocated(error)) call enter_group(self%values, key(:dot - 1), key(dot:), at, error)
       if (allocated(error)) return
       associate (schema => values%keys(self%places(i)))
         self%varies_words = self%varies_words .or. schema%kind == word_kind
@@ -71,7 +73,6 @@ contains
         value%is_override = .true.
       end associate
     end do
-    where (self%groups) self%values%is_present = .true.
     do i = 1, size(keys)   ! a parameter replaces the base case's values of other keys of its family
       if (values%keys(self%places(i))%family /= '') call self%values%prefer(self%places(i))
     end do
