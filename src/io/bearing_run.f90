@@ -21,7 +21,7 @@ module bearing_run
   use result_file, only: write_text
   use result_notes, only: history_remarks
   use result_table, only: result_table_t
-  use text_tools, only: integer_text, next_line, path_beside, printable, replaced
+  use text_tools, only: integer_text, path_beside, printable, replaced
   use value_reader, only: read_times
   implicit none
   private
@@ -179,21 +179,12 @@ contains
     class(bearing_run_t), intent(in) :: self
     character(len=*), intent(in) :: status
     character(len=:), allocatable :: text
-    character(len=:), allocatable :: notes, line
     type(result_table_t) :: table
-    integer :: at, number
     table%digits = self%digits
     call table%clear()
     call table%append('quantity,value,unit'//achar(10))
     call table%add('status', status)
-    notes = history_remarks(self%history, size(self%duty%time) > 1)
-    at = 1
-    number = 0
-    do while (at <= len(notes))
-      call next_line(notes, at, line)
-      number = number + 1
-      call table%add('note_N', line, for=integer_text(number))
-    end do
+    call table%add_notes(history_remarks(self%history, size(self%duty%time) > 1))
     call add_history(table, self%history, self%duty, '')
     text = table%text(:table%used)
   end function summary_of

@@ -4,7 +4,7 @@ module result_table
   use row_text, only: row_text_t
   use summary_quantities, only: quantities_of_runs, unit_of
   use number_text, only: real_text
-  use text_tools, only: integer_text, replaced
+  use text_tools, only: integer_text, next_line, replaced
   implicit none
   private
   public :: result_table_t
@@ -15,6 +15,7 @@ module result_table
     generic :: add => add_real, add_integer, add_words
     procedure, private :: add_real, add_integer, add_words
     procedure :: add_numbered
+    procedure :: add_notes
   end type result_table_t
 
 contains
@@ -50,6 +51,22 @@ contains
     call self%add_text(unit_of(quantities_of_runs, declared))
     call self%end_row()
   end subroutine add_numbered
+
+  !> Add a row `note_N` for each line of a text that is not empty.
+  subroutine add_notes(self, notes)
+    class(result_table_t), intent(inout) :: self
+    character(len=*), intent(in) :: notes
+    character(len=:), allocatable :: line
+    integer :: at, number
+    at = 1
+    number = 0
+    do while (at <= len(notes))
+      call next_line(notes, at, line)
+      if (line == '') cycle
+      number = number + 1
+      call self%add('note_N', line, for=integer_text(number))
+    end do
+  end subroutine add_notes
 
   pure subroutine add_real(self, name, value, prefix, for)
     class(result_table_t), intent(inout) :: self

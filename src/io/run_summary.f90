@@ -19,7 +19,7 @@ module run_summary
   use joint_case, only: joint_case_t
   use result_notes, only: notes_on_results, relative_residual, energy_warning, no_exponent, &
     pin_is_undecided, undecided_pin
-  use text_tools, only: integer_text, next_line
+  use text_tools, only: integer_text
   use version_number, only: program_version
   implicit none
   private
@@ -127,18 +127,10 @@ contains
 
     !> Rows of the notes on the case and on the results. The ideal twin has those on its own results.
     subroutine add_notes()
-      character(len=:), allocatable :: notes, line
-      integer :: at, number
+      character(len=:), allocatable :: notes
       notes = notes_on_results(case, report)
       if (allocated(case%notes)) notes = case%notes//newline//notes
-      at = 1
-      number = 0
-      do while (at <= len(notes))
-        call next_line(notes, at, line)
-        if (line == '') cycle
-        number = number + 1
-        call table%add('note_N', line, for=integer_text(number))
-      end do
+      call table%add_notes(notes)
     end subroutine add_notes
 
     !> Rows about the period of the motion, of a run until it is periodic.
