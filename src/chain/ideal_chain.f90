@@ -6,7 +6,7 @@ module ideal_chain
   use chain_loads, only: loads_t
   implicit none
   private
-  public :: accelerate_ideal_chain, respond_ideal_chain, ideal_motion, ideal_rod
+  public :: accelerate_ideal_chain, respond_ideal_chain, ideal_motion, inertia_at, ideal_rod
 
 contains
 
@@ -23,6 +23,14 @@ contains
     call follow_rod(bodies%crank%length, bodies%per_rod_length, motion, reachable)
     call follow_piston(bodies%crank%length, bodies%rod%length, motion)
   end function ideal_motion
+
+  !> Inertia that moves with the crank at the angle q: of crank, rod and piston with ideal joints, twice their kinetic energy at
+  !> 1 rad/s [kg m^2].
+  pure real(dp) function inertia_at(bodies, q)
+    type(bodies_t), intent(in) :: bodies
+    real(dp), intent(in) :: q   !! [rad]
+    inertia_at = 2*bodies%kinetic_energy(ideal_motion(bodies, q, 1.0_dp))
+  end function inertia_at
 
   !> A' [rad/s] of a rod with ideal pins, and its A'' [rad/s^2] at constant crank speed, for the crank of `motion`.
   pure subroutine ideal_rod(bodies, motion, speed, acceleration)

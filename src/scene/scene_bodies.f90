@@ -3,7 +3,7 @@
 submodule (scene_problem) scene_bodies
   use constants, only: two_pi
   use chain_loads, only: unloaded
-  use ideal_chain, only: ideal_motion
+  use ideal_chain, only: inertia_at
   use loose_piston, only: place_piston, move_centre
   implicit none
 
@@ -237,12 +237,7 @@ contains
     integer, parameter :: angles = 256
     real(dp) :: inertia   ! of the crank with rod and piston, mean over a turn [kg m^2]
     integer :: k
-    inertia = 0
-    associate (bodies => self%chain%bodies)
-      do k = 1, angles
-        inertia = inertia + 2*bodies%kinetic_energy(ideal_motion(bodies, k*two_pi/angles, 1.0_dp))/angles
-      end do
-    end associate
+    inertia = sum([(inertia_at(self%chain%bodies, two_pi*k/angles), k=1, angles)])/angles
     twist_frequency = self%chain%elastic%crankshaft%natural_frequency(inertia, self%chain%elastic%holds_flywheel)
   end procedure twist_frequency
 

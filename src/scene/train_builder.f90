@@ -6,7 +6,7 @@ module train_builder
   use train_case, only: full_cylinder, number_throws, list_value
   use chain_bodies, only: bodies_t, crank_t, rod_t, piston_t, new_bodies
   use chain_motion, only: motion_t
-  use ideal_chain, only: ideal_motion
+  use ideal_chain, only: inertia_at
   use ideal_cylinders, only: ideal_cylinder_t
   use crank_train, only: crank_train_t, ring_t
   use other_cylinders, only: other_cylinders_t
@@ -178,7 +178,7 @@ contains
     do k = 1, angles
       q = two_pi*k/angles
       now = train%inertia(:train%n)
-      now(train%full) = now(train%full) + 2*bodies%kinetic_energy(ideal_motion(bodies, q, 1.0_dp))
+      now(train%full) = now(train%full) + inertia_at(bodies, q)
       do i = 1, size(train%cylinders)
         associate (it => train%cylinders(i))
           now(it%station) = now(it%station) + it%inertia(q + it%shift)
