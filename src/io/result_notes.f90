@@ -12,7 +12,7 @@ module result_notes
   use number_text, only: short_text, quantity_text
   implicit none
   private
-  public :: notes_on_results, history_remarks, relative_residual, heat_residual, energy_warning, no_exponent, &
+  public :: notes_on_results, history_remarks, relative_residual, energy_warning, no_exponent, &
     pin_is_undecided, undecided_pin
 
   character(len=*), parameter :: undecided_pin = 'the friction of both dry bearings of the floating pin has the same moment: '// &
@@ -48,7 +48,7 @@ contains
       end do
     end if
     if (report%energy_is_poor) call add_line(energy_warning(case, report))
-    if (report%heat_is_poor) call add_line('the heat of a film is kept only to '//short_text(heat_residual(report))// &
+    if (report%heat_is_poor) call add_line('the heat of a film is kept only to '//short_text(report%figures%heat_residual())// &
       ': compare with a run with a tenth of &integrator relative_tolerance')
     call note_period()
     call note_power()
@@ -179,12 +179,6 @@ contains
     relative_residual = 0
     if (report%figures%max_energy > 0) relative_residual = report%figures%max_energy_residual/report%figures%max_energy
   end function relative_residual
-
-  !> Largest residual of the heat of a film, over the heat that it turned over [-].
-  pure real(dp) function heat_residual(report)
-    type(run_report_t), intent(in) :: report
-    heat_residual = maxval(report%figures%pin%heat%relative_residual())
-  end function heat_residual
 
   !> Warning about a completed run with a large energy residual.
   function energy_warning(case, report) result(text)

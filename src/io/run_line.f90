@@ -10,7 +10,7 @@ module run_line
   use joint_places, only: places, n_places, in_order
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
-  use result_notes, only: notes_on_results, relative_residual, heat_residual
+  use result_notes, only: notes_on_results, relative_residual
   use number_text, only: short_text, quantity_text
   use text_tools, only: integer_text, printable, replaced
   implicit none
@@ -55,7 +55,7 @@ contains
       text = text//newline//'  '//printable(path, 1000)//'.csv; '//integer_text(s%accepted)//' steps, '// &
         integer_text(s%evaluations)//' evaluations, '//short_text(wall_time, digits)//' s'
       if (f%max_energy > 0) text = text//'; relative energy residual '//short_text(relative_residual(report), 2)
-      if (any(f%pin%heat%is_known)) text = text//'; relative heat residual '//short_text(heat_residual(report), 2)
+      if (any(f%pin%heat%is_known)) text = text//'; relative heat residual '//short_text(f%heat_residual(), 2)
     end associate
     notes = notes_on_results(case, report)
     if (notes /= '') text = text//newline//'  note: '//replaced(notes, newline, newline//'  note: ')

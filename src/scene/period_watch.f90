@@ -34,7 +34,7 @@ module period_watch
     logical :: is_on = .false.             !! a periodic motion ends the run; else the revolutions are only compared
     integer :: longest = longest_period    !! longest period searched [revolutions]
     real(dp) :: tolerance = 0
-    real(dp) :: of_integration = 0         !! relative tolerance of the integration
+    real(dp) :: integration_tolerance = 0         !! relative tolerance of the integration
     integer :: most_revolutions = 0        !! largest number of revolutions of the run
     logical :: keeps_one_more = .false.    !! the run continues for one more period, the window of the output
     integer :: period = 0                  !! found [revolutions]; 0: none
@@ -87,7 +87,7 @@ contains
     end do
     if (allocated(scene%given_load)) then   ! a load that is constant lets its bearing come to rest
       where (.not. self%is_slow) self%smallest_range = max(self%smallest_range, &
-        min(1.0_dp, resolved*self%of_integration/max(self%tolerance, tiny(1.0_dp)))*self%natural_size)
+        min(1.0_dp, resolved*self%integration_tolerance/max(self%tolerance, tiny(1.0_dp)))*self%natural_size)
     end if
     self%forcing = scene%forced_revolutions()
     self%earlier = int(abs(scene%crank_angle(t, y) - scene%start_angle)/two_pi)

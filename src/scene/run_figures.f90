@@ -68,9 +68,11 @@ module run_figures
     real(dp) :: row_energy_residual = 0       !! the same in the rows of the trace, also inside the steps [J]
     real(dp) :: crank_travel = 0              !! crank angle turned through, signed [rad]
     real(dp) :: time = 0                      !! time simulated [s]
-    real(dp) :: driven_speeds(2) = [huge(1.0_dp), -huge(1.0_dp)]   !! least and largest speed of the driven part [rad/s]
+    real(dp) :: driven_speeds(2) = [huge(1.0_dp), -huge(1.0_dp)]   !! least and largest speed of the driven part, of a drive that
+                                                                   !! varies [rad/s]
   contains
     procedure :: declare
+    procedure :: heat_residual
   end type run_figures_t
 
 contains
@@ -84,6 +86,12 @@ contains
     call list%add('max_energy_residual', self%max_energy_residual, 'J', 'largest energy residual at the ends of steps')
     call list%add('row_energy_residual', self%row_energy_residual, 'J', 'largest energy residual of a row')
   end subroutine declare
+
+  !> Largest residual of the heat of a film, over the heat that it turned over [-].
+  pure real(dp) function heat_residual(self)
+    class(run_figures_t), intent(in) :: self
+    heat_residual = maxval(self%pin%heat%relative_residual())
+  end function heat_residual
 
   !> Declare the totals of a pin or corner, with a prefix: those of its force, its gap, its contacts and its film, as far as it has
   !> them.

@@ -290,8 +290,10 @@ contains
       f%max_energy = max(f%max_energy, abs(energy))
       f%max_energy_residual = max(f%max_energy_residual, abs(energy - self%initial_energy - scene%work(y)))
       f%crank_travel = now%motion%crank_angle - self%start_angle
-      speed = scene%chain%driven_speed(now%motion)
-      f%driven_speeds = [min(f%driven_speeds(1), speed), max(f%driven_speeds(2), speed)]
+      if (allocated(scene%chain%varying)) then
+        speed = scene%chain%driven_speed(now%motion)
+        f%driven_speeds = [min(f%driven_speeds(1), speed), max(f%driven_speeds(2), speed)]
+      end if
     end associate
     call self%extremes%add_point(scene, t, y)
     if (allocated(self%cycles)) call self%cycles%record_point(scene, t)

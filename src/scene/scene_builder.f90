@@ -214,7 +214,7 @@ contains
     real(dp) :: tolerance
     logical :: has_force
     if (.not. allocated(scene%gas)) return
-    has_force = scene%gas%has_force
+    has_force = scene%gas%has_force   ! a law begins the gas anew
     tolerance = gas_margin*case%integrator%relative_tolerance
     associate (m => case%mechanism)
       if (allocated(case%measured)) then

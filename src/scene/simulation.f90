@@ -134,7 +134,7 @@ contains
       recorder%periods%is_on = case%run%is_until_periodic()
       recorder%periods%longest = case%run%period_revolutions
       recorder%periods%tolerance = case%run%periodic_tolerance
-      recorder%periods%of_integration = case%integrator%relative_tolerance
+      recorder%periods%integration_tolerance = case%integrator%relative_tolerance
       recorder%periods%most_revolutions = case%run%most_revolutions
       recorder%periods%keeps_one_more = recorder%periods%is_on .and. case%output%window == 'last_period'
       recorder%rows%end_time = latest_end(case)
@@ -386,18 +386,18 @@ contains
         report%status = reason(self%status, scene, self%method%settings, t, y)//' at '//place(scene, t, y)
         call fail(error, report%status, status_integration)
       else if (.not. report%figures%max_energy_residual <= report%figures%max_energy* &
-               energy_limit(case%integrator%relative_tolerance, report%figures%crank_travel)) then
+               residual_limit(case%integrator%relative_tolerance, report%figures%crank_travel)) then
         report%status = 'energy not kept: the residual is beyond its limit, so the results are wrong; run to '//place(scene, t, y)
         call fail(error, report%status, status_integration)
       else if (.not. all(report%figures%pin%heat%relative_residual() <= &
-               energy_limit(case%integrator%relative_tolerance, report%figures%crank_travel))) then
+               residual_limit(case%integrator%relative_tolerance, report%figures%crank_travel))) then
         call fail(error, 'heat of a film not kept: the residual is beyond its limit, so the results are wrong; run to '// &
           place(scene, t, y), status_integration)
         report%status = error%message
       else
         report%energy_is_poor = report%figures%max_energy_residual > report%figures%max_energy* &
           remarkable_residual(case%integrator%relative_tolerance)
-        report%heat_is_poor = maxval(report%figures%pin%heat%relative_residual()) > &
+        report%heat_is_poor = report%figures%heat_residual() > &
           remarkable_residual(case%integrator%relative_tolerance)
       end if
     end associate
@@ -431,11 +431,11 @@ contains
   !> for each revolution, since local errors add up, and at least a thousand tolerances, which hardly any scene reaches
   !> (data/manual/choices.md). The limit is never above 5 %, which makes any result useless, and never below 1e-10, which may be
   !> rounding.
-  pure real(dp) function energy_limit(tolerance, crank_travel)
+  pure real(dp) function residual_limit(tolerance, crank_travel)
     real(dp), intent(in) :: tolerance      !! relative
     real(dp), intent(in) :: crank_travel   !! [rad]
-    energy_limit = min(0.05_dp, max(1e-10_dp, 1e3_dp*tolerance*max(1.0_dp, abs(crank_travel)/(100*two_pi))))
-  end function energy_limit
+    residual_limit = min(0.05_dp, max(1e-10_dp, 1e3_dp*tolerance*max(1.0_dp, abs(crank_travel)/(100*two_pi))))
+  end function residual_limit
 
   !> Results of several cylinders on one crankshaft.
   function train_results(run) result(list)
