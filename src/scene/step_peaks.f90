@@ -2,9 +2,9 @@
 !> accepted points.
 !>
 !> A step is searched only if a quantity may exceed the largest value known so far. Penetration and normal force follow from the
-!> eccentricity alone and are taken from the interpolant of the method. The force on the pin needs evaluations of the scene, as the
-!> eccentricity between walls that give way: unless
-!> three points show that it only rises or only falls, its slopes at both ends are computed, and the peak is searched if it rises
+!> eccentricity alone and are taken from the interpolant of the method. The force on the pin, and the eccentricity between walls
+!> that give way, need evaluations of the scene. Slopes of the forces and of that eccentricity are not known: unless three points
+!> show that such a quantity only rises or only falls, its slopes at both ends are computed, and its peak is searched if it rises
 !> and then falls.
 module step_peaks
   use kinds, only: dp
@@ -127,9 +127,9 @@ contains
       self%fresh = .false.
     end if
     if (t_to > self%t) then
-      if (known(of_pin_force) < huge(known)) call search_force(of_pin_force)
-      if (known(of_normal_force) < huge(known)) call search_force(of_normal_force)
-      if (known(of_eccentricity) < huge(known)) call search_force(of_eccentricity)
+      if (known(of_pin_force) < huge(known)) call search_by_slopes(of_pin_force)
+      if (known(of_normal_force) < huge(known)) call search_by_slopes(of_normal_force)
+      if (known(of_eccentricity) < huge(known)) call search_by_slopes(of_eccentricity)
       if (known(of_penetration) < huge(known)) call search_between(self, method, scene, of_penetration, &
         sample_t(self%t, self%last(of_penetration), self%slope(of_penetration)), sample_t(t_to, ends(of_penetration), rate), &
         known(of_penetration), largest(of_penetration))
@@ -141,11 +141,11 @@ contains
 
   contains
 
-    subroutine search_force(i)
+    subroutine search_by_slopes(i)
       integer, intent(in) :: i
       if (may_exceed(self, i, t_to, ends(i), known(i))) &
-        call find_force_peak(self, method, scene, i, t_to, ends(i), known(i), largest(i))
-    end subroutine search_force
+        call find_peak_by_slopes(self, method, scene, i, t_to, ends(i), known(i), largest(i))
+    end subroutine search_by_slopes
   end subroutine search_interval
 
   !> Find the quantities at the beginning of the step, after a change of phase. In free flight there is no force, and at the
@@ -175,9 +175,9 @@ contains
     if (in_domain) call stand_at(self, method%t_old, self%values(scene, now), rate_of(self, now))
   end subroutine meet_beginning
 
-  !> Whether a force whose slopes are not known may exceed the known maximum inside the interval that ends at t. It cannot if it is
-  !> far below the maximum at both ends, compared with its changes in this interval and the one before, or if the parabola through
-  !> three points, with its curvature doubled, is monotonic.
+  !> Whether a quantity whose slopes are not known may exceed the known maximum inside the interval that ends at t. It cannot if it
+  !> is far below the maximum at both ends, compared with its changes in this interval and the one before, or if the parabola
+  !> through three points, with its curvature doubled, is monotonic.
   pure logical function may_exceed(self, i, t, value, known)
     class(peak_watch_t), intent(in) :: self
     integer, intent(in) :: i
@@ -193,8 +193,9 @@ contains
     may_exceed = abs(rate) <= 2*bend
   end function may_exceed
 
-  !> Search the peak of a force that may exceed the known maximum, and is `value` at t_to. Its slopes are computed first.
-  subroutine find_force_peak(self, method, scene, quantity, t_to, value, known, largest)
+  !> Search the peak of a quantity without known slopes that may exceed the known maximum, and is `value` at t_to. Its slopes are
+  !> computed first.
+  subroutine find_peak_by_slopes(self, method, scene, quantity, t_to, value, known, largest)
     class(peak_watch_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
@@ -226,7 +227,7 @@ contains
       slope_at = 0
       if (abs(t - at%t) > 0) slope_at = (value_inside(self, method, scene, quantity, t) - at%value)/(t - at%t)
     end function slope_at
-  end subroutine find_force_peak
+  end subroutine find_peak_by_slopes
 
   !> Search the peak between two samples, if it may exceed `known`.
   subroutine search_between(self, method, scene, quantity, left, right, known, largest)
@@ -271,14 +272,14 @@ contains
     real(dp), intent(in) :: t
     type(evaluation_t) :: now
     type(joint_evaluation_t) :: motion
-    real(dp) :: normal_force, y(size(method%y))
+    real(dp) :: normal_force, y(size(method%y)), all_values(n_peaks)
     logical :: in_domain
     if (quantity == of_pin_force .or. quantity == of_eccentricity) then
       call evaluate_inside(scene, method, t, y, now, in_domain, self%evaluations)
       value = no_peak
       if (.not. in_domain) return
-      if (quantity == of_pin_force) value = force_size(scene%pin_force(now, self%pin))
-      if (quantity == of_eccentricity) value = now%joint(self%joint)%distance
+      all_values = self%values(scene, now)
+      value = all_values(quantity)
     else
       call method%interpolate(t, y)
       call scene%joints(self%joint)%find_contact_state(y, motion, normal_force)
