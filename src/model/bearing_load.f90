@@ -7,7 +7,7 @@
 module bearing_load
   use kinds, only: dp
   use constants, only: degree
-  use model_parameters, only: has_parameters_t, parameter_list_t
+  use model_parameters, only: has_parameters_t, parameter_list_t, any_angle
   use measured_curve, only: measured_curve_t
   use monotone_cubic, only: monotone_cubic_t, new_periodic_cubic
   implicit none
@@ -56,7 +56,7 @@ contains
     call list%add('offset_deg', self%offset_deg, 'crank angle of the simulation at angle 0 of the table', 'degrees', &
       '>= -5760 and <= 5760', '0.0', usual='0 to 5760')
     call list%add('direction_deg', self%direction_deg, &
-      'turns the load, with one column its direction, from x towards y of the frame', 'degrees', '>= -1e6 and <= 1e6', &
+      'turns the load, with one column its direction, from x towards y of the frame', 'degrees', any_angle, &
       default='0.0', usual='0 to 720')
     call list%add('factor', self%factor, 'multiplies the load', range='> 0', default='1.0', usual='1e-6 to 1e6')
     call list%word('frame', self%frame, bodies, 'fixed', &

@@ -8,7 +8,7 @@
 module case_definition
   use kinds, only: dp
   use run_state, only: run_state_t
-  use model_parameters, only: has_parameters_t, parameter_list_t
+  use model_parameters, only: has_parameters_t, parameter_list_t, any_angle
   use run_length, only: run_length_t
   use chain_motion, only: n_pins
   use joint_places, only: places, n_places, in_order, name_prefix, pin_title, piston_pin, small_end, main_bearing
@@ -244,8 +244,7 @@ contains
       default='9.80665', usual='0.1 to 30')
     call list%add('gravity_angle_deg', self%gravity_angle_deg, &
       'direction of gravity: 0 from piston to crank along the cylinder; 90 across it, along -y', 'degrees', &
-      '>= -1e6 and <= 1e6', default='0.0', &
-      usual='0 to 360')
+      any_angle, default='0.0', usual='0 to 360')
   end subroutine mechanism_parameters
 
   subroutine drive_parameters(self, list)
@@ -277,8 +276,7 @@ contains
     character(len=:), allocatable :: name
     integer :: i
     call list%add('crank_angle_deg', self%crank_angle_deg, 'crank angle from the cylinder axis', 'degrees', &
-      '>= -1e6 and <= 1e6', '0.0', &
-      usual='0 to 720')
+      any_angle, '0.0', usual='0 to 720')
     call list%add('crank_speed', self%crank_speed, &
       'crank speed; with drive kind constant_speed it is held', 'rad/s', example='250.0', usual='0 to 2100')
     do i = 1, n_places
@@ -347,7 +345,7 @@ contains
     call list%add('samples_per_revolution', self%samples_per_revolution, &
       'number of rows for each revolution', '>= 1 and <= 1000000', '720')
     call list%add('angle_origin_deg', self%angle_origin_deg, &
-      'one of the crank angles at which sampling = ''crank_angle'' takes rows', 'degrees', '>= -1e6 and <= 1e6', '0.0', &
+      'one of the crank angles at which sampling = ''crank_angle'' takes rows', 'degrees', any_angle, '0.0', &
       usual='0 to 720')
     call list%add('interval', self%interval, 'time between rows; 0: given by samples_per_revolution', 's', '> 0', default='0.0', &
       usual='1e-9 to 1')
