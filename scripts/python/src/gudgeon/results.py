@@ -438,7 +438,9 @@ def located(word: str | Path, folder: Path | None = None, run_missing: bool = Tr
         name = given.stem
         places = [Results(place, run_missing, files={name: given}) for place in ([folder] if folder else [Path("results"), given.parent])]
         there = [results for results in places if results.has(name)]
-        results = next((results for results in there if not results.difference(name)), (there or places)[0])
+        results = (there or places)[0]
+        if len(there) > 1:   # make() below tells what is wrong with the first
+            results = next((one for one in there if not one.difference(name)), results)
         results.make([name])
         return results, name
     if given.suffix == ".csv":
