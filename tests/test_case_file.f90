@@ -17,7 +17,7 @@ module test_case_file
   private
   public :: run_test_case_file
 
-  character(len=*), parameter :: n = achar(10)
+  character(len=*), parameter :: n = achar(10), two = ', or two, as in key(1:2)'
   character(len=*), parameter :: bodies = '&mechanism crank_length=0.05, crank_mass=0.3, crank_inertia=1d-5'//n// &
     'rod_length=0.12 rod_mass=.21 rod_inertia=2.5E-4'//n//'piston_mass=0.14 /'//n//'&initial crank_speed=100 /'//n
   character(len=*), parameter :: joint = '&joint kind=''clearance'' clearance=5e-4 bearing_radius=0.01 /'//n
@@ -126,6 +126,13 @@ contains
     call check%that(c%joints(piston_pin)%contact%name == 'hertz', 'words in upper or lower case')
     call check%that(c%output%every_step .and. c%output%ideal_twin, 'logicals')
     call check%equal_text(c%output%columns, 'time,rod_angle', 'list of texts')
+    call parse_case(whole(:len(whole) - 1)//' end of the run ! = &'//n// &
+                    '&crankshaft inertia(1:2)=1, 2 inertia(3)=3 stiffness=5 /'//n// &
+                    '&output columns(1:2)=''time'', ''rod_angle'' /', 'x', none, c, error)
+    call check%that(.not. allocated(error), 'ranges of indices, and text behind the end of a group')
+    if (allocated(error)) call check%equal_text(error%message, '', 'forms')
+    call check%equal_text(c%output%columns, 'time,rod_angle', 'a list of texts with its range')
+    call check%that(c%shaft%n_inertia == 3, 'a list of numbers with its range, and a further one')
     call parse_case(whole//'&case title='''//repeat('x', 3000)//''' /', 'x', none, c, error)
     call check%that(len(c%title) == 3000, 'long lines')
   end subroutine test_forms
@@ -191,7 +198,7 @@ contains
     call refused(check, '', 'x.nml: the file contains no group; gudgeon --template prints a case')
     call refused(check, n//' ! only a comment', 'x.nml: the file contains no group; gudgeon --template prints a case')
     call refused(check, 'words', 'x.nml:1: text outside a group: words')
-    call refused(check, whole//'/', 'x.nml:8: text outside a group: /')
+    call refused(check, whole//'/', 'x.nml:8: text outside a group: /; &integrator ends in line 7')
     call refused(check, '&joint', 'x.nml:1: &joint: not closed: / is missing before the end of the file')
     call refused(check, '&joint'//n//' clearance=1 '//n//'&contact /', &
                  'x.nml:1: &joint: not closed: / is missing before &contact')
@@ -204,7 +211,13 @@ contains
     call refused(check, '&end', 'x.nml:1: &end closes no group')
     call refused(check, '& /', 'x.nml:1: a group''s name must follow &')
     call refused(check, '&contact density(0)=1 /', &
-                 'x.nml:1: &contact density: the index must be a whole number in parentheses, as in key(1)')
+                 'x.nml:1: &contact density: the index must be a whole number in parentheses, as in key(1)'//two)
+    call refused(check, '&mechanism'//n//'rod_mass=1'//n//'rod_com(1,2)=1, 2 /', &
+                 'x.nml:3: &mechanism rod_com: the index must be a whole number in parentheses, as in key(1)'//two)
+    call refused(check, '&mechanism rod_mass=1 rod_com(2:1)=1 /', 'x.nml:1: &mechanism rod_com: the index must be '// &
+                 'a whole number in parentheses, as in key(1)'//two)
+    call refused(check, '&mechanism rod_mass=1'//n//'rod_com(1:2)='//n//'1 /', &
+                 'x.nml:2: &mechanism rod_com: takes 2 values from 1 to 2, not 1')
     call refused(check, '&contact density=2*, /', 'x.nml:1: &contact density: a value is missing after the repeat count')
     call refused(check, '&contact density=99999*1 /', 'x.nml:1: &contact density: repeat count out of range: 99999*1')
     call refused(check, whole//'&output '//repeat('digits=9 ', 2000)//'/', 'x.nml:8: &output digits: given twice'//n// &
@@ -222,6 +235,9 @@ contains
     call refused(check, '&joint rod_length=1 /', &
                  'x.nml:1: &joint rod_length: unknown key of this group; it belongs to &mechanism'//joint_keys)
     call refused(check, '&joint clearance=1, clearance=2 /', 'x.nml:1: &joint clearance: given twice')
+    call refused(check, '&crankshaft inertia(2)=1 /', 'x.nml:1: &crankshaft inertia: number 1 must be given before')
+    call refused(check, '&output columns(2)=''time'' /', 'x.nml:1: &output columns: takes an index that begins with 1')
+    call refused(check, '&mechanism rod_mass(1:1)=1 /', 'x.nml:1: &mechanism rod_mass: takes no index')
     call refused(check, '&contact density(1)=1 density=2*1 /', 'x.nml:1: &contact density: given twice')
     call refused_with(check, 'joint.clearnce=1', &
                       'x.nml: --set joint.clearnce=1: &joint clearnce: unknown key; did you mean clearance?'//joint_keys)
@@ -238,6 +254,7 @@ contains
     call refused(check, '&joint clearance=abc /', at//'abc: must be a number (m)')
     call refused(check, '&joint clearance=1e /', at//'1e: must be a number (m)')
     call refused(check, '&joint clearance=1.2.3 /', at//'1.2.3: must be a number (m)')
+    call refused(check, '&joint clearance=.5. bearing_radius=1 /', at//'.5.: must be a number (m)')
     call refused(check, '&joint clearance=. /', at//'.: must be a number (m)')
     call refused(check, '&joint clearance=''1'' /', at//'1: must be a number, without quotes (m)')
     call refused(check, '&joint clearance=NaN /', at//'NaN: must be a finite number (m)')
@@ -901,7 +918,8 @@ contains
     if (.not. allocated(error)) return
     call check%that(index(error%message, n) < 500, 'messages are short')
     call check%that(scan(error%message, achar(27)) == 0, 'no control characters in messages')
-    call refused(check, whole//char(239)//char(187)//char(191)//'&', 'x.nml:8: text outside a group: \xEF\xBB\xBF&')
+    call refused(check, whole//char(239)//char(187)//char(191)//'&', 'x.nml:8: text outside a group: '// &
+                 '\xEF\xBB\xBF&; &integrator ends in line 7')
     call refused(check, 'a'//char(194)//char(160)//char(226)//char(128)//char(174)//char(195)//char(169), &
                  'x.nml:1: text outside a group: a\xC2\xA0\xE2\x80\xAE'//char(195)//char(169))
   end subroutine test_safe_messages

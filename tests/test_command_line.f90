@@ -11,6 +11,9 @@ module test_command_line
   public :: run_test_command_line
 
   character(len=*), parameter :: hint = '; gudgeon --help lists the options'
+  character(len=*), parameter :: groups = ': case, mechanism, bearing_load, drive, initial, pin, joint, contact, friction, '// &
+    'lubrication, asperities, wear, film_history, supply, bore, heat, guide, elastic_rod, crankshaft, damper, cylinder, '// &
+    'combustion, cylinder_pressure, run, integrator, output'
 
 contains
 
@@ -128,7 +131,10 @@ contains
       'wear'//hint)
     call refused(check, [character(len=16) :: 'sweep', '--template=dry'], 'gudgeon sweep --template has no kinds'//hint)
     call refused(check, ['--reference=joints'], &
-      '--reference joints: must be case, bearing, study, oils, results, schema or a group of cases'//hint)
+      '--reference joints: must be case, bearing, study, oils, results, schema or a group of cases'//groups// &
+      '; did you mean joint?'//hint)
+    call refused(check, ['--reference=valve'], &
+      '--reference valve: must be case, bearing, study, oils, results, schema or a group of cases'//groups//hint)
     call refused(check, ['--name=a/b'], '--name a/b: must be a name without folder; --out gives the folder'//hint)
     call refused(check, [character(len=16) :: '--name=a', 'b.nml', 'c.nml'], '--name is for one case'//hint)
     call refused(check, [character(len=16) :: 'sweep', '--name=a', 'b.nml'], '--name is for one case'//hint)

@@ -44,6 +44,10 @@ contains
     call check%that(message == '', 'revolutions in a minute, kilonewton times metre: '//message)
     call check%relative(x(2), 2*pi, 1e-14_dp, 'revolutions in a minute')
     call check%relative(y(2), 2000.0_dp, 1e-14_dp, 'kilonewton times metre')
+    call parse_curve('theta [deg CA],p [atm]'//n//'0,1e-40'//n//'1,-2.5e-124', crank_angle, pressure, x, y, lines, message, line)
+    call check%equal_text(message, '', 'numbers as small as rounding leaves them')
+    call check%relative(y(1), 101325e-40_dp, 1e-14_dp, 'an atmosphere times 1e-40')
+    call check%relative(y(2), -253312.5e-124_dp, 1e-14_dp, 'an atmosphere times -2.5e-124')
   end subroutine good_files
 
   subroutine bad_files(check)
@@ -52,13 +56,15 @@ contains
     call refused('', 1, 'needs a header and at least two rows')
     call refused(head//'1,2'//n, 2, 'needs a header and at least two rows')
     call refused('0,1'//n//'1,2'//n, 1, '0: '//units//'crank angle in one of deg, degrees, degCA, rad, as in crank_angle[deg]')
-    call refused('crank_angle[deg],pressure[atm]'//n, 1, 'pressure[atm]: '//units// &
-      'pressure in one of Pa, hPa, kPa, MPa, GPa, mbar, bar, psi, as in pressure[Pa]')
+    call refused('crank_angle[deg],pressure[torr]'//n, 1, 'pressure[torr]: '//units// &
+      'pressure in one of Pa, hPa, kPa, MPa, GPa, mbar, bar, atm, psi, as in pressure[Pa]')
     call refused('crank_angle[deg];pressure[bar]'//n, 1, 'crank_angle[deg];pressure[bar]: needs two columns '// &
       'separated by a comma')
     call refused(head//'0,1,5', 2, '0,1,5: needs two columns separated by a comma')
     call refused(head//'0,1'//n//'1,nan', 3, 'pressure = nan: must be a finite number')
     call refused(head//'0,1'//n//'inf,1', 3, 'crank angle = inf: must be a finite number')
+    call refused(head//'0,1'//n//'1,1e31', 3, 'pressure = 1e31: must be 0 or of a size from 1e-30 to 1e30')
+    call refused(head//'0,1'//n//'1e-31,1', 3, 'crank angle = 1e-31: must be 0 or of a size from 1e-30 to 1e30')
     call refused(head//'0,1'//n//'1,', 3, 'pressure is missing')
     call refused(head//'0,1'//n//',1', 3, 'crank angle is missing')
     call refused(head//'0,1'//n//'1,2 bar', 3, 'pressure = 2 bar: must be a number')

@@ -79,6 +79,42 @@ def schema(program: str) -> None:
     check(not validator.is_valid(case) and not validator.is_valid({"nothing": {}}), "a required key, and an unknown group")
 
 
+def units_of(schema: object) -> set[str]:
+    """The units of all keys in a schema."""
+    if isinstance(schema, dict):
+        return {schema["x-unit"]} if "x-unit" in schema else set().union(*map(units_of, schema.values()))
+    return set()
+
+
+def units(program: str) -> None:
+    """A case with the unit of each key behind its numbers, as the program prints it, is the case without units."""
+    written: set[str] = set()
+
+    def with_unit(line: re.Match[str]) -> str:
+        written.add(line[3])
+        return line[1] + ", ".join(f"{number} {line[3]}" for number in line[2].split(", "))
+
+    for path in sorted((TOP / "cases").rglob("*.nml")):
+        if path.parent.name == "studies":
+            continue
+        resolved = output(program, "--resolved", str(path))
+        text = re.sub(r"^(  \w+ = )([^'\n!]+?)  ! (.*)$", with_unit, resolved, flags=re.MULTILINE)
+        done = subprocess.run([program, "--resolved", "-"], input=text, capture_output=True, text=True, cwd=path.parent)
+        check(done.stdout == resolved, f"{path.relative_to(TOP)} with units: {done.stderr[:300]}")
+    missing = units_of(json.loads(output(program, "--reference", "schema"))) - written
+    check(not missing, f"all units of keys stand in shipped cases, not {missing}")
+
+
+def written_by_f90nml(program: str) -> None:
+    """f90nml writes key(1:2) for a list that begins with number 1."""
+    case = f90nml.read(TOP / "cases" / "sim_I.nml")
+    case["mechanism"].start_index["rod_com"] = [1]
+    text = str(case)
+    check("rod_com(1:2)" in text, "f90nml writes indices")
+    done = subprocess.run([program, "--resolved", "-"], input=text, capture_output=True, text=True)
+    check(done.stdout == output(program, "--resolved", str(TOP / "cases" / "sim_I.nml")), f"a case that f90nml has written: {done.stderr}")
+
+
 def completion(program: str) -> None:
     script = output(program, "--completion", "bash")
     for line, wanted in (
@@ -137,6 +173,8 @@ def installed(program: str) -> None:
 def main() -> int:
     program = sys.argv[1]
     schema(program)
+    units(program)
+    written_by_f90nml(program)
     completion(program)
     manual_page(program)
     installed(program)

@@ -163,8 +163,15 @@ class Files(InDirectory):
             "s.nml", "&study case = 'c.nml' / &parameter key = 'a.b', from = 20 um, to = '60 um' / &parameter key = 'a.c', from = 1d0, to = 3 /\n"))
         self.assertEqual(found.parameters, (Parameter("a.b", 20.0, 60.0, unit="um"), Parameter("a.c", 1.0, 3.0)))
         study.write_table_study(found, np.array([[20.0, 1.0]]), self.work / "o", "t", "")
+        self.assertEqual(self.ranges("from = 60 rad/s, to = 1d2 rad/s count = 5 / as long as the bench allows"), ("60 rad/s", "100 rad/s"))
+        self.assertEqual(self.ranges("\n from = 1 N m s/rad ! least\n to = 2 N m s/rad\n/"), ("1 N m s/rad", "2 N m s/rad"))
+        self.assertEqual(self.ranges("from = 2 J/(kg K), to = 3 J/(kg K), count = 2/"), ("2 J/(kg K)", "3 J/(kg K)"))
         cell, plain = (self.work / "o" / "t.csv").read_text(encoding="utf-8").splitlines()[1].split(",")
         self.assertEqual((float(cell.removesuffix(" um")), float(plain)), (20.0, 1.0))
+
+    def ranges(self, keys: str) -> tuple[str, str]:
+        found = study.read_study(self.write("s.nml", f"&study case = 'a/from = 7' / &parameter key = 'a.b' {keys}\n")).parameters[0]
+        return f"{found.low:.15g} {found.unit}", f"{found.high:.15g} {found.unit}"
 
     def test_what_is_no_range_is_refused(self) -> None:
         for text in (

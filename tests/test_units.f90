@@ -14,7 +14,7 @@ module test_units
   private
   public :: run_test_units, field_of
 
-  character(len=*), parameter :: n = achar(10), micro = char(194)//char(181)
+  character(len=*), parameter :: n = achar(10), micro = char(194)//char(181), no_break = char(194)//char(160)
   integer, parameter :: long = 60
   character(len=*), parameter :: in_si = '&mechanism crank_length=0.05, crank_mass=0.3, crank_inertia=1e-5 rod_length=0.12'//n// &
     'rod_mass=0.21 rod_inertia=2.5e-4 rod_com=0.045, 0.001 piston_mass=0.14 /'//n//'&initial crank_angle_deg=90 '// &
@@ -87,13 +87,14 @@ contains
   !> A case with units, in its file or in overrides, has the resolved form of the case in SI, which has no units.
   subroutine same_case(check)
     class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: with_units = '&mechanism crank_length=50mm, crank_mass=300 g, crank_inertia=0.1 kg.cm2 '// &
+    character(len=*), parameter :: with_units = '&mechanism crank_length=50mm, crank_mass=300 g, crank_inertia=0.1 kg cm^2 '// &
       'rod_length=12 cm'//n//'rod_mass=210g rod_inertia=2.5 kg*cm^2 rod_com=45 mm, 1 mm piston_mass=0.14 kg /'//n// &
-      '&initial crank_angle_deg=90 deg crank_speed=100 rad/s/'//n//'&drive kind=''free'' torque=2500 mNm /'//n// &
+      '&initial crank_angle_deg=90 deg crank_speed=100 rad/s/'//n//'&drive kind=''free'' torque=2500 mN m / as measured'//n// &
       '&joint kind=''clearance'' clearance=15 '//micro//'m bearing_radius=1cm bearing_length=20 mm! of the pin'//n//'/'//n// &
-      '&contact youngs_modulus=2*207 GPa /'//n//'&lubrication viscosity_law=''vogel'' temperature=80 degC '// &
-      'known_temperatures=40degC 100degC known_viscosities=100 cSt,11.4 mm2/s density=0.885 kg/l /'//n// &
-      '&wear rate=2*1e-6 mm3/N/m /'//n//'&integrator end_time=2 ms/'//n
+      '&contact youngs_modulus=2*207 GPa /'//n//'&lubrication viscosity_law=''vogel'' temperature=80 '//no_break//'degC '// &
+      'known_temperatures=40 deg C 100degC'//no_break//'known_viscosities(1:2)'//no_break//'= 100 cSt,'// &
+      '11.4 mm2/s density=0.885 kg/l /'//n// &
+      '&wear rate=2*1e-6 mm^3/(N m) /'//n//'&integrator end_time=2 ms/'//n
     character(len=long), parameter :: overrides(3) = [character(len=long) :: 'joint.clearance=15um', &
       'initial.crank_speed=100 rad/s', 'contact.youngs_modulus=207 GPa, 207 GPa']
     character(len=long) :: none(0)
@@ -171,12 +172,21 @@ contains
     call refused('initial.crank_speed', '60 Hz', '60 Hz: turns or radians? Write rpm or rad/s')
     call refused('drive.damping', '1 N', '1 N: N is a force; damping is in N.m.s/rad')
     call refused('integrator.max_steps', '5 mm', '5 mm: must be a whole number')
-    call refused_by_syntax('15 u m', '15 u: unexpected m')
-    call refused_by_syntax('15um m', '15um: unexpected m')
+    call refused('joint.clearance', '15 u m', '15 u m: unknown unit; did you mean um?')
+    call refused('joint.clearance', '15 m m', '15 m m: unknown unit; did you mean mm?')
+    call refused('joint.clearance', '5 N m', '5 N m: N m is a moment; '//length)
+    call refused('joint.clearance', '5 J/(kg K)', '5 J/(kg K): J/(kg K) is a specific heat; '//length)
+    call refused('drive.torque', '5 N s', '5 N s: unknown unit; torque is a moment (N.m, mN.m, kN.m)')
+    call refused('drive.torque', '5 M N', '5 M N: unknown unit; torque is a moment (N.m, mN.m, kN.m)')
+    call refused('drive.damping', '5 N m', '5 N m: N m is a moment; damping is in N.m.s/rad')
+    call refused_by_syntax('15 um bearing_mass 5', 'clearance: 15 um: unexpected bearing_mass')
     call refused_by_syntax('0,05 mm', 'clearance: 0,05 mm has a decimal comma: write 0.05 mm')
     call refused_by_syntax('15 mm', 'clearance = 15 mm (0.015): must be < bearing_radius = 0.01')
     call refused_by_syntax('15 um /mm', 'a key or / was expected, not /mm')
-    call refused_by_syntax('15 / mm', 'text outside a group: mm')
+    call refused_by_syntax('15 / mm', 'text outside a group: /; &joint ends in line ')
+    call refused_by_syntax('15 um / bearing_mass = 5', 'text outside a group: bearing_mass = 5; &joint ends in line ')
+    call refused_by_syntax('15 um / end of &joint', 'text outside a group: end of &joint; &joint ends in line ')
+    call refused_by_syntax('15 um / 2', 'text outside a group: 2; &joint ends in line ')
 
   contains
 

@@ -5,7 +5,7 @@ module physical_units
   use text_tools, only: lowercase, nearest_word, replaced, integer_text, whole_number
   implicit none
   private
-  public :: unit_t, split_number, find_unit, find_head_unit, head_units, shifted
+  public :: unit_t, split_number, find_unit, find_head_unit, head_units, shifted, no_break_space
 
   !> A number x in this unit is 10**power factor (x + offset) in the unit of the key.
   type :: unit_t
@@ -33,8 +33,8 @@ module physical_units
     unit_t('kg m^2', 'kg.mm2', -6), unit_t('kg m^2', 'g.mm2', -9), unit_t('kg/m^3', 'kg/m3'), unit_t('kg/m^3', 'g/cm3', 3), &
     unit_t('kg/m^3', 'kg/l', 3), unit_t('s', 's'), unit_t('s', 'ms', -3), unit_t('s', 'us', -6), &
     unit_t('s', 'min', 0, 60.0_dp), unit_t('s', 'h', 0, 3600.0_dp), unit_t('m/s', 'm/s'), unit_t('m/s', 'mm/s', -3), &
-    unit_t('m/s', 'um/s', -6), unit_t('rad/s', 'rad/s'), unit_t('rad/s', 'rpm', 0, turn), unit_t('rad/s', '1/min', 0, turn), &
-    unit_t('rad/s', 'deg/s', 0, pi/180), unit_t('rad/s', 'r/min', 0, turn, of_heads=.true.), &
+    unit_t('m/s', 'um/s', -6), unit_t('m/s', 'm/h', 0, 1/3600.0_dp), unit_t('rad/s', 'rad/s'), unit_t('rad/s', 'rpm', 0, turn), &
+    unit_t('rad/s', '1/min', 0, turn), unit_t('rad/s', 'deg/s', 0, pi/180), unit_t('rad/s', 'r/min', 0, turn, of_heads=.true.), &
     unit_t('rad/s', 'min^-1', 0, turn, of_heads=.true.), unit_t('rad/s', '1/s', 0, 2*pi, of_heads=.true.), &
     unit_t('degrees', 'deg'), unit_t('degrees', 'degrees', of_heads=.true.), unit_t('degrees', 'degCA', of_heads=.true.), &
     unit_t('degrees', 'rad', 0, 180/pi), unit_t('rad', 'rad'), unit_t('rad', 'deg', 0, pi/180)]
@@ -43,9 +43,10 @@ module physical_units
     unit_t('N', 'N'), unit_t('N', 'kN', 3), unit_t('N', 'MN', 6), unit_t('N', 'mN', -3), &
     unit_t('N', 'lbf', 0, 4.4482216152605_dp), unit_t('Pa', 'Pa'), unit_t('Pa', 'hPa', 2), unit_t('Pa', 'kPa', 3), &
     unit_t('Pa', 'MPa', 6), unit_t('Pa', 'GPa', 9), unit_t('Pa', 'mbar', 2), unit_t('Pa', 'bar', 5), &
-    unit_t('Pa', 'psi', 0, 6894.757293168361_dp), unit_t('1/Pa', '1/Pa'), unit_t('1/Pa', '1/MPa', -6), &
-    unit_t('1/Pa', '1/GPa', -9), unit_t('N m', 'N.m'), unit_t('N m', 'mN.m', -3), unit_t('N m', 'kN.m', 3), unit_t('J', 'J'), &
-    unit_t('J', 'mJ', -3), unit_t('J', 'kJ', 3), unit_t('J', 'MJ', 6), unit_t('m^2/N', 'm2/N'), unit_t('m^2/N', 'mm3/N/m', -9)]
+    unit_t('Pa', 'atm', 0, 101325.0_dp), unit_t('Pa', 'psi', 0, 6894.757293168361_dp), unit_t('1/Pa', '1/Pa'), &
+    unit_t('1/Pa', '1/MPa', -6), unit_t('1/Pa', '1/GPa', -9), unit_t('N m', 'N.m'), unit_t('N m', 'mN.m', -3), &
+    unit_t('N m', 'kN.m', 3), unit_t('J', 'J'), unit_t('J', 'mJ', -3), unit_t('J', 'kJ', 3), unit_t('J', 'MJ', 6), &
+    unit_t('m^2/N', 'm2/N'), unit_t('m^2/N', 'mm3/N/m', -9)]
 
   type(unit_t), parameter :: units_of_oils(*) = [ &
     unit_t('Pa s', 'Pa.s'), unit_t('Pa s', 'mPa.s', -3), unit_t('Pa s', 'cP', -3), unit_t('Pa s', 'P', -1), &
@@ -68,6 +69,7 @@ module physical_units
     dimension_t('W/K', 'a conductance'), dimension_t('J/K', 'a heat capacity'), dimension_t('J/(kg K)', 'a specific heat')]
 
   character(len=*), parameter :: digits = '0123456789', letters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ'
+  character(len=*), parameter :: no_break_space = char(194)//char(160)   !! U+00A0
   character(len=*), parameter :: first_bytes = char(194)//char(206)   !! of the degree sign and of the micro signs
 
 contains
@@ -126,11 +128,11 @@ contains
     integer :: i
     do i = 1, size(all_units)
       found = all_units(i)
-      if (found%of == of .and. plain(trim(found%name)) == plain(written) .and. .not. found%of_heads) return
+      if (found%of == of .and. is_same(written, found%name) .and. .not. found%of_heads) return
     end do
     found = unit_t(of=of)
-    if (of /= '' .and. plain(written) == plain(of) .and. index(of, 'exponent') == 0) return
-    own = pack(all_units%name, all_units%of == of .and. .not. all_units%of_heads)
+    if (of /= '' .and. is_same(written, of)) return
+    allocate (own, source=pack(all_units%name, all_units%of == of .and. .not. all_units%of_heads))
     near = ''
     if (len(written) > 1) near = nearest_word(written, own)
     do i = 1, size(own)
@@ -159,7 +161,7 @@ contains
     integer :: i
     text = ''
     do i = 1, size(all_units)
-      if (plain(trim(all_units(i)%name)) == plain(written) .and. .not. all_units(i)%of_heads) &
+      if (is_same(written, all_units(i)%name) .and. .not. all_units(i)%of_heads) &
         text = trim(dimensions(findloc(dimensions%unit, all_units(i)%of, 1))%says)
     end do
   end function measured_by
@@ -192,7 +194,7 @@ contains
     integer :: i
     factor = 0
     do i = 1, size(all_units)
-      if (all_units(i)%of == of .and. plain(trim(all_units(i)%name)) == plain(written)) &
+      if (all_units(i)%of == of .and. is_same(written, all_units(i)%name)) &
         factor = 10.0_dp**all_units(i)%power*all_units(i)%factor
     end do
   end function find_head_unit
@@ -204,17 +206,29 @@ contains
     text = listed(all_units%of == of)
   end function head_units
 
-  !> A unit without blanks and signs of multiplication and power, so that N.m, N m, N*m and Nm are the same, with letters for the
-  !> degree sign and the micro signs.
+  !> Whether a unit as written is this one: N.m, N m, N*m and Nm are the same, but m.m is not mm.
+  pure logical function is_same(written, unit)
+    character(len=*), intent(in) :: written, unit
+    is_same = plain(written) == plain(unit) .or. plain(written) == replaced(plain(unit), '.', '')
+  end function is_same
+
+  !> A unit with points for blanks and signs of multiplication, without signs of power, with a slash before each factor of a
+  !> denominator in parentheses, and with letters for the degree sign and the micro signs.
   pure function plain(unit)
     character(len=*), intent(in) :: unit
     character(len=:), allocatable :: plain
-    integer :: i
-    plain = replaced(replaced(trim(unit), char(194)//char(176), 'deg'), char(194)//char(183), '.')
+    integer :: first, last
+    plain = trim(adjustl(replaced(unit, no_break_space, ' ')))
+    plain = replaced(replaced(plain, char(194)//char(176), 'deg'), char(194)//char(183), '.')
     plain = replaced(replaced(plain, char(194)//char(181), 'u'), char(206)//char(188), 'u')
-    do i = 1, 4
-      plain = replaced(plain, ' .*^'(i:i), '')
+    plain = replaced(replaced(replaced(replaced(plain, '**', ''), '^', ''), '*', '.'), ' ', '.')
+    do while (index(plain, '..') > 0)
+      plain = replaced(plain, '..', '.')
     end do
+    plain = replaced(replaced(replaced(plain, './', '/'), '/.', '/'), 'deg.', 'deg')
+    first = index(plain, '/(')
+    last = index(plain, ')', back=.true.)
+    if (first > 0 .and. last == len(plain)) plain = plain(:first)//replaced(plain(first + 2:last - 1), '.', '/')
   end function plain
 
   !> A number times a power of ten, exactly: its exponent is changed as text.

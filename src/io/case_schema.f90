@@ -10,7 +10,7 @@ module case_schema
   implicit none
   private
   public :: key_t, group_definition_t, key_table_t, schema_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases
-  public :: shown_group, name_in_file, is_first_of_name, real_kind, integer_kind, logical_kind, word_kind, text_kind
+  public :: group_names, shown_group, name_in_file, is_first_of_name, real_kind, integer_kind, logical_kind, word_kind, text_kind
 
   !> A group. The group of an optional model may be missing in a case; its model is then absent from the scene.
   type :: group_definition_t
@@ -137,6 +137,15 @@ contains
     type(group_definition_t), intent(in) :: group
     is_first_of_name = index(group%name, '.') == 0 .and. group%number <= 1
   end function is_first_of_name
+
+  !> The names of groups as in a case file, each once.
+  pure function group_names(groups) result(names)
+    type(group_definition_t), intent(in) :: groups(:)
+    character(len=len(groups%name)), allocatable :: names(:)
+    integer :: i
+    names = [character(len=len(names)) :: (name_in_file(groups(i)), i=1, size(groups))]
+    names = pack(names, [(is_first_of_name(groups(i)), i=1, size(groups))])
+  end function group_names
 
   !> Collect a group. The groups of the second joint are separate groups, all of them optional.
   subroutine collect_group(self, name, says, is_model, place, instead_of, number)

@@ -4,8 +4,8 @@ module case_values
   use kinds, only: dp
   use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, nearest_word, allowed
-  use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, name_in_file, &
-    is_first_of_name, real_kind, integer_kind, word_kind, text_kind
+  use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, group_names, &
+    real_kind, integer_kind, word_kind, text_kind
   use namelist_reader, only: entry_t, token_t, read_values
   use unit_hints, only: likely_unit
   use problem_list, only: problem_list_t, behind_file
@@ -196,10 +196,9 @@ contains
     if (find_group(self%groups, group) == 0) then
       names = [character(len=name_length) :: (self%groups(i)%name, i=1, size(self%groups))]
       near = nearest_word(group, names)
-      names = [character(len=name_length) :: (name_in_file(self%groups(i)), i=1, size(self%groups))]
       if (near /= '') near = '; did you mean '//near//'?'
       call fail(error, at//'&'//printable(group, 40)//': unknown group'//near// &
-        allowed(pack(names, [(is_first_of_name(self%groups(i)), i=1, size(names))])), status_case_file)
+        allowed(group_names(self%groups)), status_case_file)
       return
     end if
     text = shown_group(group)//' '//printable(key, 40)//': unknown key'
@@ -275,7 +274,11 @@ contains
       if (total < key%count .and. index == 0 .and. key%kind == real_kind .and. .not. key%is_list) wanted = 'takes '// &
         integer_text(key%count)//' values; as '//integer_text(key%count)//'*'//printable(tokens(1)%text, 40)// &
         ' where they are the same'
-      if (index > 0 .and. key%count /= 2) wanted = 'takes no index'
+      if (index > 0 .and. key%count == 1) wanted = 'takes no index'
+      if (index > 1 .and. key%kind == text_kind) wanted = 'takes an index that begins with 1'
+      if (index > 1 .and. key%is_list .and. .not. allocated(wanted)) then
+        if (.not. value%given(index - 1)) wanted = 'number '//integer_text(index - 1)//' must be given before'
+      end if
       if (key%kind == real_kind) call find_decimal_comma(tokens, merge(size(tokens), key%count, key%is_list), wanted)
       if (key%kind == real_kind .and. .not. allocated(wanted)) call compare_units(tokens, name, wanted)
       if (allocated(wanted)) then

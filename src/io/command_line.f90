@@ -1,10 +1,10 @@
 !> Reads the command line: options, overrides and case files. The arguments are passed as an array so that it can be tested.
 module command_line
   use error_handling, only: error_t, fail, status_command_line
-  use text_tools, only: printable, is_clean, lowercase, nearest_word, likely_word, case_name
+  use text_tools, only: printable, is_clean, lowercase, nearest_word, likely_word, case_name, joined
   use case_templates, only: template_kinds
   use accuracy_presets, only: accuracy_levels
-  use case_schema, only: key_table_t, case_schema_of, find_group, is_listed
+  use case_schema, only: key_table_t, case_schema_of, find_group, group_names, is_listed
   use report_files, only: ending_of_results
   implicit none
   private
@@ -189,7 +189,7 @@ contains
     subroutine set_option(name, value, has_value)
       character(len=*), intent(in) :: name, value
       logical, intent(in), optional :: has_value   !! of an option that may do without
-      character(len=:), allocatable :: wanted
+      character(len=:), allocatable :: wanted, groups
       type(key_table_t) :: table
       line%option_count = line%option_count + 1
       select case (name)
@@ -232,9 +232,10 @@ contains
       case ('reference')
         line%reference = value
         call case_schema_of(table)
+        groups = joined(group_names(table%groups))
         if (.not. is_listed(value, subjects) .and. find_group(table%groups, value) == 0 .and. &
             find_group(table%groups, value//'_1') == 0) &
-          wanted = 'must be '//subjects//' or a group of cases'
+          wanted = 'must be '//subjects//' or a group of cases: '//groups//likely_word(value, subjects//', '//groups)
       case ('completion')
         line%completion = value
         if (.not. is_listed(value, shells)) wanted = 'must be bash, zsh or fish'

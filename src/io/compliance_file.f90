@@ -48,7 +48,7 @@ contains
       end if
       loads(n) = adjustl(row(:first - 1))
       shapes(n) = adjustl(row(first + 1:second - 1))
-      call read_real(trim(adjustl(row(second + 1:))), values(n), wanted)
+      call read_real(trim(adjustl(row(second + 1:))), values(n), wanted, may_be_tiny=.true.)
       if (allocated(wanted)) message = 'compliance = '//printable(row(second + 1:), 40)//': '//wanted
     end do
     line = max(1, line)

@@ -16,10 +16,11 @@ module curve_file
     character(len=12) :: name = ''
     character(len=8) :: unit = ''     !! of the values that are read
     character(len=8) :: shown = ''    !! the same in the head of a table
+    logical :: may_be_tiny = .true.   !! smaller than 1e-30; the first columns may not, since rows must not be that close
   end type quantity_t
 
-  type(quantity_t), parameter :: crank_angle = quantity_t('crank angle', 'degrees', 'deg'), &
-    pressure = quantity_t('pressure', 'Pa', 'Pa'), turning_speed = quantity_t('speed', 'rad/s', 'rad/s'), &
+  type(quantity_t), parameter :: crank_angle = quantity_t('crank angle', 'degrees', 'deg', .false.), &
+    pressure = quantity_t('pressure', 'Pa', 'Pa'), turning_speed = quantity_t('speed', 'rad/s', 'rad/s', .false.), &
     torque = quantity_t('torque', 'N m', 'N.m'), load = quantity_t('load', 'N', 'N')
 
 contains
@@ -154,7 +155,7 @@ contains
       message = trim(quantity%name)//' is missing'
       return
     end if
-    call read_real(field, value, wanted)
+    call read_real(field, value, wanted, quantity%may_be_tiny)
     if (allocated(wanted)) message = trim(quantity%name)//' = '//printable(field, 40)//': '//wanted
   end subroutine read_number
 

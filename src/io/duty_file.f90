@@ -107,7 +107,7 @@ contains
       column = column + 1
       k = findloc(column_of, column, 1)
       if (k == 0) exit
-      call read_real(field, values(k), wanted)
+      call read_real(field, values(k), wanted, may_be_tiny=k > 1)   ! but not the times
       if (allocated(wanted)) then
         message = trim(names(k))//' = '//printable(field, 40)//': '//wanted
         return

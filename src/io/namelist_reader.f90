@@ -3,9 +3,9 @@
 !> &end, every key must have values, and no value may be missing between commas. A word behind a number is its unit.
 module namelist_reader
   use error_handling, only: error_t, fail, status_case_file
-  use text_tools, only: printable, integer_text
+  use text_tools, only: printable, integer_text, whole_number
   use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, word_is_next, &
-    slash_of_unit, digits, shown
+    slash_of_unit, skip_text_behind_end, digits, shown
   use physical_units, only: split_number
   implicit none
   private
@@ -55,6 +55,7 @@ contains
     type(namelist_t), intent(out) :: list
     type(error_t), allocatable, intent(out) :: error
     type(scanner_t) :: scan
+    integer :: closed   ! line on which the last group ends
     list%file = printable(path, 200)
     allocate (list%groups(most), list%entries(most))
     scan%text = text
@@ -64,8 +65,11 @@ contains
       if (at_end(scan)) exit
       if (scan%text(scan%at:scan%at) == '&') then
         call read_group(scan, list)
+        closed = scan%line
       else
         scan%message = 'text outside a group: '//piece(scan)
+        if (list%n_groups > 0) scan%message = scan%message//'; &'//printable(list%groups(list%n_groups)%name, shown)// &
+          ' ends in line '//integer_text(closed)
       end if
       if (allocated(scan%message)) exit
     end do
@@ -125,6 +129,7 @@ contains
       case ('/')
         if (.not. slash_of_unit(scan, scan%at)) then
           scan%at = scan%at + 1
+          call skip_text_behind_end(scan)
           return
         end if
       case ('&')
@@ -155,11 +160,12 @@ contains
     scan%line = group%line
   end subroutine not_closed
 
-  !> `key = values` or `key(n) = values`.
+  !> `key = values`, `key(n) = values` or `key(m:n) = values`.
   subroutine read_entry(scan, entry)
     type(scanner_t), intent(inout) :: scan
     type(entry_t), intent(inout) :: entry
     character(len=:), allocatable :: place
+    integer :: last, given
     entry%line = scan%line
     place = '&'//printable(entry%group, shown)
     entry%key = name_here(scan)
@@ -169,10 +175,11 @@ contains
     end if
     place = place//' '//printable(entry%key, shown)
     call skip_blanks(scan)
+    last = 0
     if (next_is(scan, '(')) then
-      call read_index(scan, entry%index)
+      call read_index(scan, entry%index, last)
       if (entry%index < 1) then
-        scan%message = place//': the index must be a whole number in parentheses, as in key(1)'
+        scan%message = place//': the index must be a whole number in parentheses, as in key(1), or two, as in key(1:2)'
         return
       end if
       call skip_blanks(scan)
@@ -183,23 +190,41 @@ contains
     end if
     scan%at = scan%at + 1
     call read_tokens(scan, entry%tokens)
+    if (.not. allocated(scan%message) .and. last > 0) then
+      given = sum(entry%tokens%repeat)
+      if (given /= last - entry%index + 1) then
+        scan%message = 'takes '//integer_text(last - entry%index + 1)//' values from '//integer_text(entry%index)//' to '// &
+          integer_text(last)//', not '//integer_text(given)
+        scan%line = entry%line
+      end if
+    end if
     if (allocated(scan%message)) scan%message = place//': '//scan%message
   end subroutine read_entry
 
-  !> The n of (n), and move behind it; 0 if there is none.
-  subroutine read_index(scan, n)
+  !> The first and last number of (first) or (first:last), and move behind it. `first` is 0 if they are not that, and `last` if
+  !> there is none.
+  subroutine read_index(scan, first, last)
     type(scanner_t), intent(inout) :: scan
-    integer, intent(out) :: n
+    integer, intent(out) :: first, last
     character(len=:), allocatable :: content
-    integer :: length
-    n = 0
-    length = index(scan%text(scan%at:min(scan%at + 20, len(scan%text))), ')')
-    if (length == 0) return
-    content = trim(adjustl(scan%text(scan%at + 1:scan%at + length - 2)))
-    if (len(content) < 1 .or. len(content) > 4 .or. verify(content, digits) > 0) return
-    read (content, *) n
+    integer :: length, colon
+    length = index(scan%text(scan%at:scan%at + rest_of_line(scan) - 1), ')')
+    content = scan%text(scan%at + 1:scan%at + length - 2)
     scan%at = scan%at + length
+    colon = index(content//':', ':')
+    first = whole(content(:colon - 1))
+    last = whole(content(colon + 1:))
+    if (colon < len(content) .and. last < first) first = 0
   end subroutine read_index
+
+  !> A text as a whole number from 1 to 9999; 0 if it is none.
+  pure integer function whole(text)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: bare
+    bare = trim(adjustl(text))
+    whole = 0
+    if (len(bare) >= 1 .and. len(bare) <= 4 .and. verify(bare, digits) == 0) whole = int(whole_number(bare))
+  end function whole
 
   !> Read the values of a key, up to the next key, / or &.
   subroutine read_tokens(scan, tokens)
@@ -277,27 +302,24 @@ contains
     call read_string(scan, token)
   end subroutine read_token
 
-  !> Read the unit of a number that is not glued to it, and put it behind a blank.
+  !> Read the unit of a number that is not glued to it, and the further words of a unit, as in N m, each behind one blank.
   subroutine read_unit(scan, text)
     type(scanner_t), intent(inout) :: scan
     character(len=:), allocatable, intent(inout) :: text
-    character(len=:), allocatable :: number, unit
-    integer :: length
+    character(len=:), allocatable :: number, unit, word
     if (verify(text, '+-.0123456789') == 1 .or. verify(text, '+-.') == 0) return
     call split_number(text, number, unit)
     if (unit == '' .and. verify(text, '+-.0123456789eEdDqQ') > 0) return   ! not a number
-    if (.not. word_is_next(scan)) return
-    if (key_is_next(scan)) return
-    length = bare_length(scan)
-    if (unit /= '') then
-      scan%message = printable(text, shown)//': unexpected '//printable(scan%text(scan%at:scan%at + length - 1), shown)
-      return
-    end if
-    text = text//' '//scan%text(scan%at:scan%at + length - 1)
-    scan%at = scan%at + length
-    if (.not. word_is_next(scan)) return
-    if (.not. key_is_next(scan)) scan%message = printable(text, shown)//': unexpected '// &
-      printable(scan%text(scan%at:scan%at + bare_length(scan) - 1), shown)
+    do while (word_is_next(scan))
+      if (key_is_next(scan)) return
+      word = scan%text(scan%at:scan%at + bare_length(scan) - 1)
+      if (index(word, '_') > 0) then
+        scan%message = printable(text, shown)//': unexpected '//printable(word, shown)
+        return
+      end if
+      text = text//' '//word
+      scan%at = scan%at + len(word)
+    end do
   end subroutine read_unit
 
   !> Read a string in single or double quotes; a doubled quote stands for one. It must end on the line on which it begins.
@@ -327,15 +349,14 @@ contains
   !> Whether a key begins here and not a value: a name, possibly with an index in parentheses, followed by =.
   logical function key_is_next(scan) result(found)
     type(scanner_t), intent(inout) :: scan
-    integer :: at, line, n
+    integer :: at, line
     at = scan%at
     line = scan%line
     found = .false.
     if (name_here(scan) /= '') then
       call skip_blanks(scan)
-      n = 1
-      if (next_is(scan, '(')) call read_index(scan, n)
-      if (n > 0) call skip_blanks(scan)
+      if (next_is(scan, '(')) scan%at = scan%at + index(scan%text(scan%at:scan%at + rest_of_line(scan) - 1), ')')
+      call skip_blanks(scan)
       found = next_is(scan, '=')
     end if
     scan%at = at

@@ -1,7 +1,7 @@
 !> What a shell shows of the program: completion of its command line, and its page of the manual.
 module shell_pages
-  use text_tools, only: replaced, next_line
-  use case_schema, only: key_table_t, case_schema_of, name_in_file, is_first_of_name
+  use text_tools, only: replaced, next_line, joined
+  use case_schema, only: key_table_t, case_schema_of, group_names
   use command_line, only: options, help_text, subjects, shells, progress_words
   use accuracy_presets, only: accuracy_levels
   use case_templates, only: template_kinds
@@ -122,12 +122,8 @@ contains
   function all_subjects() result(text)
     character(len=:), allocatable :: text
     type(key_table_t) :: table
-    integer :: i
     call case_schema_of(table)
-    text = listed(subjects)
-    do i = 1, size(table%groups)
-      if (is_first_of_name(table%groups(i))) text = text//' '//name_in_file(table%groups(i))
-    end do
+    text = listed(subjects//' '//joined(group_names(table%groups)))
   end function all_subjects
 
   !> The page of the manual, in the language of man: the text of --help in its sections.

@@ -1,9 +1,11 @@
 !> A position in a text that moves forward over blanks, comments and names of the namelist syntax.
 module text_scanner
+  use physical_units, only: no_break_space
   use text_tools, only: lowercase, printable
   implicit none
   private
-  public :: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, word_is_next, slash_of_unit
+  public :: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, word_is_next, slash_of_unit, &
+    skip_text_behind_end
   public :: newline, return, digits, shown
 
   !> The position, and the error found there.
@@ -36,9 +38,9 @@ contains
     type(scanner_t), intent(inout) :: scan
     integer :: length
     do while (.not. at_end(scan))
+      call skip_blanks_of_line(scan)
+      if (at_end(scan)) return
       select case (scan%text(scan%at:scan%at))
-      case (' ', tab)
-        scan%at = scan%at + 1
       case (newline)
         scan%line = scan%line + 1
         scan%at = scan%at + 1
@@ -54,29 +56,60 @@ contains
     end do
   end subroutine skip_blanks
 
+  !> Skip blanks, tabs and no-break spaces on this line.
+  subroutine skip_blanks_of_line(scan)
+    type(scanner_t), intent(inout) :: scan
+    do
+      if (next_is(scan, ' ') .or. next_is(scan, tab)) then
+        scan%at = scan%at + 1
+      else if (next_is(scan, no_break_space)) then
+        scan%at = scan%at + len(no_break_space)
+      else
+        return
+      end if
+    end do
+  end subroutine skip_blanks_of_line
+
+  !> Skip the text behind the end of a group, which is a comment as in Fortran if it begins with a letter and has none of = & / on
+  !> its line: those could belong to a key, a group or a unit.
+  subroutine skip_text_behind_end(self)
+    type(scanner_t), intent(inout) :: self
+    integer :: length
+    call skip_blanks_of_line(self)
+    length = bytes_before(self%text(self%at:), newline//return//'!')
+    associate (text => self%text(self%at:self%at + length - 1))
+      if (scan(text, '=&/') > 0 .or. scan(text, letters(:52)) /= 1 .and. text <= '~') return
+    end associate
+    self%at = self%at + length
+  end subroutine skip_text_behind_end
+
   !> Number of bytes to the end of the line.
   pure integer function rest_of_line(scan) result(length)
     type(scanner_t), intent(in) :: scan
     length = bytes_before(scan%text(scan%at:), newline//return)
   end function rest_of_line
 
-  !> Number of bytes to the next separator. A slash directly before a letter is none.
+  !> Number of bytes to the next separator. A slash of a unit is none, nor are the parentheses behind it.
   pure integer function bare_length(scan) result(length)
     type(scanner_t), intent(in) :: scan
+    character(len=:), allocatable :: line
     length = 0
+    line = scan%text(scan%at:scan%at + rest_of_line(scan) - 1)//no_break_space
     do
-      length = length + bytes_before(scan%text(scan%at + length:), ' ,/!&=()''"'//tab//newline//return)
+      length = length + min(bytes_before(line(length + 1:), ' ,/!&=()''"'//tab), &
+        index(line(length + 1:), no_break_space) - 1)
       if (.not. slash_of_unit(scan, scan%at + length)) return
       length = length + 1
+      if (line(length + 1:length + 1) == '(') length = length + index(line(length + 1:), ')')
     end do
   end function bare_length
 
-  !> Whether there is a slash at `at` with a letter directly behind it, as in rad/s, which closes no group.
+  !> Whether there is a slash at `at` with a letter or ( directly behind it, as in rad/s and J/(kg K), which closes no group.
   pure logical function slash_of_unit(self, at) result(found)
     type(scanner_t), intent(in) :: self
     integer, intent(in) :: at
     found = .false.
-    if (at < len(self%text)) found = self%text(at:at) == '/' .and. scan(self%text(at + 1:at + 1), letters(:52)) == 1
+    if (at < len(self%text)) found = self%text(at:at) == '/' .and. scan(self%text(at + 1:at + 1), letters(:52)//'(') == 1
   end function slash_of_unit
 
   !> Skip blanks on this line, and tell whether a word follows as a unit begins: with a letter, a degree or micro sign, or 1/ and a
@@ -84,9 +117,7 @@ contains
   logical function word_is_next(self) result(found)
     type(scanner_t), intent(inout) :: self
     integer :: at
-    do while (next_is(self, ' ') .or. next_is(self, tab))
-      self%at = self%at + 1
-    end do
+    call skip_blanks_of_line(self)
     at = self%at
     found = .false.
     if (at_end(self)) return
@@ -106,11 +137,10 @@ contains
     ended = scan%at > len(scan%text)
   end function at_end
 
-  pure logical function next_is(scan, character) result(same)
+  pure logical function next_is(scan, word) result(same)
     type(scanner_t), intent(in) :: scan
-    character(len=1), intent(in) :: character
-    same = .false.
-    if (.not. at_end(scan)) same = scan%text(scan%at:scan%at) == character
+    character(len=*), intent(in) :: word
+    same = index(scan%text(scan%at:min(scan%at + len(word) - 1, len(scan%text))), word) == 1
   end function next_is
 
   !> The text at this position for a message: the rest of the line, shortened.

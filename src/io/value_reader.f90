@@ -200,12 +200,14 @@ contains
   end function unit_of
 
   !> Read a real in Fortran notation: 2, .5, 1d-5, 1.5E3.
-  pure subroutine read_real(text, value, wanted)
+  pure subroutine read_real(text, value, wanted, may_be_tiny)
     character(len=*), intent(in) :: text
     real(dp), intent(out) :: value
     character(len=:), allocatable, intent(out) :: wanted
+    logical, intent(in), optional :: may_be_tiny   !! smaller than 1e-30, as computed forces in tables
     character(len=:), allocatable :: mantissa
     integer :: letter, exponent, whole, first, iostat
+    logical :: is_tiny
     value = 0
     mantissa = lowercase(text)
     letter = scan(mantissa, 'edq')
@@ -228,7 +230,9 @@ contains
     first = scan(mantissa, '123456789')
     if (first == 0) return
     exponent = exponent + whole - first + merge(1, 0, first > whole)   ! exponent of the first digit that is not 0
-    if (len(text) > 100 .or. exponent >= largest_exponent .or. exponent < -largest_exponent) then
+    is_tiny = exponent < -largest_exponent
+    if (present(may_be_tiny)) is_tiny = is_tiny .and. .not. may_be_tiny
+    if (len(text) > 100 .or. exponent >= largest_exponent .or. is_tiny) then
       wanted = out_of_reach
       return
     end if

@@ -13,6 +13,12 @@ import pandas as pd
 
 from gudgeon.results import MissingResult, read_table
 
+#: A string or comment; or a bound of a range, which f90nml would end at the slash of a unit: key and value.
+BOUND = re.compile(
+    r"""('[^'\n]*'|"[^"\n]*"|![^\n]*)|(\b(?:from|to)\s*=\s*)([^\s'"][^'",!\n=]*?)(?=\s*(?:[,!\n]|/(?![a-z(])|\b\w+\s*=|\Z))""",
+    re.IGNORECASE,
+)
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -56,7 +62,7 @@ def read_study(path: Path) -> Study:
     if not path.is_file():
         raise MissingResult(f"{path}: no such file")
     try:
-        groups = f90nml.read(path)
+        groups = f90nml.reads(BOUND.sub(lambda found: found[1] or f"{found[2]}'{found[3]}'", path.read_text(encoding="utf-8")))
     except (ValueError, AssertionError, StopIteration, UnicodeDecodeError) as problem:
         raise MissingResult(f"{path}: not a study file") from problem
     found = groups.get("parameter", [])
@@ -77,9 +83,8 @@ def read_study(path: Path) -> Study:
 
 
 def number_and_unit(path: Path, group: f90nml.Namelist, key: str) -> tuple[float, str]:
-    """Number and unit of a value such as `20 um`, which f90nml reads as a list of both."""
-    value = group[key]
-    text = " ".join(str(part) for part in value) if isinstance(value, list) else str(value)
+    """Number and unit of a value such as `20 um`."""
+    text = str(group[key])
     found = re.fullmatch(r"([-+]?[\d.]+(?:[ed][-+]?\d+)?)\s*(.*)", text.strip(), re.IGNORECASE)
     if found is None:
         raise MissingResult(f"{path}: &parameter key = {group['key']}, {key} = {text}: not a number")
