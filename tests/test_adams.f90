@@ -6,10 +6,13 @@ module test_adams
   use ode_method, only: ode_settings_t, step_done
   use adams_coefficients, only: moulton_constants
   use adams, only: adams_t
-  use ode_solver, only: integrate, silent_observer_t, integration_done
+  use error_handling, only: error_t
+  use ode_method, only: ode_method_t
+  use ode_methods, only: new_method
+  use ode_solver, only: integrate, integration_t, silent_observer_t, integration_done, evaluation_limit_reached
   use standard_problems, only: number_of
   use conditioning, only: condition_of
-  use test_problems, only: oscillator_t, two_body_t, bouncing_ball_t, hopper_t, root_t
+  use test_problems, only: oscillator_t, refusing_t, two_body_t, bouncing_ball_t, hopper_t, root_t, whole_step
   implicit none
   private
   public :: run_test_adams
@@ -25,7 +28,37 @@ contains
     call late_start_at_zero(check)
     call ball_impacts(check)
     call double_passages_are_found(check)
+    call limits_end_trials(check)
   end subroutine run_test_adams
+
+  !> Where every step is refused, the limit of evaluations ends the integration between two trials, and it can pause there.
+  subroutine limits_end_trials(check)
+    class(checks_t), intent(inout) :: check
+    character(len=5), parameter :: methods(3) = ['adams', 'radau', 'auto ']
+    integer, parameter :: most = 20, in_a_trial = 30
+    type(refusing_t) :: problem
+    class(ode_method_t), allocatable :: method
+    type(silent_observer_t) :: observer
+    type(integration_t) :: integration
+    type(error_t), allocatable :: error
+    real(dp) :: t, y(2)
+    integer :: status, i
+    problem%n = 2
+    do i = 1, size(methods)
+      call new_method(trim(methods(i)), method, error)
+      method%settings = settings(2, 1e-6_dp, 1.0_dp)
+      method%settings%max_evaluations = most
+      t = 0
+      y = [0, 1]
+      call integrate(problem, method, t, y, 1.0_dp, 0, observer, status)
+      call check%that(status == evaluation_limit_reached .and. method%statistics%evaluations < most + in_a_trial, &
+        trim(methods(i))//': the limit of evaluations ends the trials of a step')
+      call integration%begin(problem, method, 0.0_dp, y, 1.0_dp, 0)
+      call integration%go_to(problem, method, observer, 1.0_dp, 1)
+      call check%that(.not. integration%is_over .and. method%statistics%evaluations < most, &
+        trim(methods(i))//': an integration pauses after a trial')
+    end do
+  end subroutine limits_end_trials
 
   !> Settings with one tolerance for n components.
   function settings(n, tolerance, span) result(s)
@@ -93,7 +126,7 @@ contains
     step_error = 0
     before = 1   ! slope of y(1) at t = 0
     do i = 1, 150
-      call method%step(problem, status)
+      call whole_step(method, problem, status)
       if (status /= step_done) exit
       h = method%t - method%t_old
       call method%interpolate(method%t_old, y)
@@ -132,7 +165,7 @@ contains
       worst = 0
       longest = 0
       do
-        call method%step(problem, status)
+        call whole_step(method, problem, status)
         if (status /= step_done) exit
         longest = max(longest, method%t - method%t_old)
         do j = 0, 8

@@ -297,6 +297,8 @@ contains
                       'x.nml: &initial crank_pin_eccentricity(1) = 1e-5: must be 0 in an ideal joint (m)')
     call refused_with(check, 'initial.crank_pin_eccentricity_rate=0,1', &
                       'x.nml: &initial crank_pin_eccentricity_rate(1) = 0: must be 0 in an ideal joint (m/s)')
+    call refused_with(check, 'initial.crank_speed=-2e9', &
+                      'x.nml: &initial crank_speed = -2e9: must be >= -1e9 and <= 1e9 (rad/s)')
     call refused(check, '&mechanism gravity_angle_deg=down /', 'x.nml:1: &mechanism gravity_angle_deg = down: must be a '// &
                  'number (degrees)')
     call refused_with(check, 'integrator.max_evaluations_per_revolution=-1', &
@@ -316,6 +318,8 @@ contains
     call refused_with(check, 'combustion.heat_capacity_ratio=1', &
                       'x.nml: &combustion heat_capacity_ratio = 1: must be > 1 and <= 10', fire)
     call refused_with(check, 'combustion.heat=-1', 'x.nml: &combustion heat = -1: must be >= 0 and <= 1e12 (J)', fire)
+    call refused_with(check, 'combustion.duration_deg=1e9', &
+                      'x.nml: &combustion duration_deg = 1e9: must be > 0 and <= 360 (degrees)', fire)
     call refused_with(check, 'combustion.wiebe_form=0', &
                       'x.nml: &combustion wiebe_form = 0: must be >= 0.05 and <= 100', fire)
     call refused_with(check, 'combustion.wiebe_efficiency=0', &

@@ -1,16 +1,23 @@
 !> Small problems with known solutions for the tests of the integrator.
 module test_problems
   use kinds, only: dp
-  use ode_problem, only: ode_problem_t, event_continue
+  use ode_problem, only: ode_problem_t, event_continue, step_too_deep
+  use ode_method, only: ode_method_t, step_rejected
   implicit none
   private
-  public :: oscillator_t, two_body_t, bouncing_ball_t, hopper_t, modulated_t, root_t
+  public :: whole_step, refusing_t, oscillator_t, two_body_t, bouncing_ball_t, hopper_t, modulated_t, root_t
 
   !> y'' = -y.
   type, extends(ode_problem_t) :: oscillator_t
   contains
     procedure :: derivatives => oscillator_derivatives
   end type oscillator_t
+
+  !> The same, but every step is refused.
+  type, extends(oscillator_t) :: refusing_t
+  contains
+    procedure :: judge_step => refuse_step
+  end type refusing_t
 
   !> Kepler's problem in the plane (DETEST class D).
   type, extends(ode_problem_t) :: two_body_t
@@ -53,6 +60,26 @@ module test_problems
   end type root_t
 
 contains
+
+  !> Advance by one step, with as many trials as necessary.
+  subroutine whole_step(method, problem, status)
+    class(ode_method_t), intent(inout) :: method
+    class(ode_problem_t), intent(in) :: problem
+    integer, intent(out) :: status
+    do
+      call method%step(problem, status)
+      if (status /= step_rejected) return
+    end do
+  end subroutine whole_step
+
+  pure subroutine refuse_step(self, t_old, y_old, t, y, verdict, fraction)
+    class(refusing_t), intent(in) :: self
+    real(dp), intent(in) :: t_old, y_old(:), t, y(:)
+    integer, intent(out) :: verdict
+    real(dp), intent(out) :: fraction
+    verdict = step_too_deep
+    fraction = 0.5_dp
+  end subroutine refuse_step
 
   pure subroutine root_derivatives(self, t, y, dydt, in_domain)
     class(root_t), intent(in) :: self

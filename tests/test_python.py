@@ -292,6 +292,10 @@ def runs() -> None:
     began = time.monotonic()
     refuses(TimeoutError, "more than", lambda: long.run(timeout=0.1))
     check(time.monotonic() - began < 5, "a timeout ends a run")
+    dear = case_of("film/sim_I_finite").set({"lubrication.variant": "direct", "lubrication.film_points": 256, "integrator.method": "radau"})
+    began = time.monotonic()
+    refuses(TimeoutError, "more than", lambda: dear.run(timeout=1))
+    check(time.monotonic() - began < 8, "a timeout ends a run whose steps take seconds")
     threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
     began = time.monotonic()
     try:

@@ -14,6 +14,7 @@ import shutil
 import signal
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 from test_faults import ROOT, Gudgeon, assertions, check, disk, program_built, wait_for
@@ -200,7 +201,9 @@ def test_refusals(gudgeon: Gudgeon, work: Path) -> None:
         "a state without place": (r"\n *phase", "\n film_eccentricity = 0, 0\n phase", "film_eccentricity: the case has no place"),
         "a total that is missing": (r"\n *work[^\n]*", "", "&so_far work: missing"),
         "a time before 0": (r"( time =) \S+", r"\1 -5", "&so_far time: must be >= 0"),
-        "an angle without limit": (r"(crank_angle =) \S+", r"\1 1e30", "&initial crank_angle: must be at most 1e9 rad"),
+        "an angle without limit": (r"(crank_angle =) \S+", r"\1 1e30", "&initial crank_angle: must be at most 1e9 in size (rad)"),
+        "a crank speed without limit": (r"(crank_speed =) \S+", r"\1 -2e9", "&initial crank_speed: must be at most 1e9 in size (rad/s)"),
+        "a rate without limit": (r"(eccentricity_rate = )\S+", r"\1 1e30,", "&initial eccentricity_rate: must be at most 1e9 in size (m/s)"),
         "a time after the end": (r"( time =) \S+", r"\1 9.0", "&so_far time: is not before the end"),
     }
     for what, (old, new, message) in changes.items():
@@ -222,6 +225,23 @@ def test_refusals(gudgeon: Gudgeon, work: Path) -> None:
     status, _, error = gudgeon.run("-q", "-o", work / "motion", "--from", bad, *settings("integrator.revolutions=0.1"), case)
     rows = table(work / "motion" / "dry_0010um.csv")
     check(not status and rows and float(rows[0]["time[s]"]) == 0, "a state without totals begins at t = 0", error)
+
+
+def test_dear_evaluations(gudgeon: Gudgeon, work: Path) -> None:
+    """A run whose film is solved at every evaluation: a signal ends it soon, in the motion and while its exponent is measured."""
+    case, common = CASES / "film" / "sim_I_finite.nml", ("lubrication.variant=direct", "integrator.method=radau")
+    for what, *values in (("motion", "lubrication.film_points=256"),
+                          ("exponent", "lubrication.film_points=64", "integrator.revolutions=1e-3", "run.lyapunov_revolutions=2")):
+        process = gudgeon.start("-o", work / what, *settings(*common, *values), case)
+        time.sleep(3)
+        process.send_signal(signal.SIGTERM)
+        began = time.monotonic()
+        process.communicate(timeout=300)
+        check(process.returncode == 4 and time.monotonic() - began < 8 and (work / what / "sim_I_finite.state.nml").exists(),
+              f"{what}: ended soon, with its state", f"{process.returncode}, {time.monotonic() - began} s")
+    gudgeon.run("-q", "-o", work / "limit", *settings(*common, "integrator.max_evaluations=200"), case)
+    evaluations = int(summary(work / "limit", "sim_I_finite")["rhs_evaluations"])
+    check(200 <= evaluations < 250, "the limit of evaluations is passed by less than one step", f"{evaluations}")
 
 
 def test_stops(gudgeon: Gudgeon, work: Path) -> None:
@@ -268,7 +288,7 @@ def main() -> int:
         work = Path(folder)
         for case, (length, part, tolerance) in HALVES.items():
             test_halves(gudgeon, work / case.replace("/", "_"), case, length, part, tolerance)
-        for test in (test_settled, test_pressed, test_study, test_refusals, test_stops):
+        for test in (test_settled, test_pressed, test_study, test_refusals, test_stops, test_dear_evaluations):
             (work / test.__name__).mkdir()
             test(gudgeon, work / test.__name__)
     return assertions.report()

@@ -61,7 +61,7 @@ contains
     call list%add('start_deg', self%start_deg, 'crank angle at which combustion starts; the firing dead centre is 360', 'degrees', &
       '>= 180 and < 540', example='340.0', usual='270 to 400')
     call list%add('duration_deg', self%duration_deg, 'duration of combustion; it must end before the cylinder opens', 'degrees', &
-      '> 0', example='40.0', usual='10 to 150')
+      '> 0 and <= 360', example='40.0', usual='10 to 150')
     call list%add('intake_pressure', self%intake_pressure, 'pressure in the open cylinder', 'Pa', '> 0', default='101325.0', &
       usual='2e4 to 1e6')
     call self%add_crankcase_pressure(list)

@@ -10,7 +10,7 @@ module case_run
   use simulation, only: run_t, run_report_t
   use run_state, only: run_state_t
   use state_file, only: state_text, state_suffix, reached
-  use whole_run, only: steps_between_looks
+  use whole_run, only: go_on
   use trace_files, only: trace_files_t
   use result_file, only: result_file_t, remove_result, write_text
   use certificate, only: certificate_t, make_certificate, certificate_table, certificate_summary, certificate_clause
@@ -148,12 +148,14 @@ contains
     type(run_t) :: run
     type(error_t), allocatable :: state_error
     real(dp) :: now, last   !! of the last file of the state [s]
+    integer :: steps
     call self%progress%start(self%case%name, self%shows_progress)
     call run%begin(self%case, self%is_twin, self%list, files, self%error)
     if (.not. allocated(self%error)) then
       last = self%began
+      steps = 1
       do while (.not. run%is_over)
-        call run%advance(huge(1.0_dp), steps_between_looks)
+        call go_on(run, steps)
         call self%progress%update(run%t/run%expected_end(), run%t)
         if (any(files%file%has_failed())) call run%stop()
         if (interrupted()) call run%stop()

@@ -3,22 +3,35 @@ module whole_run
   use kinds, only: dp
   use simulation, only: run_t
   use posix_files, only: interrupted
+  use run_progress, only: clock
   implicit none
   private
-  public :: go_to_end, steps_between_looks
-
-  integer, parameter :: steps_between_looks = 100   !! after so many steps of a run, interruptions are looked for
+  public :: go_to_end, go_on
 
 contains
 
   subroutine go_to_end(run, was_interrupted)
     type(run_t), intent(inout) :: run
     logical, intent(out) :: was_interrupted   !! the run has been stopped before its end
+    integer :: steps
     was_interrupted = .false.
+    steps = 1
     do while (.not. run%is_over)
-      call run%advance(huge(1.0_dp), steps_between_looks)
+      call go_on(run, steps)
       if (.not. run%is_over) was_interrupted = interrupted()
       if (was_interrupted) call run%stop()
     end do
   end subroutine go_to_end
+
+  !> Go on through some steps, so few that the user, who may interrupt between them, hardly waits.
+  subroutine go_on(run, steps)
+    type(run_t), intent(inout) :: run
+    integer, intent(inout) :: steps   !! number of steps, on return that for the next call; at first 1
+    integer, parameter :: most_steps = 100
+    real(dp), parameter :: longest = 0.1_dp   !! [s] of the clock
+    real(dp) :: began
+    began = clock()
+    call run%advance(huge(1.0_dp), steps)
+    steps = merge(1, min(2*steps, most_steps), clock() - began > longest)
+  end subroutine go_on
 end module whole_run

@@ -8,9 +8,10 @@ module model_parameters
   implicit none
   private
   public :: parameter_list_t, has_parameters_t, law_t, key_t
-  public :: any_angle, real_kind, integer_kind, logical_kind, word_kind, text_kind
+  public :: any_angle, any_speed, real_kind, integer_kind, logical_kind, word_kind, text_kind
 
   character(len=*), parameter :: any_angle = '>= -1e6 and <= 1e6'   !! limits of an angle in degrees
+  character(len=*), parameter :: any_speed = '>= -1e9 and <= 1e9'   !! of a speed in rad/s or m/s
   integer, parameter :: real_kind = 1, integer_kind = 2, logical_kind = 3, word_kind = 4, text_kind = 5
 
   !> The properties of a parameter. Ranges and words are texts, which are shown to the user unchanged. A default is allowed even

@@ -20,7 +20,7 @@ module run_state
     logical :: is_set = .false.                !! a part has accepted it
   end type state_number_t
 
-  real(dp), parameter :: largest_angle = 1e9_dp   !! [rad]; beyond it turns are lost in rounding
+  real(dp), parameter :: largest = 1e9_dp   !! angle [rad], beyond which turns are lost in rounding, and speed [rad/s], [m/s]
 
   type :: run_state_t
     character(len=:), allocatable :: file      !! where it comes from, for messages
@@ -62,8 +62,8 @@ contains
         if (number%name /= name .or. (number%is_total .neqv. self%of_totals)) cycle
         number%is_set = .true.
         if (size(number%values) == size(values)) then
-          if (unit == 'rad' .and. any(abs(number%values) > largest_angle)) then
-            call self%refuse(name, 'must be at most 1e9 rad in size')
+          if (any(unit == [character(len=5) :: 'rad', 'rad/s', 'm/s']) .and. any(abs(number%values) > largest)) then
+            call self%refuse(name, 'must be at most 1e9 in size ('//unit//')')
           else
             values = number%values
           end if

@@ -11,7 +11,7 @@
 module auto_method
   use kinds, only: dp
   use ode_problem, only: ode_problem_t
-  use ode_method, only: step_statistics_t, step_done, limit_stability, with_adams, with_radau
+  use ode_method, only: step_statistics_t, step_done, step_rejected, limit_stability, with_adams, with_radau
   use adams, only: adams_t
   use adams_coefficients, only: stability_limit
   use radau, only: radau_t
@@ -40,6 +40,7 @@ module auto_method
     integer :: near = 0                   !! the same of steps near the limit of stability, whatever limited them
     logical :: decays = .false.           !! Radau has taken over for these: a vibration must decay first
     integer, allocatable :: required_excess(:), required_near(:)   !! numbers of such steps required, for each mode
+    integer :: evaluations_before = 0     !! number before the present step of Radau
     real(dp), allocatable :: loss(:)      !! evaluations by Radau minus those that Adams would have needed, for each mode
   contains
     procedure :: start
@@ -107,6 +108,7 @@ contains
     if (self%stiff .and. .not. stiff) self%statistics = self%radau%statistics
     self%stiff = stiff
     self%excess = 0
+    self%rejected = .false.
     if (stiff) then
       call self%radau%start(problem, t, y, first, status)
       call copy_solution(self)
@@ -119,8 +121,36 @@ contains
     class(auto_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
     integer, intent(out) :: status
-    integer :: evaluations_before
 
+    if (.not. self%rejected) then
+      call choose_method(self, problem, status)
+      if (status /= step_done) return
+      self%evaluations_before = self%radau%statistics%evaluations
+    end if
+    if (self%stiff) then
+      call self%radau%step(problem, status)
+      self%rejected = status == step_rejected
+      call copy_solution(self)
+      if (status == step_done) self%loss(self%mode) = self%loss(self%mode) + self%radau%statistics%evaluations &
+        - self%evaluations_before + step_overhead - adams_price*self%radau%fastest_rate()*(self%t - self%t_old)
+      return
+    end if
+    call self%adams_t%step(problem, status)
+    if (status == step_rejected) return
+    if (self%limit_done == limit_stability) then
+      self%excess = self%excess + 1
+    else
+      self%excess = max(0, self%excess - 1)
+    end if
+    if (self%nominal_tolerance() < loose) return
+    self%near = max(0, self%near + merge(1, -1, self%stiffness_done > near_limit*stability_limit(self%order)))
+  end subroutine step
+
+  !> Change to the other method before a step if the one in use has been dearer for long enough.
+  subroutine choose_method(self, problem, status)
+    class(auto_t), intent(inout) :: self
+    class(ode_problem_t), intent(in) :: problem
+    integer, intent(out) :: status
     status = step_done
     associate (mode => self%mode)
       if (self%stiff .and. self%loss(mode) > most_loss(self)) then
@@ -136,26 +166,8 @@ contains
         self%loss(mode) = 0
         call change_over(self, problem, .true., status)
       end if
-      if (status /= step_done) return
-      if (self%stiff) then
-        evaluations_before = self%radau%statistics%evaluations
-        call self%radau%step(problem, status)
-        if (status /= step_done) return
-        call copy_solution(self)
-        self%loss(mode) = self%loss(mode) + self%radau%statistics%evaluations - evaluations_before + step_overhead &
-          - adams_price*self%radau%fastest_rate()*(self%t - self%t_old)
-        return
-      end if
     end associate
-    call self%adams_t%step(problem, status)
-    if (self%limit_done == limit_stability) then
-      self%excess = self%excess + 1
-    else
-      self%excess = max(0, self%excess - 1)
-    end if
-    if (self%nominal_tolerance() < loose) return
-    self%near = max(0, self%near + merge(1, -1, self%stiffness_done > near_limit*stability_limit(self%order)))
-  end subroutine step
+  end subroutine choose_method
 
   !> Continue with the other method from the present point.
   subroutine change_over(self, problem, stiff, status)

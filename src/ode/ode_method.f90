@@ -5,7 +5,7 @@ module ode_method
   implicit none
   private
   public :: ode_method_t, ode_settings_t, step_statistics_t, start_again
-  public :: step_done, step_too_small, tolerance_too_small, start_outside, left_domain
+  public :: step_done, step_rejected, step_too_small, tolerance_too_small, start_outside, left_domain
   public :: highest_order, with_adams, with_radau
   public :: limit_error, limit_stability, limit_max_step, limit_start, limit_refusal, n_limits, limit_names
 
@@ -26,6 +26,7 @@ module ode_method
 
   !> Status of a step.
   integer, parameter :: step_done = 0            !! a step was accepted
+  integer, parameter :: step_rejected = -2       !! a trial was rejected; the next call of `step` makes a shorter one
   integer, parameter :: step_too_small = 1       !! the step size reached the rounding error of the time
   integer, parameter :: tolerance_too_small = 2  !! the tolerance is below the rounding error of the state
   integer, parameter :: start_outside = 3        !! the initial state is outside the model
@@ -77,6 +78,7 @@ module ode_method
     real(dp) :: next_kink_time = huge(1.0_dp) !! expected time at which f loses its smoothness, see `next_kink_time` of the problem
     real(dp), allocatable :: y_old(:)     !! state at t_old, (n)
     real(dp), allocatable :: y(:)         !! state at t, (n)
+    logical :: rejected = .false.         !! the last trial was rejected
     integer :: limit_done = 0             !! reason why the last accepted step was not longer, 0: unknown
     real(dp) :: stiffness_done = 0        !! contribution of the last step to the integral of rho dt
   contains
@@ -105,7 +107,7 @@ module ode_method
       integer, intent(out) :: status
     end subroutine start
 
-    !> Advance by one accepted step, with as many trials as necessary.
+    !> Try a step, which is accepted or rejected: the caller can look at its limits between two trials.
     subroutine step(self, problem, status)
       import :: ode_method_t, ode_problem_t
       class(ode_method_t), intent(inout) :: self

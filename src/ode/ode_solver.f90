@@ -3,7 +3,7 @@
 module ode_solver
   use kinds, only: dp
   use ode_problem, only: ode_problem_t, event_stop, max_events
-  use ode_method, only: ode_method_t, step_done
+  use ode_method, only: ode_method_t, step_done, step_rejected
   use event_search, only: event_watch_t
   implicit none
   private
@@ -124,8 +124,9 @@ contains
     if (.not. self%is_over) call self%watch%begin(problem, t, self%y, 0, .false.)
   end subroutine begin
 
-  !> Go on to t_pause, or through `most_steps` more accepted steps (0: no limit), unless the integration ends before. Steps are not
-  !> shortened for a pause: a step that reaches beyond it is kept. A pause within rounding of the end is the end.
+  !> Go on to t_pause, or through `most_steps` more steps (0: no limit; a rejected trial counts as one), unless the integration ends
+  !> before. Steps are not shortened for a pause: a step that reaches beyond it is kept. A pause within rounding of the end is the
+  !> end.
   subroutine go_to(self, problem, method, observer, t_pause, most_steps)
     class(integration_t), intent(inout) :: self
     class(ode_problem_t), intent(inout) :: problem
@@ -158,8 +159,8 @@ contains
     end do
   end subroutine go_to
 
-  !> Take one step and search it for events. If the state at an event cannot be computed accurately, the step is taken back, and
-  !> nothing is kept; shorter steps follow.
+  !> Try a step, and search it for events. If it is rejected, nothing is kept; nor if the state at an event cannot be computed
+  !> accurately: the step is then taken back. Shorter steps follow.
   subroutine take_step(self, problem, method, observer)
     type(integration_t), intent(inout) :: self
     class(ode_problem_t), intent(in) :: problem
@@ -168,6 +169,11 @@ contains
     logical :: landed
     method%next_kink_time = problem%next_kink_time(method%t, method%y)
     call method%step(problem, self%status)
+    if (self%status == step_rejected) then
+      self%status = step_done
+      call look_around(self, method, observer)
+      return
+    end if
     self%is_over = self%status /= step_done
     if (self%is_over) return
     self%is_kept = .true.

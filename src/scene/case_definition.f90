@@ -8,7 +8,7 @@
 module case_definition
   use kinds, only: dp
   use run_state, only: run_state_t
-  use model_parameters, only: has_parameters_t, parameter_list_t, any_angle
+  use model_parameters, only: has_parameters_t, parameter_list_t, any_angle, any_speed
   use run_length, only: run_length_t
   use chain_motion, only: n_pins
   use joint_places, only: places, n_places, in_order, name_prefix, pin_title, piston_pin, small_end, main_bearing
@@ -266,8 +266,8 @@ contains
       default='')
     call list%add('ramp_time', self%ramp_time, 'time in which the held speed rises to crank_speed; 0: crank_speed from the start', &
       's', '> 0', default='0.0', usual='1e-4 to 1e3')
-    call list%add('ramp_from', self%ramp_from, 'held speed at the start of the ramp (ramp_time)', 'rad/s', default='0.0', &
-      usual='0 to 2100')
+    call list%add('ramp_from', self%ramp_from, 'held speed at the start of the ramp (ramp_time)', 'rad/s', any_speed, &
+      default='0.0', usual='0 to 2100')
   end subroutine drive_parameters
 
   subroutine initial_parameters(self, list)
@@ -278,23 +278,25 @@ contains
     call list%add('crank_angle_deg', self%crank_angle_deg, 'crank angle from the cylinder axis', 'degrees', &
       any_angle, '0.0', usual='0 to 720')
     call list%add('crank_speed', self%crank_speed, &
-      'crank speed; with drive kind constant_speed it is held', 'rad/s', example='250.0', usual='0 to 2100')
+      'crank speed; with drive kind constant_speed it is held', 'rad/s', any_speed, example='250.0', usual='0 to 2100')
     do i = 1, n_places
       name = name_prefix(in_order(i))//'eccentricity'
       call list%add(name, self%eccentricity(:, in_order(i)), 'centre of the '//pin_title(in_order(i))// &
         ' from the centre of its bearing (x, y); in contact if longer than the clearance', 'm', default='0.0', usual='0 to 1e-2')
       if (in_order(i) == main_bearing) cycle   ! its rate follows from the load
-      call list%add(name//'_rate', self%eccentricity_rate(:, in_order(i)), 'rate of '//name, 'm/s', default='0.0', &
+      call list%add(name//'_rate', self%eccentricity_rate(:, in_order(i)), 'rate of '//name, 'm/s', any_speed, default='0.0', &
         usual='0 to 100')
     end do
-    call list%add('pin_speed', self%pin_speed, 'angular speed of a floating pin, positive from x to y', 'rad/s', default='0.0', &
-      usual='0 to 2100')
+    call list%add('pin_speed', self%pin_speed, 'angular speed of a floating pin, positive from x to y', 'rad/s', any_speed, &
+      default='0.0', usual='0 to 2100')
     call list%add('piston_offset', self%piston_offset, &
       'centre of mass of the piston from the cylinder axis along y (guide with clearance)', 'm', default='0.0', usual='0 to 1e-2')
-    call list%add('piston_offset_rate', self%piston_offset_rate, 'rate of piston_offset', 'm/s', default='0.0', usual='0 to 100')
+    call list%add('piston_offset_rate', self%piston_offset_rate, 'rate of piston_offset', 'm/s', any_speed, default='0.0', &
+      usual='0 to 100')
     call list%add('piston_tilt', self%piston_tilt, 'tilt of the piston in its bore, positive from x to y', 'rad', default='0.0', &
       usual='0 to 0.2')
-    call list%add('piston_tilt_rate', self%piston_tilt_rate, 'rate of piston_tilt', 'rad/s', default='0.0', usual='0 to 200')
+    call list%add('piston_tilt_rate', self%piston_tilt_rate, 'rate of piston_tilt', 'rad/s', any_speed, default='0.0', &
+      usual='0 to 200')
     call list%text('from', self%from, &
       'start from the state in this file, a NAME.state.nml, path relative to the case file; crank_speed remains the held '// &
       'speed and the natural size of speeds, the other values are those of the file', '', is_path=.true.)

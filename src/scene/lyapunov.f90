@@ -25,7 +25,7 @@ module lyapunov
   use ode_method, only: ode_method_t
   use ode_problem, only: ode_problem_t
   use ode_methods, only: new_method
-  use ode_solver, only: integrate, silent_observer_t, integration_interrupted, integration_done, &
+  use ode_solver, only: integration_t, silent_observer_t, integration_interrupted, integration_done, &
     integration_stopped
   use scene_problem, only: scene_t
   use scene_builder, only: settings_for
@@ -60,9 +60,10 @@ module lyapunov
     real(dp) :: target = 0, direction = 1    !! crank angle to which it runs [rad], and the sense of rotation
     logical :: has_arrived = .false.         !! otherwise t and y are where it has stopped
     integer :: status = 0                    !! of the integration
+    type(integration_t), allocatable :: integration   !! while it is on its way
     type(scene_t), allocatable :: kept       !! the scene at that angle, before an event at the end of the last step
   contains
-    procedure :: run_to
+    procedure :: run_on
     procedure :: step_accepted
     procedure :: why_stopped
   end type companion_t
@@ -71,10 +72,12 @@ module lyapunov
   type :: measurement_t
     type(exponent_t) :: exponent
     logical :: is_over = .false.             !! measured, or a scene could not continue
-    type(companion_t), private :: one, other(most_directions)
-    integer, private :: stopped = -1         !! the scene that could not go on: 0: `one`; else its place in `other`; -1: none
+    type(companion_t), private :: scenes(0:most_directions)   !! 0: the motion itself
+    integer, private :: stopped = -1         !! the scene that could not go on; -1: none
     type(differences_t), private :: differences
     integer, private :: i = 0                !! number of the present revolution; those that are not counted have numbers <= 0
+    integer, private :: quarters = 0         !! of it that have been measured
+    integer, private :: running = -1         !! the scene that is on its way through the next quarter; -1: none
     integer, private :: block = 1            !! number of revolutions of a period
     integer, private :: blocks = 1           !! number of periods that are counted
     real(dp), private :: growth = 0, sum_of = 0, sum_of_squares = 0
@@ -101,26 +104,38 @@ contains
     self%i = 1 - self%block*((max(2, min(20, revolutions/5)) - 1)/self%block + 1)
     self%differences = new_differences(scene)
     self%differences%most_lasts = per_revolution*max(2, self%block)   ! no cycle of a gas is longer than two revolutions
-    call prepare(case, scene, t, y, self%one)
-    do d = 1, size(self%differences%state, 2)
-      call prepare(case, scene, t, y, self%other(d))
+    do d = 0, size(self%differences%state, 2)
+      call prepare(case, scene, t, y, self%scenes(d))
     end do
   end subroutine begin
 
-  !> Measure one revolution.
-  subroutine advance(self)
+  !> Let one scene go on, through at most so many trials of a step (0: no limit), and measure when all have reached the end of a
+  !> quarter of a revolution.
+  subroutine advance(self, most_steps)
     class(measurement_t), intent(inout) :: self
+    integer, intent(in) :: most_steps
     real(dp) :: factors(most_directions, most_directions)
-    integer :: k
+    logical :: has_stopped
     associate (i => self%i, block => self%block, blocks => self%blocks, exponent => self%exponent)
-      if (i == 1 - block) call self%differences%begin_period()
-      do k = 1, per_revolution
-        call follow(self%one, self%other, self%differences, self%stopped)
-        self%is_over = self%stopped >= 0
-        if (self%is_over) return
-        call self%differences%straighten(factors)
-        self%growth = self%growth + log(max(factors(1, 1), smallest_growth))
-      end do
+      if (self%running < 0) then
+        if (i == 1 - block .and. self%quarters == 0) call self%differences%begin_period()
+        call set_out(self)
+      end if
+      call self%scenes(self%running)%run_on(most_steps, has_stopped)
+      if (.not. has_stopped) return
+      self%is_over = .not. self%scenes(self%running)%has_arrived
+      if (self%is_over) self%stopped = self%running
+      if (self%is_over) return
+      associate (one => self%scenes(0), it => self%scenes(self%running))
+        if (self%running > 0) call self%differences%measure(self%running, one%scene, one%y, it%scene, it%y)
+      end associate
+      self%running = self%running + 1
+      if (self%running <= size(self%differences%state, 2)) return
+      self%running = -1
+      call self%differences%straighten(factors)
+      self%growth = self%growth + log(max(factors(1, 1), smallest_growth))
+      self%quarters = mod(self%quarters + 1, per_revolution)
+      if (self%quarters > 0) return
       if (i == 0) call self%differences%choose_one()
       if (i >= 1 .and. mod(i, block) == 0) then
         self%sum_of = self%sum_of + self%growth
@@ -141,31 +156,23 @@ contains
   !> Say why the exponent is not known, if a scene could not go on.
   subroutine explain(self)
     class(measurement_t), intent(inout) :: self
-    if (self%stopped == 0) call self%one%why_stopped(self%exponent%reason)
-    if (self%stopped > 0) call self%other(self%stopped)%why_stopped(self%exponent%reason)
+    if (self%stopped >= 0) call self%scenes(self%stopped)%why_stopped(self%exponent%reason)
   end subroutine explain
 
-  !> Let all scenes run for a quarter of a revolution and measure the differences at its end; `stopped` is that which has not
-  !> reached it, as in measurement_t.
-  subroutine follow(one, other, differences, stopped)
-    type(companion_t), intent(inout) :: one, other(:)
-    type(differences_t), intent(inout) :: differences
-    integer, intent(out) :: stopped
-    real(dp) :: angle
+  !> Set all scenes out for a quarter of a revolution.
+  subroutine set_out(self)
+    class(measurement_t), intent(inout) :: self
     integer :: d
-    do d = 1, size(differences%state, 2)
-      call set_beside(one, other(d), differences%at, first_size*differences%state(:, d), first_size*differences%impact_speed(:, d))
-    end do
-    angle = one%scene%crank_angle(one%t, one%y) + one%direction*two_pi/per_revolution
-    call one%run_to(angle)
-    stopped = merge(-1, 0, one%has_arrived)
-    do d = 1, size(differences%state, 2)
-      if (stopped >= 0) exit
-      call other(d)%run_to(angle)
-      if (.not. other(d)%has_arrived) stopped = d
-      if (other(d)%has_arrived) call differences%measure(d, one%scene, one%y, other(d)%scene, other(d)%y)
-    end do
-  end subroutine follow
+    self%running = 0
+    associate (one => self%scenes(0), differences => self%differences)
+      one%target = one%scene%crank_angle(one%t, one%y) + one%direction*two_pi/per_revolution
+      do d = 1, size(differences%state, 2)
+        call set_beside(one, self%scenes(d), differences%at, first_size*differences%state(:, d), &
+          first_size*differences%impact_speed(:, d))
+        self%scenes(d)%target = one%target
+      end do
+    end associate
+  end subroutine set_out
 
   !> Prepare a scene that continues the run from its end.
   subroutine prepare(case, scene, t, y, companion)
@@ -203,32 +210,42 @@ contains
     end do
   end subroutine set_beside
 
-  !> Run until the crank is at an angle; `has_arrived` is false if it does not reach it.
-  subroutine run_to(self, angle)
+  !> Run on through so many trials of a step (0: no limit), at most until the crank is at the target angle. It stops there, or
+  !> because it cannot reach that; `has_arrived` is then false.
+  subroutine run_on(self, most_steps, has_stopped)
     class(companion_t), intent(inout) :: self
-    real(dp), intent(in) :: angle   !! [rad]
+    integer, intent(in) :: most_steps
+    logical, intent(out) :: has_stopped
     type(scene_t), allocatable :: scene
     class(ode_method_t), allocatable :: method
-    real(dp), allocatable :: y(:)
-    real(dp) :: t
-    self%target = angle
-    self%has_arrived = .false.
-    self%wants_to_stop = .false.
+    type(integration_t), allocatable :: integration
     call move_alloc(self%scene, scene)
     call move_alloc(self%method, method)
-    t = self%t
-    y = self%y
-    call integrate(scene, method, t, y, self%t + longest_revolution*two_pi/scene%speed_scale(), 0, self, self%status)
-    if (self%status /= integration_interrupted) self%has_arrived = .false.
+    call move_alloc(self%integration, integration)
+    if (.not. allocated(integration)) then
+      self%has_arrived = .false.
+      self%wants_to_stop = .false.
+      allocate (integration)
+      call integration%begin(scene, method, self%t, self%y, self%t + longest_revolution*two_pi/scene%speed_scale(), 0)
+    end if
+    call integration%go_to(scene, method, self, huge(1.0_dp), most_steps)
+    has_stopped = integration%is_over
+    if (has_stopped) call integration%finish(method)
     call move_alloc(scene, self%scene)
     call move_alloc(method, self%method)
+    if (.not. has_stopped) then
+      call move_alloc(integration, self%integration)
+      return
+    end if
+    self%status = integration%status
+    if (self%status /= integration_interrupted) self%has_arrived = .false.
     if (.not. self%has_arrived) then
-      self%t = t
-      self%y = y
+      self%t = integration%t
+      self%y = integration%y
     else if (allocated(self%kept)) then
       call move_alloc(self%kept, self%scene)
     end if
-  end subroutine run_to
+  end subroutine run_on
 
   !> Why and where a scene has stopped before it was at the angle.
   subroutine why_stopped(self, text)

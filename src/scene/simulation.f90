@@ -183,8 +183,7 @@ contains
   end subroutine prepare_histories
 
   !> Go on to time t [s], or through `most_steps` more steps (0: no limit), or to the end of the run if that comes first. Results
-  !> do not depend on where a run pauses. After the end of the motion, the exponent is measured, a revolution in each call that has
-  !> a limit of steps.
+  !> do not depend on where a run pauses. After the end of the motion, the exponent is measured.
   subroutine advance(self, t, most_steps)
     class(run_t), intent(inout) :: self
     real(dp), intent(in) :: t
@@ -207,7 +206,7 @@ contains
       if (most_steps > 0) return
     end if
     do while (self%has_ended .and. .not. self%is_over)
-      call self%measurement%advance()
+      call self%measurement%advance(most_steps)
       self%is_over = self%measurement%is_over
       if (most_steps > 0) return
     end do

@@ -20,7 +20,8 @@
 module adams
   use kinds, only: dp
   use ode_problem, only: ode_problem_t, step_admitted, step_too_far
-  use ode_method, only: ode_method_t, highest_order, step_done, step_too_small, tolerance_too_small, left_domain, limit_start
+  use ode_method, only: ode_method_t, highest_order, step_done, step_rejected, step_too_small, tolerance_too_small, left_domain, &
+    limit_start
   use adams_coefficients, only: adams_coefficients_t
   use adams_differences, only: extrapolate, correct
   implicit none
@@ -58,6 +59,7 @@ module adams
     real(dp) :: x_old = 0               !! at its beginning
     real(dp) :: h = 0                   !! size of the next step in the independent variable
     real(dp) :: h_old = 0               !! size of the last accepted step
+    integer :: failures = 0             !! number of trials of the next step that failed by error or by leaving the model
     integer :: limit = limit_start      !! reason why the next step is not longer
     logical :: bound = .false.          !! stability limited the last accepted step, in a wide sense
     logical :: higher_known = .false.   !! phi_k+2 gives the error at order k+1
@@ -117,12 +119,11 @@ module adams
     !> Restore phi and psi to the beginning of the step and shorten it. After three failures in a row by error, or because the state
     !> leaves the model, the order is reduced to one: earlier points are then far away compared with the step, formulas of
     !> neighbouring orders are nearly equal to the trapezoidal rule, and their difference is no error estimate.
-    pure module subroutine retreat(self, errors, outcome, fraction, failures)
+    pure module subroutine retreat(self, errors, outcome, fraction)
       class(adams_t), intent(inout) :: self
       type(error_estimates_t), intent(in) :: errors
       integer, intent(in) :: outcome
       real(dp), intent(in) :: fraction
-      integer, intent(inout) :: failures    !! number of such failures in this step
     end subroutine retreat
 
     !> Errors at orders k, k-1, k-2, and whether the order should be reduced (Shampine & Gordon, ch. 6).
@@ -178,29 +179,28 @@ contains
     integer, intent(out) :: status
     type(error_estimates_t) :: errors
     real(dp) :: x_new, t_new, fraction
-    integer :: outcome, failures
+    integer :: outcome
 
-    call weigh(self)
-    call shorten_before_kink(self)
-    failures = 0
-    outcome = try_accepted
-    if (0.5_dp**2 < 2**2*self%rounding_square .and. .not. self%settings%fixed_step > 0) then
-      status = tolerance_too_small
+    if (.not. self%rejected) then
+      call weigh(self)
+      call shorten_before_kink(self)
+      self%failures = 0
+      status = step_too_small
+      if (0.5_dp**2 < 2**2*self%rounding_square .and. .not. self%settings%fixed_step > 0) status = tolerance_too_small
+      if (status == tolerance_too_small .or. self%h < shortest_step(self)) return
+    end if
+    x_new = self%x + self%h
+    t_new = time_at(self, x_new)
+    call self%coefficients%update(self%h, self%h_old, self%k, self%k_old)
+    call predict(self)
+    call attempt(self, problem, x_new, t_new, errors, outcome, fraction)
+    self%rejected = outcome /= try_accepted
+    if (self%rejected) then
+      call retreat(self, errors, outcome, fraction)
+      status = step_rejected
+      if (self%h < shortest_step(self)) status = merge(left_domain, step_too_small, outcome == try_outside)
       return
     end if
-    do
-      if (self%h < shortest_step(self)) then
-        status = merge(left_domain, step_too_small, outcome == try_outside)
-        return
-      end if
-      x_new = self%x + self%h
-      t_new = time_at(self, x_new)
-      call self%coefficients%update(self%h, self%h_old, self%k, self%k_old)
-      call predict(self)
-      call attempt(self, problem, x_new, t_new, errors, outcome, fraction)
-      if (outcome == try_accepted) exit
-      call retreat(self, errors, outcome, fraction, failures)
-    end do
     call accept(self, errors, x_new, t_new)
     call choose_order_and_step(self, errors)
     status = step_done

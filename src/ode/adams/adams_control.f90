@@ -59,10 +59,10 @@ contains
     case (try_error)
       self%limit = limit_error
       self%statistics%rejected_error = self%statistics%rejected_error + 1
-      failures = failures + 1
+      self%failures = self%failures + 1
       factor = 0.5_dp
-      if (failures > 3 .and. errors%same > 2**2) factor = (0.5_dp**2/errors%same)**0.25_dp
-      self%k = merge(1, errors%order, failures >= 3)
+      if (self%failures > 3 .and. errors%same > 2**2) factor = (0.5_dp**2/errors%same)**0.25_dp
+      self%k = merge(1, errors%order, self%failures >= 3)
     case (try_too_deep)
       self%limit = limit_refusal
       self%statistics%rejected_penetration = self%statistics%rejected_penetration + 1
@@ -72,8 +72,8 @@ contains
     case default
       self%limit = limit_refusal
       self%statistics%rejected_domain = self%statistics%rejected_domain + 1
-      failures = failures + 1
-      if (failures >= 3) self%k = 1
+      self%failures = self%failures + 1
+      if (self%failures >= 3) self%k = 1
     end select
     self%h = factor*self%h
   end procedure retreat

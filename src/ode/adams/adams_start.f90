@@ -32,6 +32,7 @@ contains
     self%k_old = 0
     self%h_old = 0
     self%opening = .true.
+    self%rejected = .false.
     call self%coefficients%reset()
     self%phi = 0
     self%owed = 0

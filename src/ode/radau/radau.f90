@@ -5,7 +5,7 @@
 module radau
   use kinds, only: dp
   use ode_problem, only: ode_problem_t, step_admitted, step_too_far
-  use ode_method, only: ode_method_t, step_done, step_too_small, tolerance_too_small, left_domain
+  use ode_method, only: ode_method_t, step_done, step_rejected, step_too_small, tolerance_too_small, left_domain
   use collocation, only: collocation_t, n_formulas, newton_converged, newton_diverged, newton_outside, guess_ahead
   implicit none
   private
@@ -34,7 +34,6 @@ module radau
     real(dp) :: error_done = 0             !! error of that step
     integer :: since_change = 0            !! number of steps since the formula was changed
     logical :: fresh_jacobian = .false.    !! the Jacobian was computed for this trial or the one before it
-    logical :: failed = .false.            !! the last trial was rejected
     integer :: cautious = 0                !! number of steps in which the step size still grows slowly
     logical :: first = .true.              !! no step since the start
     real(dp), allocatable :: f(:)                 !! right-hand side at (t, y), (n)
@@ -155,27 +154,31 @@ contains
     real(dp) :: error, fraction
     integer :: outcome
 
-    outcome = try_accepted
-    call weigh(self)
-    call meet_stop_time(self)
-    if (self%inner_tolerance(self%stages%level) < 20*epsilon(1.0_dp)) then
-      status = tolerance_too_small
+    if (.not. self%rejected) then
+      call weigh(self)
+      call meet_stop_time(self)
+      status = step_too_small
+      if (self%inner_tolerance(self%stages%level) < 20*epsilon(1.0_dp)) status = tolerance_too_small
+      if (status == tolerance_too_small .or. self%h < shortest_step(self)) return
+    end if
+    call attempt(self, problem, error, outcome, fraction)
+    if (outcome /= try_accepted) then
+      call retreat(self, outcome, error, fraction)
+      status = step_rejected
+      if (self%h < shortest_step(self)) status = merge(left_domain, step_too_small, outcome == try_outside)
       return
     end if
-    do
-      if (self%h < 4*epsilon(1.0_dp)*max(abs(self%t), 1e-9_dp*self%settings%span)) then
-        status = merge(left_domain, step_too_small, outcome == try_outside)
-        return
-      end if
-      call attempt(self, problem, error, outcome, fraction)
-      if (outcome == try_accepted) exit
-      call retreat(self, outcome, error, fraction)
-    end do
     call accept(self)
     call choose_step(self, error)
     call choose_formula(self)
     status = step_done
   end subroutine step
+
+  !> The shortest step that the time resolves.
+  pure real(dp) function shortest_step(self)
+    class(radau_t), intent(in) :: self
+    shortest_step = 4*epsilon(1.0_dp)*max(abs(self%t), 1e-9_dp*self%settings%span)
+  end function shortest_step
 
   !> Adjust the step size so that the last step, or the last two, end at the end of the integration.
   pure subroutine meet_stop_time(self)
@@ -202,7 +205,7 @@ contains
 
     error = 0
     fraction = 0.5_dp
-    if (.not. self%fresh_jacobian .and. (self%first .or. self%failed .or. self%stages%contraction > keep_jacobian_below)) &
+    if (.not. self%fresh_jacobian .and. (self%first .or. self%rejected .or. self%stages%contraction > keep_jacobian_below)) &
       call find_jacobian(self, problem)
     call set_out(self, self%t, self%y, self%h)
     call self%stages%solve_stages(problem, guess_ahead, outcome)
@@ -210,7 +213,7 @@ contains
     call collect(self)
     if (outcome /= try_accepted) return
     self%y_new = self%y + self%stages%z_new(:, self%stages%stages())
-    call estimate_error(self, problem, self%t, self%y, self%f, self%first .or. self%failed, error)
+    call estimate_error(self, problem, self%t, self%y, self%f, self%first .or. self%rejected, error)
     if (.not. error < 1) then
       outcome = try_error
       return

@@ -74,7 +74,7 @@ contains
       if (self%stages%contraction > 0.8_dp .and. .not. self%first) self%stages%level = max(1, self%stages%level - 1)
     end select
     if (all(outcome /= [try_error, try_too_deep, try_too_far])) self%cautious = cautious_steps
-    self%failed = .true.
+    self%rejected = .true.
     self%h = factor*self%h
     call weigh(self)
   end procedure retreat
@@ -112,13 +112,13 @@ contains
       predicted = safety*(self%h/self%h_last)*root(self%error_done/error**2, s + 1)
       factor = min(factor, max(1/largest_cut, predicted))
     end if
-    if (self%failed) factor = min(factor, 1.0_dp)
+    if (self%rejected) factor = min(factor, 1.0_dp)
     if (self%cautious > 0) factor = min(factor, cautious_growth)
     self%cautious = max(0, self%cautious - 1)
     self%h_last = self%h
     self%error_done = max(error, 1e-2_dp)
     self%first = .false.
-    self%failed = .false.
+    self%rejected = .false.
     self%h = min(factor*self%h, self%settings%max_step)
   end procedure choose_step
 

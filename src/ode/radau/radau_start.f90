@@ -21,7 +21,7 @@ contains
     if (.not. in_domain) return
     self%stages%stages_done = 0
     self%first = .true.
-    self%failed = .false.
+    self%rejected = .false.
     self%fresh_jacobian = .false.
     self%since_change = 0
     self%cautious = 0

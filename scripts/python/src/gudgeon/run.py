@@ -444,7 +444,7 @@ def advance(number: int, to: float, tell: Callable[[float], None] | None, timeou
     """Advance a run of the library in slices of about `SLICE`, between which Python looks for interruptions. Returns -1 at a pause, 0
     at its end, 4 if it cannot go on. Raises ValueError for a time that is not a finite number."""
     began = before = time.monotonic()
-    steps = 500
+    steps = 1  # which may take seconds
     while True:
         status = library().run_advance(number, to, steps)
         now, clock = library().run_time(number), time.monotonic()
