@@ -50,7 +50,8 @@ int gudgeon_case_column(const gudgeon_case *, int i, char *name, size_t name_siz
  * its motion repeats; a run cannot go beyond its end. Tables of films are computed here. without_rows: values are asked for at
  * pauses, and no rows are kept. NULL: the case has the message. */
 gudgeon_run *gudgeon_run_new(gudgeon_case *, int ideal_twin, double end, int without_rows);
-/* Go on to a time, or through so many steps (0: no limit), or to the end. The results do not depend on the pauses. -1: paused. */
+/* Go on to a time, or through so many steps (0: no limit; one that is rejected counts too), or to the end. The results do not depend on
+ * the pauses. -1: paused. */
 int gudgeon_run_advance(gudgeon_run *, double to, int64_t most_steps);
 /* End the run here, unless it has reached its end, and make its summary. */
 int gudgeon_run_finish(gudgeon_run *);
