@@ -326,7 +326,8 @@ contains
                       'x.nml: &combustion wiebe_efficiency = 0: must be > 0 and <= 1000', fire)
     call refused_with(check, 'combustion.start_deg=179', &
                       'x.nml: &combustion start_deg = 179: must be >= 180 and < 540 (degrees)', fire)
-    call refused_with(check, 'combustion.duration_deg=0', 'x.nml: &combustion duration_deg = 0: must be > 0 and <= 360 (degrees)', fire)
+    call refused_with(check, 'combustion.duration_deg=0', &
+                      'x.nml: &combustion duration_deg = 0: must be > 0 and <= 360 (degrees)', fire)
     call refused_with(check, 'combustion.duration_deg=201', 'x.nml: &combustion duration_deg = 201: '// &
                       'must be <= 540 - start_deg = 200: the cylinder opens at 540 (degrees)', fire)
     call refused_with(check, 'combustion.cycle=two_stroke', 'x.nml: &combustion port_opens_deg: required with cycle = '// &
