@@ -78,8 +78,8 @@ contains
     call set_group('lubrication', keys, joint, error)
     if (.not. allocated(joint%film)) return
     allocate (law, source=joint%film)
-    call law%prepare(small_bearing, tolerance)
     call law%make_table(small_bearing, tolerance)
+    call law%prepare(small_bearing, tolerance)
   end subroutine film_law_of
 
   !> Set the laws of one group. An error names a law that does not exist, or a required key that is not given.

@@ -71,6 +71,26 @@ class Cache(unittest.TestCase):
                 self.assertEqual(first, remade, f"a {what} table is computed again")
                 self.assertEqual(tables[0].read_bytes(), whole, f"a {what} table is replaced")
 
+    def test_same_bits_of_all_builds(self) -> None:
+        """The program with all checks of the compiler makes the same table and the same trace as the released one, whose table it
+        reads; without the file in the cache's name for its own rounding it would make it again."""
+        found = subprocess.run(["fpm", "@strict", "--target", "runs", "--runner", "echo"], cwd=TOP, capture_output=True, text=True, check=True)
+        strict = TOP / found.stdout.strip().splitlines()[-1].replace("/test/runs", "/app/gudgeon")
+        traces, tables = [], []
+        for name, program in (("released", GUDGEON), ("strict", strict)):
+            subprocess.run([program, "-q", "-o", self.folder / name, *SMALL, "-s", "output.digits=17", CASE], check=True,
+                           env={**os.environ, "XDG_CACHE_HOME": str(self.folder / f"cache of {name}")})
+            traces.append((self.folder / name / "sim_I_finite.csv").read_bytes())
+            tables.append({table.name: table.read_bytes() for table in (self.folder / f"cache of {name}" / "gudgeon").iterdir()})
+        self.assertEqual(tables[0], tables[1])
+        self.assertEqual(traces[0], traces[1])
+        rounding = self.folder / "rounding.so"
+        subprocess.run(["cc", "-O1", "-fno-builtin", "-shared", "-fPIC", "-o", rounding, TOP / "tests" / "rounding.c", "-ldl", "-lm"], check=True)
+        self.run_case("here")
+        here = set((self.cache / "gudgeon").iterdir())
+        self.run_case("elsewhere", LD_PRELOAD=str(rounding))
+        self.assertEqual(len(set((self.cache / "gudgeon").iterdir()) - here), 1, "a program that rounds otherwise has its own table")
+
     def test_stated_error(self) -> None:
         """The summary states the error of the table, also of one from the cache; a smaller table has a larger error. Without a
         table there is no such line."""
@@ -141,6 +161,9 @@ class Cache(unittest.TestCase):
         self.run_case("one")
         self.run_case("same", "-s", "lubrication.viscosity=0.03", "-s", "joint.clearance=20e-6")
         self.assertEqual(len(list((self.cache / "gudgeon").iterdir())), 1, "the table does not depend on the oil")
+        for clearance in ("15e-6", "30e-6", "50e-6"):
+            self.run_case("other", "-s", f"joint.clearance={clearance}")
+        self.assertEqual(len(list((self.cache / "gudgeon").iterdir())), 1, "a study of the clearance needs no further tables")
         self.run_case("longer", "-s", "joint.bearing_length=0.02")
         self.run_case("half", "-s", "lubrication.cavitation=gumbel")
         self.assertEqual(len(list((self.cache / "gudgeon").iterdir())), 3, "the table depends on length and cavitation")

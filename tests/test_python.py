@@ -439,6 +439,25 @@ def threads() -> None:
     check(not wrong, f"threads do not disturb each other: {wrong[:3]}")
 
 
+def tables_beside() -> None:
+    """While one thread waits for a table of a film, others read and check cases."""
+    with tempfile.TemporaryDirectory() as folder:
+        case = case_of("film/sim_I_finite")
+        case.cache = folder
+        case.lubrication.cavitation = "reynolds"
+        case.lubrication.film_points = 256
+        ended: list[float] = []
+        began = time.monotonic()
+        waits = threading.Thread(target=lambda: (case.run(end=1e-5, columns="none"), ended.append(time.monotonic())))
+        waits.start()
+        time.sleep(0.1)   # the table takes more than a second
+        check(waits.is_alive(), "the table is being made")
+        case_of("sim_I").check()
+        checked = time.monotonic()
+        waits.join()
+        check(checked - began < 0.5 * (ended[0] - began), f"a check in {checked - began:.2f} s beside a table of {ended[0] - began:.2f} s")
+
+
 def static_lengths() -> None:
     """gfortran keeps the length of a function's text in static memory, which threads share: no such function is called while a run
     advances, neither directly nor by the models and integrators, whose procedures are called through tables."""
@@ -549,7 +568,7 @@ def main() -> int:
     if "--all" in sys.argv:
         found = sorted((TOP / "cases").rglob("*.nml"))
         names = [str(p.relative_to(TOP / "cases").with_suffix("")) for p in found if "studies" not in p.parts]
-    for part in (lambda: against_program(program, names), cases, round_trips, links, copies, damaged, runs, steps, sweeps, threads, static_lengths, texts_of_the_package, pages, tables, memory, lambda: writes_nowhere(program)):
+    for part in (lambda: against_program(program, names), cases, round_trips, links, copies, damaged, runs, steps, sweeps, threads, tables_beside, static_lengths, texts_of_the_package, pages, tables, memory, lambda: writes_nowhere(program)):
         try:
             part()
         except Exception:

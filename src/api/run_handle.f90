@@ -6,7 +6,8 @@ module run_handle
   use case_definition, only: case_t
   use joint_places, only: n_places
   use trace_columns, only: column_list_t, choose_columns
-  use film_files, only: provide_tables
+  use film_files, only: provide_tables, progress_watch_t
+  use text_lock, only: lock_texts, unlock_texts
   use history_files, only: march_histories
   use report_files, only: write_report_files
   use result_file, only: write_text
@@ -51,7 +52,24 @@ module run_handle
     procedure :: has_events
   end type run_handle_t
 
+  !> While a table of a film is computed, other threads may work with texts.
+  type, extends(progress_watch_t) :: unlocked_t
+  contains
+    procedure :: begins => leave_texts
+    procedure :: ends => take_texts
+  end type unlocked_t
+
 contains
+
+  subroutine leave_texts(self)
+    class(unlocked_t), intent(inout) :: self
+    call unlock_texts()
+  end subroutine leave_texts
+
+  subroutine take_texts(self)
+    class(unlocked_t), intent(inout) :: self
+    call lock_texts()
+  end subroutine take_texts
 
   !> Begin the run of a case, which ends at a time [s], or as its case says if that is not above 0. Error: a time that is not a
   !> finite number, a wrong case, or one whose scene cannot be built; the handle of the case keeps the message.
@@ -85,7 +103,7 @@ contains
     end if
     if (without_rows) new%case%output%start_time = huge(1.0_dp)
     if (is_twin .and. size(of%list%id) > 0) call choose_columns(of%case, .true., new%list, error)
-    if (.not. allocated(error)) call provide_tables(new%case, .false., .false., error)
+    if (.not. allocated(error)) call provide_tables(new%case, .false., .false., error, unlocked_t())
     if (.not. allocated(error)) call new%run%begin(new%case, is_twin, new%list, new%rows, error)
     call of%keep(error, status)
     if (status == 0) then

@@ -359,14 +359,25 @@ contains
     end do
   end subroutine add_modes
 
-  !> Sum of products.
+  !> Sum of products, in an order that is written down and not left to the compiler: all builds of the program make the same table.
   pure real(dp) function product_of(x, y) result(total)
     real(dp), intent(in) :: x(:), y(:)
-    integer :: i
-    total = 0
-    !$omp simd reduction(+:total)
-    do i = 1, size(x)
-      total = total + x(i)*y(i)
+    real(dp) :: a, b, c, d
+    integer :: i, whole
+    a = 0
+    b = 0
+    c = 0
+    d = 0
+    whole = size(x) - mod(size(x), 4)
+    do i = 1, whole, 4
+      a = a + x(i)*y(i)
+      b = b + x(i + 1)*y(i + 1)
+      c = c + x(i + 2)*y(i + 2)
+      d = d + x(i + 3)*y(i + 3)
     end do
+    do i = whole + 1, size(x)
+      a = a + x(i)*y(i)
+    end do
+    total = (a + b) + (c + d)
   end function product_of
 end module film_equations

@@ -16,7 +16,9 @@ module film_law
   type, abstract :: table_watch_t
     logical :: wants_to_stop = .false.   !! stop the computation
   contains
+    procedure :: begins => nothing   !! the computation begins, in which no text is touched until it `ends`
     procedure(row_done), deferred :: row_done
+    procedure :: ends => nothing
   end type table_watch_t
 
   !> The motion of the pin in its bearing on which film forces depend.
@@ -321,6 +323,10 @@ contains
     grid = new_reynolds_grid(field_points, 2, max(1 - norm2(motion%eccentricity)*per_clearance, least_gap), 1.0_dp, 0.0_dp)
     angles = grid%angle
   end function angles_of_film
+
+  subroutine nothing(self)
+    class(table_watch_t), intent(inout) :: self
+  end subroutine nothing
 
   !> Key of the law's table, for laws whose table takes long to compute: laws with equal keys have equal tables. A stored table may
   !> be set (`restore_table`), together with its key in `table_of`, before `make_table` is called.

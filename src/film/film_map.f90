@@ -13,6 +13,10 @@
 !> splines of the fifth degree and depend on L/(2R) and on the cavitation condition only, as do two more functions, both even: the
 !> largest pressure over mu R^2/c^2 is M q^2 G_p, and the side flow out of both ends over c R^2 is V G_q. The force of a film
 !> without cavitation is linear in B and T, V Phi_r = B w^-3 G_r and V Phi_t = T w^-1 G_t, with G_r and G_t functions of tau alone.
+!>
+!> A table is made for one of the values of L/(2R) that `table_length` gives, each 0.5 % longer than the one before, and moved to that
+!> of the bearing (`move_to`) with the slopes of G with respect to ln L/(2R): all bearings of a study of the clearance have one or two
+!> tables. The slopes are differences of two small tables.
 module film_map
   use kinds, only: dp
   use constants, only: pi
@@ -23,10 +27,10 @@ module film_map
   use uniform_spline, only: spline_weights, spline_slopes, through_values, through_mirrored, before, after
   implicit none
   private
-  public :: film_map_t
+  public :: film_map_t, table_length
 
   type :: film_map_t
-    real(dp) :: half_length = 0            !! L/(2R) of the table
+    real(dp) :: half_length = 0            !! L/(2R) for which the table is
     integer :: cavitation = 0              !! the cavitation condition, one of the constants of `finite_film`
     integer :: film_points = 0             !! number of grid nodes round the film; Richardson's extrapolation uses half as many too
     integer :: points = 0                  !! number of values in each direction; 0: the table is empty
@@ -35,8 +39,10 @@ module film_map
     real(dp), private :: per_tau = 0, per_chi = 0   !! intervals per radian
     real(dp), allocatable, private :: c(:, :, :)    !! spline coefficients of G_r and G_t: (function, chi, tau)
     real(dp), allocatable, private :: more(:, :, :) !! spline coefficients of G_p and G_q
+    real(dp), allocatable, private :: c_slope(:, :, :), more_slope(:, :, :)   !! their derivatives with respect to ln L/(2R)
   contains
     procedure :: build
+    procedure :: move_to
     procedure :: force
     procedure :: force_slopes
     procedure :: peak_and_flow
@@ -59,58 +65,127 @@ module film_map
 
 contains
 
-  !> Compute the table, and its error against solutions between its values. Rows are computed in parallel. If `watch` stops the
-  !> computation, the table stays empty.
+  !> The value of L/(2R), one of a series, for whose table that of this half length is moved.
+  pure elemental real(dp) function table_length(half_length)
+    real(dp), intent(in) :: half_length   !! > 0
+    integer, parameter :: per_unit = 200   !! of ln L/(2R)
+    table_length = exp(real(nint(per_unit*log(half_length)), dp)/per_unit)
+  end function table_length
+
+  !> Compute the table for one half length, its slopes, and its error against solutions between its values. Rows are computed in
+  !> parallel. If `watch` stops the computation, the table stays empty.
   subroutine build(self, half_length, cavitation, points, film_points, watch)
     class(film_map_t), intent(inout) :: self
     real(dp), intent(in) :: half_length
     integer, intent(in) :: cavitation, points, film_points   !! points >= 8, film_points >= 32
     class(table_watch_t), intent(inout), optional :: watch
-    real(dp), allocatable :: g(:, :, :), between(:, :, :), by_chi(:, :)
-    integer :: i, k, done
+    real(dp), parameter :: step = 0.05_dp   !! of ln L/(2R), from the table to the small ones on both sides
+    integer, parameter :: small_points = 33, small_film_points = 64
+    type(film_map_t) :: small(2)
+    real(dp), allocatable :: g(:, :, :), of_small(:, :, :, :), beside(:, :, :, :), between(:, :, :)
+    integer :: i, k, rows, done, n
     logical :: stops
 
+    call set_size(self, half_length, cavitation, points, film_points)
+    n = min(points, small_points)
+    call set_size(small(1), half_length*exp(-step), cavitation, n, min(film_points, small_film_points))
+    call set_size(small(2), half_length*exp(step), cavitation, n, min(film_points, small_film_points))
+    allocate (g(points, points, 4), of_small(n, n, 4, 2), between(2, sample_directions, sample_rows))   ! by chi, tau
+    allocate (beside(points, points, 4, 2))
+    rows = 2*n + points + sample_rows
+    done = 0
+    stops = .false.
+    if (present(watch)) call watch%begins()
+    !$omp parallel do schedule(dynamic) private(k)
+    do i = rows, 1, -1   ! the longest first
+      if (stops) cycle
+      k = i - 2*n
+      if (k > points) then
+        call solve_sample(self, k - points, between(:, :, k - points))
+      else if (k > 0) then
+        call solve_row(self, (k - 1)/self%per_tau, g(:, k, :))
+      else
+        k = merge(1, 2, i <= n)
+        call solve_row(small(k), (i - 1 - (k - 1)*n)/small(k)%per_tau, of_small(:, i - (k - 1)*n, :, k))
+      end if
+      !$omp critical (film_rows)
+      done = done + 1
+      if (present(watch)) then
+        call watch%row_done(done, rows)
+        stops = watch%wants_to_stop
+      end if
+      !$omp end critical (film_rows)
+    end do
+    if (present(watch)) call watch%ends()
+    if (stops) self%points = 0
+    if (stops) return
+    call find_coefficients(g, cavitation, self%c, self%more)
+    call find_errors(self, between)
+    do k = 1, 2
+      call find_coefficients(of_small(:, :, :, k), cavitation, small(k)%c, small(k)%more)
+      call find_values(small(k), self, beside(:, :, :, k))
+    end do
+    call find_coefficients((beside(:, :, :, 2) - beside(:, :, :, 1))/(2*step), cavitation, self%c_slope, self%more_slope)
+  end subroutine build
+
+  pure subroutine set_size(self, half_length, cavitation, points, film_points)
+    class(film_map_t), intent(inout) :: self
+    real(dp), intent(in) :: half_length
+    integer, intent(in) :: cavitation, points, film_points
     self%half_length = half_length
     self%cavitation = cavitation
     self%points = points
     self%film_points = film_points
     self%per_tau = (points - 1)/tau_of(last_gap)
     self%per_chi = (points - 1)/pi
-    allocate (g(points, points, 4), between(2, sample_directions, sample_rows))   ! by chi, tau
-    done = 0
-    stops = .false.
-    !$omp parallel do schedule(dynamic)
-    do i = points + sample_rows, 1, -1   ! the longest first
-      if (stops) cycle
-      if (i > points) call solve_sample(self, i - points, between(:, :, i - points))
-      if (i <= points) call solve_row(self, (i - 1)/self%per_tau, g(:, i, :))
-      !$omp critical (film_rows)
-      done = done + 1
-      if (present(watch)) then
-        call watch%row_done(done, points + sample_rows)
-        stops = watch%wants_to_stop
-      end if
-      !$omp end critical (film_rows)
-    end do
-    if (stops) self%points = 0
-    if (stops) return
-    call allocate_table(self)
+  end subroutine set_size
+
+  !> Spline coefficients of the functions G, given at all points of a table (chi, tau, function).
+  pure subroutine find_coefficients(g, cavitation, c, more)
+    real(dp), intent(in) :: g(:, :, :)
+    integer, intent(in) :: cavitation
+    real(dp), allocatable, intent(out) :: c(:, :, :), more(:, :, :)
+    real(dp), allocatable :: by_chi(:, :)
+    integer :: k
+    associate (first => 1 - before, last => size(g, 1) + after)
+      allocate (c(2, first:last, first:last), more(2, first:last, first:last))
+    end associate
     do k = 1, 4
       by_chi = through_mirrored(g(:, :, k), merge(-1, 1, k == 2 .and. cavitation /= cavitation_none))
       by_chi = transpose(through_values(transpose(by_chi)))
-      if (k <= 2) self%c(k, :, :) = by_chi
-      if (k > 2) self%more(k - 2, :, :) = by_chi
+      if (k <= 2) c(k, :, :) = by_chi
+      if (k > 2) more(k - 2, :, :) = by_chi
     end do
-    call find_errors(self, between)
-  end subroutine build
+  end subroutine find_coefficients
 
-  pure subroutine allocate_table(self)
+  !> The functions G of a table at the points of another one, (chi, tau, function).
+  pure subroutine find_values(self, other, g)
+    class(film_map_t), intent(in) :: self, other
+    real(dp), intent(out) :: g(:, :, :)
+    type(place_t) :: place
+    real(dp) :: by_chi(6), by_tau(6)
+    integer :: i, j
+    do i = 1, other%points
+      do j = 1, other%points
+        place = place_at(self, self%per_tau*((i - 1)/other%per_tau), self%per_chi*((j - 1)/other%per_chi))
+        by_chi = spline_weights(place%in_column)
+        by_tau = spline_weights(place%in_row)
+        call weigh(self%c(1, 1 - before, place%row), self%points, place%column, by_chi, by_tau, g(j, i, :2))
+        call weigh(self%more(1, 1 - before, place%row), self%points, place%column, by_chi, by_tau, g(j, i, 3:))
+      end do
+    end do
+  end subroutine find_values
+
+  !> Move the table to another half length, at most some 1 % from its own.
+  pure subroutine move_to(self, half_length)
     class(film_map_t), intent(inout) :: self
-    if (allocated(self%c)) deallocate (self%c, self%more)
-    associate (first => 1 - before, last => self%points + after)
-      allocate (self%c(2, first:last, first:last), self%more(2, first:last, first:last))
-    end associate
-  end subroutine allocate_table
+    real(dp), intent(in) :: half_length
+    real(dp) :: by
+    by = log(half_length/self%half_length)
+    self%c = self%c + by*self%c_slope
+    self%more = self%more + by*self%more_slope
+    self%half_length = half_length
+  end subroutine move_to
 
   !> G_r, G_t, G_p and G_q of one row (tau), for all chi.
   subroutine solve_row(self, tau, g)
@@ -298,14 +373,20 @@ contains
     type(film_map_t), intent(in) :: self
     real(dp), intent(in) :: eps, w, b, a
     type(place_t), intent(out) :: place
-    real(dp) :: x, y
-    integer :: i, j
-    x = min(atan2(eps, w)*self%per_tau, real(self%points - 1, dp))
-    y = chi_of(b, a, w)*self%per_chi
-    i = max(0, min(int(x), self%points - 2))   ! within the table also if x or y is not a number
-    j = max(0, min(int(y), self%points - 2))
-    place = place_t(i + 1 - before, j, x - i, y - j)
+    place = place_at(self, atan2(eps, w)*self%per_tau, chi_of(b, a, w)*self%per_chi)
   end subroutine find_place
+
+  !> Position in the table at `x` rows and `y` columns from its begin.
+  pure type(place_t) function place_at(self, x, y) result(place)
+    type(film_map_t), intent(in) :: self
+    real(dp), intent(in) :: x, y
+    real(dp) :: row
+    integer :: i, j
+    row = min(x, real(self%points - 1, dp))
+    i = max(0, min(int(row), self%points - 2))   ! within the table also if x or y is not a number
+    j = max(0, min(int(y), self%points - 2))
+    place = place_t(i + 1 - before, j, row - i, y - j)
+  end function place_at
 
   !> Interpolate: sums of coefficients times their weights, over the first six rows of `c` and six columns.
   pure subroutine weigh(c, points, column, by_chi, by_tau, g)
@@ -329,7 +410,10 @@ contains
     class(film_map_t), intent(in) :: self
     real(dp), allocatable :: numbers(:)
     numbers = [self%half_length, real([self%cavitation, self%film_points, self%points], dp), self%largest_error, self%mean_error]
-    if (self%points > 0) numbers = [numbers, reshape(self%c, [size(self%c)]), reshape(self%more, [size(self%more)])]
+    if (self%points == 0) return
+    associate (n => size(self%c))
+      numbers = [numbers, reshape(self%c, [n]), reshape(self%more, [n]), reshape(self%c_slope, [n]), reshape(self%more_slope, [n])]
+    end associate
   end function numbers
 
   !> Restore a table from its numbers; `fits` is false, and there is no table, if they are not those of one.
@@ -344,18 +428,25 @@ contains
     if (fits) fits = numbers(4) >= 8 .and. numbers(4) <= 1e4_dp
     if (.not. fits) return
     n = 2*(nint(numbers(4)) + before + after)**2
-    fits = size(numbers) == head + 2*n
+    fits = size(numbers) == head + 4*n
     if (.not. fits) return
-    self%half_length = numbers(1)
-    self%cavitation = nint(numbers(2))
-    self%film_points = nint(numbers(3))
-    self%points = nint(numbers(4))
+    call set_size(self, numbers(1), nint(numbers(2)), nint(numbers(4)), nint(numbers(3)))
     self%largest_error = numbers(5)
     self%mean_error = numbers(6)
-    self%per_tau = (self%points - 1)/tau_of(last_gap)
-    self%per_chi = (self%points - 1)/pi
-    call allocate_table(self)
-    self%c = reshape(numbers(head + 1:head + n), shape(self%c))
-    self%more = reshape(numbers(head + n + 1:), shape(self%more))
+    call take(1, self%c)
+    call take(2, self%more)
+    call take(3, self%c_slope)
+    call take(4, self%more_slope)
+
+  contains
+
+    pure subroutine take(k, c)
+      integer, intent(in) :: k
+      real(dp), allocatable, intent(out) :: c(:, :, :)
+      associate (first => 1 - before, last => self%points + after)
+        allocate (c(2, first:last, first:last))
+      end associate
+      c = reshape(numbers(head + (k - 1)*n + 1:head + k*n), shape(c))
+    end subroutine take
   end subroutine restore
 end module film_map

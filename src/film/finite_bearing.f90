@@ -10,7 +10,7 @@ module finite_bearing
   use film_law, only: film_law_t, film_motion_t, table_watch_t, difference_derivatives, field_points, yes
   use film_direction, only: derivatives_in_components, least_ratio_of_derivatives
   use finite_film, only: film_answer_t, film_solver_t, cavitation_none, cavitation_gumbel, cavitation_reynolds
-  use film_map, only: film_map_t
+  use film_map, only: film_map_t, table_length
   use film_solution, only: solved_film
   implicit none
   private
@@ -81,7 +81,7 @@ contains
     wanted = 'must be divisible by 4'
   end subroutine conflict
 
-  !> Set the scales and the number of nodes.
+  !> Set the scales and the number of nodes, and move the table, if there is one, to this bearing.
   subroutine prepare(self, bearing, tolerance)
     class(finite_bearing_t), intent(inout) :: self
     type(bearing_t), intent(in) :: bearing
@@ -90,6 +90,7 @@ contains
     call set_scales(self, bearing)
     call choose_points(self, tolerance, table_points, film_points)
     self%film_points = film_points
+    if (self%map%points > 0) call self%map%move_to(self%half_length)
   end subroutine prepare
 
   subroutine set_scales(self, bearing)
@@ -152,8 +153,8 @@ contains
     key = ''
     if (self%variant /= 'table') return
     call choose_points(self, tolerance, table_points, film_points)
-    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 6 '//trim(condition_of_run(self))//' ', &
-      0.5_dp*bearing%length/bearing%pin_radius(), ' ', table_points, ' ', film_points
+    write (text, '(a,es24.16e3,a,i0,a,i0)') 'finite_bearing 7 '//trim(condition_of_run(self))//' ', &
+      table_length(0.5_dp*bearing%length/bearing%pin_radius()), ' ', table_points, ' ', film_points
     key = trim(text)
   end function table_key
 
@@ -168,7 +169,7 @@ contains
     if (key == self%table_of) return
     call set_scales(self, bearing)
     call choose_points(self, tolerance, table_points, film_points)
-    call self%map%build(self%half_length, self%condition, table_points, film_points, watch)
+    call self%map%build(table_length(self%half_length), self%condition, table_points, film_points, watch)
     call tell_errors(self)
     self%table_of = ''
     if (self%map%points > 0) self%table_of = key

@@ -4,8 +4,8 @@
 !>
 !> The file of a table contains a line that identifies its format, the key of the table, the numbers of the table, and a checksum
 !> of all this. A damaged file, or one written by another version of the program, is computed again; if it cannot be written into
-!> the cache, the run continues without storing it. A file that a case names is replaced only if it is a table of a film, of any
-!> parameters.
+!> the cache, the run continues without storing it. Programs that round differently have files of their own in the cache. A file that
+!> a case names is replaced only if it is a table of a film, of any parameters.
 module film_files
   use kinds, only: dp
   use error_handling, only: error_t, fail, status_integration, status_case_file
@@ -16,6 +16,8 @@ module film_files
   use joint_case, only: joint_case_t
   use film_snapshots, only: film_field_t
   use film_law, only: film_law_t, table_watch_t
+  use film_solution, only: solved_film
+  use finite_film, only: film_answer_t, cavitation_reynolds
   use posix_files, only: make_directory, interrupted, error_text, error_no_entry
   use growing_text, only: growing_text_t
   use number_text, only: real_text, short_text, quantity_text
@@ -51,22 +53,29 @@ contains
   !> Give the films of a case their tables, stored or new ones. `announces`: the user is told, in one line, that a table is
   !> computed. Errors: the user interrupted (status_integration); the file that the case names is not a table (status_case_file) or
   !> cannot be written (status_output).
-  subroutine provide_tables(case, announces, shows_progress, error)
+  subroutine provide_tables(case, announces, shows_progress, error, watch)
     type(case_t), intent(inout) :: case
     logical, intent(in) :: announces, shows_progress
     type(error_t), allocatable, intent(out) :: error
+    class(progress_watch_t), intent(in), optional :: watch   !! is told when a computation begins and ends
+    class(progress_watch_t), allocatable :: own
     integer :: i
+    if (present(watch)) then
+      allocate (own, source=watch)
+    else
+      allocate (own)
+    end if
     do i = 1, n_places
-      if (.not. allocated(error)) call provide_table(case%joints(in_order(i)), case, announces, shows_progress, error)
+      if (.not. allocated(error)) call provide_table(case%joints(in_order(i)), case, announces, shows_progress, own, error)
     end do
   end subroutine provide_tables
 
-  subroutine provide_table(joint, case, announces, shows_progress, error)
+  subroutine provide_table(joint, case, announces, shows_progress, watch, error)
     type(joint_case_t), intent(inout) :: joint
     type(case_t), intent(in) :: case
     logical, intent(in) :: announces, shows_progress
+    class(progress_watch_t), intent(inout) :: watch
     type(error_t), allocatable, intent(out) :: error
-    type(progress_watch_t) :: watch
     type(bearing_t) :: bearing
     character(len=:), allocatable :: key, path
     logical :: is_restored, is_named
@@ -203,10 +212,19 @@ contains
     end if
     status = 0
     if (makes_folder) call make_directory(path, status)
-    call sum%add(key)
+    call sum%add(key//arithmetic())
     path = path//'/film-'//sum%hexadecimal()//'.table'
     if (status /= 0) path = ''
   end function path_for
+
+  !> Bytes that tell how this program rounds on this processor, results of a film: a table in the cache is of a program that rounds
+  !> as this one does, so that no run depends on which program ran before it.
+  function arithmetic() result(text)
+    character(len=32) :: text
+    type(film_answer_t) :: film
+    call solved_film(32, 0.7_dp, cavitation_reynolds, 0.1_dp, 2.0_dp, film)
+    text = transfer([film%force, film%flow, film%most], text)
+  end function arithmetic
 
   !> Value of an environment variable; empty if it is not set.
   subroutine get_variable(name, value)

@@ -132,8 +132,8 @@ contains
     real(dp), intent(in) :: tolerance
     logical, intent(in) :: makes_tables
     call wanted%make_film(self%film)
-    call self%film%prepare(self%bearing, tolerance)
     if (makes_tables) call self%film%make_table(self%bearing, tolerance)
+    call self%film%prepare(self%bearing, tolerance)
     self%is_unbounded = self%film%singular_at_wall
   end subroutine prepare_film
 
