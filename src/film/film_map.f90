@@ -163,15 +163,17 @@ contains
     class(film_map_t), intent(in) :: self, other
     real(dp), intent(out) :: g(:, :, :)
     type(place_t) :: place
-    real(dp) :: by_chi(6), by_tau(6)
+    real(dp) :: by_chi(6), by_tau(6), values(2)
     integer :: i, j
     do i = 1, other%points
       do j = 1, other%points
         place = place_at(self, self%per_tau*((i - 1)/other%per_tau), self%per_chi*((j - 1)/other%per_chi))
         by_chi = spline_weights(place%in_column)
         by_tau = spline_weights(place%in_row)
-        call weigh(self%c(1, 1 - before, place%row), self%points, place%column, by_chi, by_tau, g(j, i, :2))
-        call weigh(self%more(1, 1 - before, place%row), self%points, place%column, by_chi, by_tau, g(j, i, 3:))
+        call weigh(self%c(1, 1 - before, place%row), self%points, place%column, by_chi, by_tau, values)
+        g(j, i, :2) = values
+        call weigh(self%more(1, 1 - before, place%row), self%points, place%column, by_chi, by_tau, values)
+        g(j, i, 3:) = values
       end do
     end do
   end subroutine find_values

@@ -5,9 +5,47 @@ module inside_step
   use scene_problem, only: scene_t, evaluation_t
   implicit none
   private
-  public :: evaluate_inside
+  public :: evaluate_inside, inner_points_t
+
+  integer, parameter :: n_inner = 3
+  real(dp), parameter :: places(n_inner) = 0.5_dp + sqrt(0.15_dp)*[-1, 0, 1], weights(n_inner) = [5, 8, 5]/18.0_dp
+
+  !> The scene at the points of Gauss's rule inside an interval, for integrals over the time. They are evaluated once for all results
+  !> that need them.
+  type :: inner_points_t
+    real(dp) :: from = 0, to = 0             !! the interval [s]
+    integer :: n = 0                         !! number of points: none in an interval of no length
+    real(dp) :: t(n_inner) = 0               !! [s]
+    real(dp) :: weight(n_inner) = 0          !! of a value in the integral [s]
+    logical :: in_domain(n_inner) = .false.  !! the scene is defined there
+    type(evaluation_t) :: now(n_inner)
+  contains
+    procedure :: evaluate
+  end type inner_points_t
 
 contains
+
+  !> Evaluate the scene inside the interval from the end of the last one to a time inside the last step.
+  subroutine evaluate(self, scene, method, to, evaluations)
+    class(inner_points_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    class(ode_method_t), intent(inout) :: method
+    real(dp), intent(in) :: to
+    integer, intent(inout) :: evaluations
+    real(dp) :: y(scene%n), span
+    integer :: i
+    self%from = self%to
+    self%to = to
+    span = to - self%from
+    self%n = 0
+    if (.not. span > 0) return
+    self%n = n_inner
+    self%t = self%from + places*span
+    self%weight = weights*span
+    do i = 1, n_inner
+      call evaluate_inside(scene, method, self%t(i), y, self%now(i), self%in_domain(i), evaluations)
+    end do
+  end subroutine evaluate
 
   !> State at a time inside the last step, and the evaluation of the scene there. Where the method can improve its interpolant, the
   !> forces are otherwise less accurate than at the ends of steps, in a stiff film by orders of magnitude. It is improved again

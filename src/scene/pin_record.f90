@@ -8,7 +8,7 @@ module pin_record
   use machine_record, only: turning_point
   use scene_problem, only: scene_t, evaluation_t, phase_film, phase_contact, event_contact_begins
   use joint_events, only: may_touch
-  use inside_step, only: evaluate_inside
+  use inside_step, only: inner_points_t
   use step_peaks, only: peak_watch_t, of_pin_force, of_penetration, of_normal_force, n_peaks
   use cycle_watch, only: cycle_watch_t
   use load_element, only: of_asperities
@@ -25,11 +25,10 @@ module pin_record
     real(dp) :: validity_limit = huge(1.0_dp)  !! largest impact speed for which the contact law is valid [m/s]
     real(dp) :: deepest = huge(1.0_dp)         !! largest penetration for which the contact geometry is valid [m]
     type(trace_event_t), private :: contact    !! present or last contact
-    logical, private :: reports_film = .false.
+    logical :: reports_film = .false.          !! results of its film are wanted
     logical, private :: has_own_gap = .false.  !! its gap does not follow from the eccentricity
     logical, private :: floats = .false.       !! it is one end of a floating pin
-    real(dp), private :: film_time = 0         !! time up to which the results of its film have been integrated [s]
-    real(dp), private :: film_pressure = 0     !! largest pressure at that time [Pa]
+    real(dp), private :: film_pressure = 0     !! largest pressure in its film at the end of the last interval [Pa]
     real(dp), private :: turn(3) = 0           !! time [s], angle [rad] and speed [rad/s] of the pin relative to its bearing there
     type(wear_record_t), allocatable :: wear   !! not allocated: wear is not counted
   contains
@@ -94,7 +93,6 @@ contains
   pure subroutine count_from(self, t)
     class(pin_record_t), intent(inout) :: self
     real(dp), intent(in) :: t
-    self%film_time = t
     if (allocated(self%wear)) self%wear%time = t
   end subroutine count_from
 
@@ -108,12 +106,13 @@ contains
 
   !> Search the peaks between the last point recorded (or the beginning of a step after an event) and t, where the scene is
   !> evaluated.
-  subroutine search(self, method, scene, t, now, is_end, figures, cycles)
+  subroutine search(self, method, scene, t, now, inner, is_end, figures, cycles)
     class(pin_record_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
+    type(inner_points_t), intent(in) :: inner   !! of the interval up to t, if the film is reported
     logical, intent(in) :: is_end   !! t is the end of the step, or of its final part; else that of a revolution inside it
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
@@ -149,7 +148,7 @@ contains
       call follow_turn(self, scene, t, now, angle, cycles)
       figures%pin(self%pin)%turning = figures%pin(self%pin)%turning + angle
     end if
-    if (self%reports_film) call sum_film(self, method, scene, t, now, figures, cycles)
+    if (self%reports_film) call sum_film(self, method, scene, now, inner, figures, cycles)
     if (.not. allocated(self%wear)) return
     before = self%wear%evaluations
     if (is_end) then
@@ -193,53 +192,48 @@ contains
     self%turn = turn
   end subroutine follow_turn
 
-  !> Integrate the power, the side flow and the pressure of the film up to t, with Gauss's rule of three points.
-  subroutine sum_film(self, method, scene, t, now, figures, cycles)
+  !> Integrate the power and the side flow of the film over an interval, and search the peak of its pressure.
+  subroutine sum_film(self, method, scene, now, inner, figures, cycles)
     class(pin_record_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t
-    type(evaluation_t), intent(in) :: now
+    type(evaluation_t), intent(in) :: now       !! at the end of the interval
+    type(inner_points_t), intent(in) :: inner
     type(run_figures_t), intent(inout) :: figures
     type(cycle_watch_t), intent(inout), optional :: cycles
-    real(dp), parameter :: place(3) = 0.5_dp + sqrt(0.15_dp)*[-1, 0, 1], weight(3) = [5, 8, 5]/18.0_dp
-    type(evaluation_t) :: halfway
     type(film_figures_t) :: film
-    real(dp) :: y(size(method%y)), span, times(0:4), pressures(0:4), known, peak, angle
-    logical :: in_domain
+    real(dp) :: pressures(0:size(inner%t) + 1), known, peak, angle
     integer :: i
-    span = t - self%film_time
-    times = self%film_time + span*[0.0_dp, place, 1.0_dp]
     pressures = 0
     pressures(0) = self%film_pressure
     associate (f => figures%pin(self%pin), joint => scene%joints(self%joint), k => self%joint)
-      do i = 1, merge(3, 0, span > 0)
-        call evaluate_inside(scene, method, self%film_time + place(i)*span, y, halfway, in_domain, figures%evaluations)
-        if (.not. in_domain) cycle
-        film = joint%film_figures(halfway%joint(k))
-        pressures(i) = film%max_pressure
-        f%film_energy_lost = f%film_energy_lost + weight(i)*span*film%power
-        f%neglected_shear_loss = f%neglected_shear_loss + weight(i)*span*film%neglected_power
-        f%film_volume = f%film_volume + weight(i)*span*film%side_flow
-        f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
-        if (.not. present(cycles)) cycle
-        call cycles%record_film(self%pin, film%max_pressure, halfway%motion%crank_angle, weight(i)*span*film%side_flow)
-        if (joint%has_kind(of_asperities)) call cycles%record_asperities(self%pin, weight(i)*span*halfway%joint(k)%normal_force, &
-          weight(i)*span*norm2(halfway%joint(k)%force))
+      do i = 1, inner%n
+        if (.not. inner%in_domain(i)) cycle
+        associate (inside => inner%now(i), weight => inner%weight(i))
+          film = joint%film_figures(inside%joint(k))
+          pressures(i) = film%max_pressure
+          f%film_energy_lost = f%film_energy_lost + weight*film%power
+          f%neglected_shear_loss = f%neglected_shear_loss + weight*film%neglected_power
+          f%film_volume = f%film_volume + weight*film%side_flow
+          f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
+          if (.not. present(cycles)) cycle
+          call cycles%record_film(self%pin, film%max_pressure, inside%motion%crank_angle, weight*film%side_flow)
+          if (joint%has_kind(of_asperities)) call cycles%record_asperities(self%pin, weight*inside%joint(k)%normal_force, &
+            weight*norm2(inside%joint(k)%force))
+        end associate
       end do
       film = joint%film_figures(now%joint(k))
       f%max_film_pressure = max(f%max_film_pressure, film%max_pressure)
       if (present(cycles)) call cycles%record_film(self%pin, film%max_pressure, now%motion%crank_angle, 0.0_dp)
-      pressures(4) = film%max_pressure
-      if (span > 0 .and. joint%slots(joint%acting(phase_film))%element%film%gives_pressure()) then
+      pressures(size(inner%t) + 1) = film%max_pressure
+      if (inner%n > 0 .and. joint%slots(joint%acting(phase_film))%element%film%gives_pressure()) then
         known = f%max_film_pressure
         if (present(cycles)) known = min(known, cycles%film_pressure(self%pin))
-        call find_film_peak(method, scene, k, times, pressures, known, figures%evaluations, peak, angle)
+        call find_film_peak(method, scene, k, [inner%from, inner%t, inner%to], pressures, known, figures%evaluations, peak, angle)
         f%max_film_pressure = max(f%max_film_pressure, peak)
         if (present(cycles)) call cycles%record_film(self%pin, peak, angle, 0.0_dp)
       end if
     end associate
-    self%film_time = t
     self%film_pressure = film%max_pressure
   end subroutine sum_film
 

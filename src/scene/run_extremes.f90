@@ -11,6 +11,7 @@ module run_extremes
   use cycle_statistics, only: skirt, cycle_t
   use run_length, only: longest_period
   use cycle_watch, only: cycle_watch_t
+  use inside_step, only: inner_points_t
   use pin_record, only: pin_record_t
   use guide_record, only: guide_record_t
   use elastic_record, only: elastic_record_t
@@ -26,6 +27,7 @@ module run_extremes
     type(run_figures_t) :: figures
     integer, private :: n_pins = 0                 !! number of pins that have a record
     type(pin_record_t), private :: pins(n_places)
+    type(inner_points_t), private :: inner         !! of the last interval, for the results of films
     type(guide_record_t), private :: guide         !! of a piston with clearance in its bore
     type(elastic_record_t), private :: elastic     !! of elastic members
     type(train_record_t) :: train                  !! of several cylinders on one crankshaft
@@ -95,6 +97,7 @@ contains
     if (in_domain) call self%elastic%begin(scene, t, now)
     if (in_domain) call self%train%begin(scene, t, now)
     if (present(cycles)) call self%guide%begin_revolution()
+    self%inner%to = t
     do i = 1, self%n_pins
       call self%pins(i)%begin(scene, t, now)
       call self%pins(i)%count_from(t)
@@ -159,8 +162,9 @@ contains
     logical, intent(in) :: is_end   !! t is the end of the step, or of its final part
     type(cycle_watch_t), intent(inout), optional :: cycles
     integer :: i
+    if (any(self%pins(:self%n_pins)%reports_film)) call self%inner%evaluate(scene, method, t, self%figures%evaluations)
     do i = 1, self%n_pins
-      call self%pins(i)%search(method, scene, t, now, is_end, self%figures, cycles)
+      call self%pins(i)%search(method, scene, t, now, self%inner, is_end, self%figures, cycles)
     end do
     call self%guide%search(method, scene, t, now, self%figures)
     call self%elastic%search(method, scene, t, now, self%figures%elastic)
