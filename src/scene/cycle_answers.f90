@@ -13,7 +13,6 @@ module cycle_answers
   use period_watch, only: period_watch_t
   use run_extremes, only: run_extremes_t
   use archard_wear, only: of_pin, of_bore
-  use run_length, only: longest_period
   use gas_cycle, only: released_share
   use film_heat, only: temperature_sum, heat_to_oil, heat_to_housing
   implicit none
@@ -113,15 +112,13 @@ contains
     type(cycle_t) :: cycle
     real(dp) :: displacement   !! swept in all cycles of the gas in this cycle [m^3]
     real(dp) :: loss, shaft, one_way
-    integer :: revolutions, i, forced
+    integer :: revolutions, i
     allocate (answers(0))
-    forced = scene%forced_revolutions()
-    revolutions = forced
-    if (periods%period > 0) revolutions = periods%period
-    if (cycles%followed < revolutions .or. revolutions > longest_period) return
+    revolutions = periods%cycle_revolutions()
+    if (.not. cycles%has_cycle(revolutions)) return
     cycle = cycles%last_cycle(revolutions)
     displacement = 0
-    if (allocated(scene%gas)) displacement = scene%gas%cylinder%displacement*revolutions/forced
+    if (allocated(scene%gas)) displacement = scene%gas%cylinder%displacement*revolutions/scene%forced_revolutions()
     if (allocated(scene%chain%train)) displacement = displacement*(1 + size(scene%chain%train%cylinders))
 
     call add('cycle_start', cycle%start)

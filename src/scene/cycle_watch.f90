@@ -64,6 +64,7 @@ module cycle_watch
     procedure :: record_turn
     procedure :: record_asperities
     procedure :: search_machine
+    procedure :: has_cycle
     procedure :: last_cycle
     procedure :: find_statistic
     procedure :: film_change
@@ -208,6 +209,13 @@ contains
     call self%machine%search(method, scene, t, now, self%present)
   end subroutine search_machine
 
+  !> Whether the last cycle of so many revolutions is whole and known.
+  pure logical function has_cycle(self, revolutions)
+    class(cycle_watch_t), intent(in) :: self
+    integer, intent(in) :: revolutions
+    has_cycle = self%followed >= revolutions .and. revolutions <= longest_period
+  end function has_cycle
+
   !> The last revolutions together, as one cycle, or those up to `earlier` revolutions before; all must have been followed.
   pure type(cycle_t) function last_cycle(self, revolutions, earlier) result(cycle)
     class(cycle_watch_t), intent(in) :: self
@@ -229,8 +237,7 @@ contains
     integer, intent(in) :: i, revolutions
     real(dp), intent(out) :: value
     logical, intent(out) :: is_known
-    call self%columns%find(i, merge(revolutions, 0, self%followed >= revolutions .and. revolutions <= longest_period), value, &
-      is_known)
+    call self%columns%find(i, merge(revolutions, 0, self%has_cycle(revolutions)), value, is_known)
   end subroutine find_statistic
 
   !> Change of the smallest film thickness of a pin from the last cycle but one to the last, relative to the former [-]; 0 before

@@ -64,9 +64,16 @@ module period_watch
     procedure :: fast_change
     procedure :: range_of
     procedure :: restate
+    procedure :: cycle_revolutions
   end type period_watch_t
 
 contains
+
+  !> Revolutions of a cycle: the period of the motion if one was found, else that of the gas or of a given load, else 1.
+  pure integer function cycle_revolutions(self) result(revolutions)
+    class(period_watch_t), intent(in) :: self
+    revolutions = merge(self%period, self%forcing, self%period > 0)
+  end function cycle_revolutions
 
   !> Begin with a scene at (t, y). Revolutions that it has made before count as a part of the largest number.
   subroutine begin(self, scene, t, y)

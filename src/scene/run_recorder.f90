@@ -391,8 +391,7 @@ contains
       end if
       call self%cycles%finish(scene, t, y)
       call self%extremes%find_film_changes(scene, self%cycles)
-      call self%extremes%find_pin_turns(self%cycles, merge(self%periods%period, scene%forced_revolutions(), &
-        self%periods%period > 0))
+      call self%extremes%find_pin_turns(self%cycles, self%periods%cycle_revolutions())
     end if
     if (allocated(scene%wear_cycle)) then
       if (scene%wear_cycle%is_over(crank_angle)) call self%extremes%end_wear_cycle(scene)

@@ -440,15 +440,14 @@ contains
   function train_results(run) result(list)
     type(run_t), intent(in) :: run
     type(train_result_t), allocatable :: list(:)
-    integer :: revolutions, ended, followed
-    revolutions = run%scene%forced_revolutions()
-    if (run%recorder%periods%period > 0) revolutions = run%recorder%periods%period
+    integer :: revolutions, ended
+    revolutions = 0
     ended = 0
-    followed = 0
     if (allocated(run%recorder%cycles)) then
+      if (run%recorder%cycles%has_cycle(run%recorder%periods%cycle_revolutions())) &
+        revolutions = run%recorder%periods%cycle_revolutions()
       ended = run%recorder%cycles%ended
-      followed = run%recorder%cycles%followed
     end if
-    list = run%recorder%extremes%train%results(run%scene, ended, followed, revolutions)
+    list = run%recorder%extremes%train%results(run%scene, ended, revolutions)
   end function train_results
 end module simulation

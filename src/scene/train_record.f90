@@ -287,12 +287,11 @@ contains
     cubic = left + s*(h*left_rate + s*(3*rise - h*(2*left_rate + right_rate) + s*(h*(left_rate + right_rate) - 2*rise)))
   end function cubic
 
-  !> The results of a run that has ended: those of the last whole cycle of some revolutions only if they have been followed.
-  function results(self, scene, last, followed, revolutions) result(list)
+  !> The results of a run that has ended, with those of its last whole cycle of some revolutions, 0 if it has none.
+  function results(self, scene, last, revolutions) result(list)
     class(train_record_t), intent(in) :: self
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: last, followed   !! number of the last revolution, and how many have been followed
-    integer, intent(in) :: revolutions
+    integer, intent(in) :: last, revolutions   !! number of the last revolution; of the cycle
     type(train_result_t), allocatable :: list(:)
     type(turn_t) :: cycle
     integer :: n, k, j
@@ -301,7 +300,7 @@ contains
     associate (train => scene%chain%train)
       call add('firing_order', 'firing_order', text=firing_order(scene))
       if (train%is_chain) call add_modes()
-      if (followed >= revolutions .and. revolutions <= longest_period) then
+      if (revolutions > 0) then
         do k = last - revolutions + 1, last
           associate (turn => self%turns(mod(k, longest_period)))
             cycle%duration = cycle%duration + turn%duration

@@ -198,7 +198,7 @@ contains
         call row%add_text(trim(row%statistics(i)%name))
         cycle
       end if
-      call watch%find_statistic(i, merge(report%periods%period, report%periods%forcing, report%periods%period > 0), value, is_known)
+      call watch%find_statistic(i, report%periods%cycle_revolutions(), value, is_known)
       call row%add_number(row%numbers, value, is_done .and. is_known)
     end do
   end subroutine add_statistics
