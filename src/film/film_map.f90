@@ -14,9 +14,9 @@
 !> largest pressure over mu R^2/c^2 is M q^2 G_p, and the side flow out of both ends over c R^2 is V G_q. The force of a film
 !> without cavitation is linear in B and T, V Phi_r = B w^-3 G_r and V Phi_t = T w^-1 G_t, with G_r and G_t functions of tau alone.
 !>
-!> A table is made for one of the values of L/(2R) that `table_length` gives, each 0.5 % longer than the one before, and moved to that
-!> of the bearing (`move_to`) with the slopes of G with respect to ln L/(2R): all bearings of a study of the clearance have one or two
-!> tables. The slopes are differences of two small tables.
+!> A table is made for one of the values of L/(2R) that `table_length` gives, each 0.5 % longer than the one before, and moved to
+!> that of the bearing (`move_to`) with the slopes of G with respect to ln L/(2R): all bearings of a study of the clearance have one
+!> or two tables. The slopes are differences of two small tables.
 module film_map
   use kinds, only: dp
   use constants, only: pi

@@ -4,8 +4,8 @@
 !>
 !> The file of a table contains a line that identifies its format, the key of the table, the numbers of the table, and a checksum
 !> of all this. A damaged file, or one written by another version of the program, is computed again; if it cannot be written into
-!> the cache, the run continues without storing it. Programs that round differently have files of their own in the cache. A file that
-!> a case names is replaced only if it is a table of a film, of any parameters.
+!> the cache, the run continues without storing it. Programs that round differently have files of their own in the cache. A file
+!> that a case names is replaced only if it is a table of a film, of any parameters.
 module film_files
   use kinds, only: dp
   use error_handling, only: error_t, fail, status_integration, status_case_file

@@ -10,8 +10,8 @@ module inside_step
   integer, parameter :: n_inner = 3
   real(dp), parameter :: places(n_inner) = 0.5_dp + sqrt(0.15_dp)*[-1, 0, 1], weights(n_inner) = [5, 8, 5]/18.0_dp
 
-  !> The scene at the points of Gauss's rule inside an interval, for integrals over the time. They are evaluated once for all results
-  !> that need them.
+  !> The scene at the points of Gauss's rule inside an interval, for integrals over the time. They are evaluated once for all
+  !> results that need them.
   type :: inner_points_t
     real(dp) :: from = 0, to = 0             !! the interval [s]
     integer :: n = 0                         !! number of points: none in an interval of no length
