@@ -102,6 +102,7 @@ END
 independent judge of runs|tests/test_judge.py
 many extreme scenes|tests/judge/extremes --scenes 240 --seed 5 --evaluations 100000 --judged 48 --limit 120 --known tests/judge/known_findings.csv --quiet
 Fortran tests, release build|fpm @release_tests
+address sanitizer|tests/test_sanitized.sh
 END
 }
 stages | run_stages
@@ -111,7 +112,7 @@ stages | run_stages
 if $all; then
   cc -O1 -fno-builtin -shared -fPIC -o "$work/rounding.so" tests/rounding.c -ldl -lm || exit 1
   for rounding in GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2_Usable,-FMA_Usable,-AVX2,-FMA "LD_PRELOAD=$work/rounding.so"; do
-    stages | grep -v -e '^manual|' -e '^pages of' -e '^build scripts|' -e '^layers' -e '^failures' -e '^random' |
+    stages | grep -v -e '^manual|' -e '^pages of' -e '^build scripts|' -e '^layers' -e '^failures' -e '^random' -e '^address' |
       sed "s#|#, with ${rounding%%=*}|env $rounding #" | run_stages
   done
 fi
