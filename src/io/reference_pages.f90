@@ -7,7 +7,7 @@ module reference_pages
   use case_schema, only: group_definition_t, key_table_t, find_key, name_in_file, is_first_of_name
   use case_definition, only: case_t
   use case_file, only: parse_case, template
-  use trace_columns, only: choose_columns
+  use trace_columns, only: choose_columns, unit_in
   use trace_row, only: column_list_t, name_length
   use text_tools, only: replaced
   use summary_quantities, only: quantity_t, quantities_of_runs, event_columns, wear_columns, study_columns
@@ -114,11 +114,13 @@ contains
   !> Page of all columns and quantities that a result file can have.
   function results_reference() result(text)
     character(len=:), allocatable :: text
-    character(len=name_length), allocatable :: seen(:)
+    character(len=:), allocatable :: kept
+    character(len=name_length), allocatable :: seen(:), seen_kept(:)
     type(error_t), allocatable :: error
     type(column_list_t) :: list
     integer :: i
-    allocate (seen(0))
+    allocate (seen(0), seen_kept(0))
+    kept = ''
     text = '## Columns of NAME.csv'//newline//newline
     do i = 1, size(kinds)
       call columns_of(kinds(i), list, error)
@@ -127,10 +129,11 @@ contains
         return
       end if
       call add_columns(kinds(i)%title, list, seen, text)
+      call add_kept(list, seen_kept, kept)
     end do
     text = text//'## Columns of NAME.events.csv'//newline//newline//quantity_table(event_columns)//newline// &
       '## Columns of NAME.wear.csv'//newline//newline//quantity_table(wear_columns)//newline// &
-      '## Quantities of NAME.summary.csv'//newline//newline//quantity_table(quantities_of_runs)// &
+      '## Quantities of NAME.summary.csv'//newline//newline//quantity_table(quantities_of_runs)//kept// &
       newline//'## Columns of NAME.runs.csv and NAME.cycles.csv of a study'//newline//newline//quantity_table(study_columns)
   end function results_reference
 
@@ -200,6 +203,22 @@ contains
     if (rows /= '') text = text//'### '//trim(title)//newline//newline//'| column | unit | meaning |'//newline//'|---|---|---|'// &
       newline//rows//newline
   end subroutine add_columns
+
+  !> Append the results that are kept of the columns of a scene and that no earlier scene had.
+  subroutine add_kept(list, seen, text)
+    type(column_list_t), intent(in) :: list
+    character(len=name_length), allocatable, intent(inout) :: seen(:)
+    character(len=:), allocatable, intent(inout) :: text
+    integer :: i
+    do i = 1, size(list%kept)
+      associate (kept => list%kept(i))
+        if (any(seen == kept%name)) cycle
+        seen = [character(len=name_length) :: seen, kept%name]
+        text = text//'| `'//trim(kept%name)//'`, `cycle_'//trim(kept%name)//'` | '//unit_in(list%names(kept%column))//' | '// &
+          escaped(sentence(trim(kept%meaning)))//' |'//newline
+      end associate
+    end do
+  end subroutine add_kept
 
   function quantity_table(list) result(text)
     type(quantity_t), intent(in) :: list(:)

@@ -15,6 +15,7 @@ module result_table
     generic :: add => add_real, add_integer, add_words
     procedure, private :: add_real, add_integer, add_words
     procedure :: add_numbered
+    procedure :: add_with_unit
     procedure :: add_notes
   end type result_table_t
 
@@ -51,6 +52,17 @@ contains
     call self%add_text(unit_of(quantities_of_runs, declared))
     call self%end_row()
   end subroutine add_numbered
+
+  !> Add a row of a quantity that is not declared: a result that is kept of a column.
+  pure subroutine add_with_unit(self, name, value, unit)
+    class(result_table_t), intent(inout) :: self
+    character(len=*), intent(in) :: name, unit
+    real(dp), intent(in) :: value
+    call self%add_text(name)
+    call self%add_text(real_text(value, self%digits))
+    call self%add_text(unit)
+    call self%end_row()
+  end subroutine add_with_unit
 
   !> Add a row `note_N` for each line of a text that is not empty.
   subroutine add_notes(self, notes)

@@ -116,6 +116,11 @@ contains
       if (case%is_elastic()) call add_elastic(f%elastic)
       if (allocated(report%train)) call add_train(report%train)
     end associate
+    if (allocated(report%kept)) then
+      do i = 1, size(report%kept)
+        call table%add_with_unit(report%kept(i)%name, report%kept(i)%value, report%kept(i)%unit)
+      end do
+    end if
     if (allocated(report%answers)) call add_answers(report%answers)
     if (allocated(report%histories)) call add_histories(table, report%histories)
     call table%add('version', program_version)
@@ -241,8 +246,8 @@ contains
     end subroutine add_contacts
 
     !> Rows of elastic members. The summary of the ideal twin says that they are rigid.
-    subroutine add_elastic(largest)
-      type(elastic_figures_t), intent(in) :: largest
+    subroutine add_elastic(natural)
+      type(elastic_figures_t), intent(in) :: natural
       if (present(is_twin)) then
         if (is_twin) call table%add('elastic_members', 'none: the ideal twin is rigid')
         if (is_twin) return
@@ -250,15 +255,11 @@ contains
       call table%add('elastic_members', trim(merge(merge('rod and crankshaft', 'rod               ', &
         allocated(case%crankshaft)), 'crankshaft        ', allocated(case%elastic_rod))))
       if (allocated(case%elastic_rod)) then
-        call table%add('rod_bending_frequency', largest%bending_frequency/two_pi)
-        call table%add('rod_axial_frequency', largest%axial_frequency/two_pi)
-        call table%add('max_rod_mid_deflection', largest%mid_deflection)
-        call table%add('max_rod_stretch', largest%stretch)
-        call table%add('max_rod_strain_energy', largest%strain_energy)
+        call table%add('rod_bending_frequency', natural%bending_frequency/two_pi)
+        call table%add('rod_axial_frequency', natural%axial_frequency/two_pi)
       end if
       if (.not. allocated(case%crankshaft)) return
-      call table%add('crankshaft_frequency', largest%twist_frequency/two_pi)
-      call table%add('max_crankshaft_twist', largest%twist)
+      call table%add('crankshaft_frequency', natural%twist_frequency/two_pi)
     end subroutine add_elastic
 
     !> Rows of several cylinders on one crankshaft.

@@ -116,12 +116,8 @@ module summary_quantities
     quantity_t('rod_bending_frequency', 'Hz', 'lowest natural frequency of the rod in bending'), &
     quantity_t('rod_axial_frequency', 'Hz', &
       'lowest natural frequency of the rod along its axis, with the piston, crank pin at rest'), &
-    quantity_t('max_rod_mid_deflection', 'm', 'largest bending deflection midway between the pins'), &
-    quantity_t('max_rod_stretch', 'm', 'largest elongation or shortening'), &
-    quantity_t('max_rod_strain_energy', 'J', 'largest elastic energy in the rod'), &
     quantity_t('crankshaft_frequency', 'Hz', &
       'natural frequency of the crank and the flywheel on the elastic shaft, with the mean inertia of rod and piston'), &
-    quantity_t('max_crankshaft_twist', 'rad', 'largest twist'), &
     quantity_t('film_history_cycles', '1', 'cycles that the film with memory was marched (film_history)'), &
     quantity_t('film_history_cycle_change', '1', 'change of its oil from the end of a cycle to that of the next, over the oil'), &
     quantity_t('film_history_min_film_thickness', 'm', 'thinnest film of the last cycle'), &

@@ -2,15 +2,29 @@
 !>
 !> The same calls are used in two passes. Before a run they collect names and meanings of the columns of a scene; for every row they
 !> pass the values. Values that are expensive are computed only if the trace has a column for them (`wants`).
+!>
+!> What the results of a run keep of a column is said beside it, by `keep`: an extreme, over the run and over its last cycle. The
+!> ledger of a run follows these columns (`result_ledger`).
 module trace_row
   use kinds, only: dp
   implicit none
   private
-  public :: trace_row_t, column_list_t, name_length, most_columns
+  public :: trace_row_t, column_list_t, kept_t, name_length, most_columns, least, largest, largest_size
 
   integer, parameter :: name_length = 40
   integer, parameter :: meaning_length = 160
   integer, parameter :: most_columns = 360
+
+  integer, parameter :: least = 1, largest = 2, largest_size = 3   !! what is kept of a column: an extreme, or that of its size
+
+  !> A result that is kept of a column.
+  type :: kept_t
+    character(len=name_length) :: name = ''        !! that over the run; with `cycle_` before it that over the last cycle
+    character(len=meaning_length) :: meaning = ''
+    integer :: what = 0                            !! least, largest or largest_size
+    integer :: column = 0                          !! its index among all columns of the scene
+    logical :: has_rate = .false.                  !! the rate of the column is known
+  end type kept_t
 
   !> The columns of one trace.
   type :: column_list_t
@@ -18,24 +32,30 @@ module trace_row
     character(len=meaning_length), allocatable :: meanings(:)
     logical, allocatable :: on_request(:)                 !! columns that are not standard
     integer, allocatable :: id(:)                         !! columns of the trace, as indices into the names
+    type(kept_t), allocatable :: kept(:)                  !! of the columns of the scene
   end type column_list_t
 
   !> A row, begun by `collect_names` or `choose`. No component has an initial value: with one, every new row would be filled by a
   !> copy of all components.
   type :: trace_row_t
     integer :: n                                !! number of columns so far
+    integer :: last                             !! last column that is in the trace
     logical :: is_naming                        !! names are being collected
     character(len=13) :: place                  !! prefix of the following names, separated by an underscore
     logical :: wanted(most_columns)             !! columns whose values are in the trace
     real(dp) :: values(most_columns)            !! values of the columns so far
+    real(dp) :: rates(most_columns)             !! their rates, where they are known
     character(len=name_length), allocatable :: names(:)   !! while names are collected
     character(len=meaning_length), allocatable :: meanings(:)   !! while names are collected
     logical, allocatable :: on_request(:)       !! while names are collected: columns that are not standard
+    type(kept_t), allocatable :: kept(:)        !! while names are collected
   contains
+    procedure, non_overridable :: keep
     procedure, non_overridable :: add
     procedure, non_overridable :: add_on_request
     procedure, non_overridable :: skip
     procedure, non_overridable :: wants
+    procedure, non_overridable :: is_full
     procedure, non_overridable :: collect_names
     procedure, non_overridable :: choose
   end type trace_row_t
@@ -47,10 +67,12 @@ contains
     class(trace_row_t), intent(inout) :: self
     self%n = 0
     self%is_naming = .true.
+    self%last = most_columns
     self%place = ''
     self%wanted = .false.
     allocate (self%names(most_columns), self%meanings(most_columns))
     allocate (self%on_request(most_columns), source=.false.)
+    allocate (self%kept(0))
   end subroutine collect_names
 
   !> Begin a row of the trace.
@@ -61,6 +83,7 @@ contains
     self%n = 0
     self%is_naming = .false.
     self%place = ''
+    self%last = maxval(list%id)
     self%wanted(:size(list%names)) = .false.
     do i = 1, size(list%id)
       self%wanted(list%id(i)) = .true.
@@ -90,6 +113,27 @@ contains
     call self%add(name, value, says)
     if (self%is_naming) self%on_request(self%n) = .true.
   end subroutine add_on_request
+
+  !> Keep an extreme of the column that was just added. With its rate, which must be that of the column at every instant, and 0
+  !> while names are collected, peaks inside a step are searched with fewer evaluations.
+  pure subroutine keep(self, name, what, says, rate)
+    class(trace_row_t), intent(inout) :: self
+    character(len=*), intent(in) :: name   !! of the result
+    integer, intent(in) :: what            !! least, largest or largest_size
+    character(len=*), intent(in) :: says   !! its meaning
+    real(dp), intent(in), optional :: rate
+    if (self%is_naming) then
+      self%kept = [self%kept, kept_t(trim(self%place)//name, says, what, self%n, present(rate))]
+    else if (present(rate)) then
+      self%rates(self%n) = rate
+    end if
+  end subroutine keep
+
+  !> Whether no further column is in the trace.
+  pure logical function is_full(self)
+    class(trace_row_t), intent(in) :: self
+    is_full = self%n >= self%last
+  end function is_full
 
   !> Skip the next `count` columns, none of which is in the trace. Must not be called while names are collected.
   pure subroutine skip(self, count)

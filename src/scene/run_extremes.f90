@@ -1,4 +1,4 @@
-!> Extremes, contacts and totals of a run: at each pin, at the corners of the skirt, and of elastic members.
+!> Extremes, contacts and totals of a run: at each pin and at the corners of the skirt.
 !>
 !> Peaks are searched also between accepted points, and no peak is below the largest value of a row.
 module run_extremes
@@ -14,9 +14,8 @@ module run_extremes
   use inside_step, only: inner_points_t
   use pin_record, only: pin_record_t
   use guide_record, only: guide_record_t
-  use elastic_record, only: elastic_record_t
   use train_record, only: train_record_t
-  use run_figures, only: run_figures_t
+  use run_figures, only: run_figures_t, elastic_figures_t
   use wear_record, only: wear_profile_t
   use trace_sink, only: trace_event_t
   implicit none
@@ -29,7 +28,6 @@ module run_extremes
     type(pin_record_t), private :: pins(n_places)
     type(inner_points_t), private :: inner         !! of the last interval, for the results of films
     type(guide_record_t), private :: guide         !! of a piston with clearance in its bore
-    type(elastic_record_t), private :: elastic     !! of elastic members
     type(train_record_t) :: train                  !! of several cylinders on one crankshaft
   contains
     procedure :: prepare
@@ -41,7 +39,7 @@ module run_extremes
     procedure :: search
     procedure :: add_row
     procedure :: add_point
-    procedure :: add_elastic
+    procedure :: add_train
     procedure :: change_phases
     procedure :: record_event
     procedure :: find_film_changes
@@ -64,7 +62,7 @@ contains
       call self%pins(i)%prepare(scene%reported(i), scene)
     end do
     call self%guide%prepare(scene)
-    call self%elastic%prepare(scene, self%figures%elastic)
+    if (allocated(scene%chain%elastic)) call find_frequencies(scene, self%figures%elastic)
     call self%train%prepare(scene)
     self%figures%floating%is_present = allocated(scene%chain%floating)
   end subroutine prepare
@@ -80,7 +78,6 @@ contains
       call self%pins(i)%declare(list, self%figures, scene)
     end do
     call self%guide%declare(list, self%figures)
-    if (self%elastic%is_present) call self%figures%elastic%declare(list)
     call self%train%declare(list)
   end subroutine declare
 
@@ -94,7 +91,6 @@ contains
     type(cycle_watch_t), intent(inout), optional :: cycles
     real(dp) :: turned   ! before the run
     integer :: i
-    if (in_domain) call self%elastic%begin(scene, t, now)
     if (in_domain) call self%train%begin(scene, t, now)
     if (present(cycles)) call self%guide%begin_revolution()
     self%inner%to = t
@@ -167,7 +163,6 @@ contains
       call self%pins(i)%search(method, scene, t, now, self%inner, is_end, self%figures, cycles)
     end do
     call self%guide%search(method, scene, t, now, self%figures)
-    call self%elastic%search(method, scene, t, now, self%figures%elastic)
     call self%train%search(scene, t, now, present(cycles))
     if (present(cycles)) call cycles%search_machine(method, scene, t, now)
   end subroutine search
@@ -184,14 +179,24 @@ contains
     call self%guide%record_values(scene, now, self%figures)
   end subroutine add_row
 
-  !> Account for the elastic members and the crankshaft in an evaluation.
-  subroutine add_elastic(self, scene, now)
+  !> Natural frequencies of the elastic members.
+  subroutine find_frequencies(scene, figures)
+    type(scene_t), intent(in) :: scene
+    type(elastic_figures_t), intent(inout) :: figures
+    if (scene%chain%has_elastic_rod()) then
+      figures%bending_frequency = scene%chain%elastic%rod%bending_frequency()
+      figures%axial_frequency = scene%chain%elastic%rod%axial_frequency(scene%chain%bodies%piston%mass)
+    end if
+    if (scene%chain%has_crankshaft()) figures%twist_frequency = scene%twist_frequency()
+  end subroutine find_frequencies
+
+  !> Account for the crankshaft of several cylinders in an evaluation.
+  subroutine add_train(self, scene, now)
     class(run_extremes_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     type(evaluation_t), intent(in) :: now
-    call self%elastic%record_values(scene, now, self%figures%elastic)
     call self%train%record_values(scene, now)
-  end subroutine add_elastic
+  end subroutine add_train
 
   !> Account for the time since the last accepted point, and for the work of friction up to (t, y).
   subroutine add_point(self, scene, t, y)
@@ -327,7 +332,6 @@ contains
         self%figures%evaluations = self%figures%evaluations + 1
         call scene%evaluate(t, y, now, in_domain)
         if (.not. in_domain) cycle
-        call self%elastic%record_values(scene, now, self%figures%elastic)
         call find_lost_force(worn, now%joint(joint), worn%relative_rates(now%accelerations))
       end associate
     end do

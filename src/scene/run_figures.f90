@@ -43,17 +43,11 @@ module run_figures
     real(dp) :: swing = 0                     !! largest less smallest angle in the last cycle [rad]
   end type floating_figures_t
 
-  !> Results of the elastic members.
+  !> Natural frequencies of the elastic members.
   type :: elastic_figures_t
-    real(dp) :: mid_deflection = 0            !! deflection of the rod at mid-length, perpendicular to its chord [m]
-    real(dp) :: stretch = 0                   !! largest magnitude of the change of the rod's length [m]
-    real(dp) :: strain_energy = 0             !! of the rod [J]
-    real(dp) :: twist = 0                     !! largest magnitude of the twist of the crankshaft [rad]
     real(dp) :: bending_frequency = 0         !! of the rod between two fixed pins [rad/s]
     real(dp) :: axial_frequency = 0           !! of the axial vibration of the rod with the piston [rad/s]
     real(dp) :: twist_frequency = 0           !! of the crankshaft, with the mean inertia of a turn [rad/s]
-  contains
-    procedure :: declare => declare_elastic
   end type elastic_figures_t
 
   type :: run_figures_t
@@ -116,14 +110,4 @@ contains
     call list%add(pre//'film_volume', self%film_volume, 'm3', 'oil that has left the film')
     call list%add(pre//'max_film_pressure', self%max_film_pressure, 'Pa', 'largest film pressure')
   end subroutine declare_pin
-
-  !> Declare the extremes of the elastic members.
-  subroutine declare_elastic(self, list)
-    class(elastic_figures_t), intent(inout) :: self
-    type(run_state_t), intent(inout) :: list
-    call list%add('max_mid_deflection', self%mid_deflection, 'm', 'largest deflection of the rod')
-    call list%add('max_stretch', self%stretch, 'm', 'largest change of the length of the rod')
-    call list%add('max_strain_energy', self%strain_energy, 'J', 'largest strain energy of the rod')
-    call list%add('max_twist', self%twist, 'rad', 'largest twist of the crankshaft')
-  end subroutine declare_elastic
 end module run_figures

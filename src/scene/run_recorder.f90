@@ -17,6 +17,7 @@ module run_recorder
   use temperature_jumps, only: temperature_jumps_t
   use run_extremes, only: run_extremes_t
   use run_limits, only: run_limits_t
+  use result_ledger, only: ledger_t
   use trace_sink, only: trace_sink_t, trace_event_t
   use film_snapshots, only: film_snapshots_t
   use history_record, only: history_record_t
@@ -29,6 +30,7 @@ module run_recorder
     class(trace_sink_t), pointer :: sink => null()
     type(row_times_t) :: rows         !! when they are due
     type(run_extremes_t) :: extremes
+    type(ledger_t) :: ledger          !! results that are kept of columns
     type(run_limits_t) :: limits
     type(film_snapshots_t), allocatable :: films   !! pressure fields, if they are requested
     type(history_record_t), allocatable :: histories(:)   !! of films with memory, if they are requested
@@ -61,6 +63,7 @@ contains
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     call self%extremes%prepare(scene)
+    call self%ledger%prepare(self%list)
     allocate (self%y(scene%n), self%values(size(self%list%id)))
     if (self%periods%keeps_one_more) self%rows%first_sample = huge(1.0_dp)   ! no rows until the window begins
   end subroutine prepare
@@ -73,6 +76,7 @@ contains
     list%of_totals = .true.
     call list%add('initial_energy', self%initial_energy, 'J', 'energy of the bodies at the start of the run')
     call self%extremes%declare(list, scene)
+    call self%ledger%declare(list)
     list%of_totals = .false.
     self%goes_on = list%sets .and. list%goes_on
   end subroutine declare
@@ -103,6 +107,7 @@ contains
     if (allocated(self%cycles)) call self%cycles%begin(scene, t, y, now, in_domain, self%initial_energy, self%crank)
     if (in_domain .and. .not. self%goes_on) call record_first_contacts(self, scene, t, now)
     call self%extremes%begin(scene, t, now, in_domain, self%cycles)
+    if (in_domain) call self%ledger%begin(scene, t, now)
     call self%rows%begin(t, scene%crank_angle(t, y), is_due)
     call record_point(self, scene, t, y, now, in_domain, is_due)
   end subroutine begin
@@ -217,7 +222,7 @@ contains
       call self%rows%find_next(method, scene, self%y, t, is_found)
       if (.not. is_found) exit
       call evaluate_inside(scene, method, t, self%y, now, in_domain, self%extremes%figures%evaluations)
-      if (in_domain) call self%extremes%add_elastic(scene, now)
+      if (in_domain) call self%extremes%add_train(scene, now)
       call write_row(self, scene, t, self%y, now, in_domain)
       if (self%has_left) t_end = t_inside
       if (self%has_left) exit
@@ -238,7 +243,7 @@ contains
     if (allocated(self%cycles)) then
       do k = 1, self%crank%n
         call evaluate_scene(self, scene, self%crank%t(k), self%crank%y(:, k), now, in_domain)
-        if (in_domain) call self%extremes%search(method, scene, self%crank%t(k), now, .false., self%cycles)
+        if (in_domain) call search(self, method, scene, self%crank%t(k), now, .false.)
         if (self%cycles%columns%is_on()) call self%cycles%columns%record(method, scene, self%crank%t(k), self%initial_energy, &
           self%extremes%figures%evaluations)
         call end_revolution(self, scene, self%crank%t(k), self%crank%y(:, k), now, in_domain)
@@ -248,9 +253,21 @@ contains
         self%extremes%figures%evaluations)
     end if
     call evaluate_scene(self, scene, t, y, now, in_domain)
-    if (in_domain) call self%extremes%search(method, scene, t, now, .true., self%cycles)
+    if (in_domain) call search(self, method, scene, t, now, .true.)
     call record_point(self, scene, t, y, now, in_domain, self%rows%every_step .and. t >= self%rows%first_sample)
   end subroutine record_end
+
+  !> Search extremes up to t, where the scene has been evaluated.
+  subroutine search(self, method, scene, t, now, is_end)
+    class(recorder_t), intent(inout) :: self
+    class(ode_method_t), intent(inout) :: method
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(in) :: now
+    logical, intent(in) :: is_end   !! of the step, or of its final part
+    call self%extremes%search(method, scene, t, now, is_end, self%cycles)
+    call self%ledger%follow(method, scene, t, now, self%extremes%figures%evaluations)
+  end subroutine search
 
   !> End a revolution at (t, y), where the scene has been evaluated if that is inside the model, and begin the next one.
   subroutine end_revolution(self, scene, t, y, now, in_domain)
@@ -261,6 +278,7 @@ contains
     logical, intent(in) :: in_domain
     call self%extremes%end_revolution(self%cycles)
     call self%cycles%end_cycle(scene, t, y, now)
+    call self%ledger%end_revolution(self%cycles%ended)
     if (in_domain) call self%extremes%begin_revolution(scene, now, self%cycles)
   end subroutine end_revolution
 
@@ -273,7 +291,7 @@ contains
     logical, intent(out) :: in_domain
     self%extremes%figures%evaluations = self%extremes%figures%evaluations + 1
     call scene%evaluate(t, y, now, in_domain)
-    if (in_domain) call self%extremes%add_elastic(scene, now)
+    if (in_domain) call self%extremes%add_train(scene, now)
   end subroutine evaluate_scene
 
   !> Record an accepted point at which the scene has been evaluated, and write a row if one is due.
@@ -312,6 +330,7 @@ contains
     select type (problem)
     class is (scene_t)
       call self%extremes%change_phases()
+      call self%ledger%change_phases()
       if (problem%reported_event(index) == event_none) return
       call evaluate_scene(self, problem, t, y, now, in_domain)
       associate (owner => problem%event_of(index))
@@ -371,6 +390,7 @@ contains
     call self%jumps%make(scene, y)
     call self%periods%restate(y, scene%crank_angle(t, y))
     call self%extremes%change_phases()
+    call self%ledger%change_phases()
     self%wants_to_stop = .false.
   end subroutine jump
 

@@ -27,6 +27,7 @@ module simulation
   use joint_places, only: n_places, in_order
   use wear_record, only: wear_profile_t
   use train_record, only: train_result_t
+  use result_ledger, only: kept_result_t
   use trace_sink, only: trace_sink_t
   use constants, only: two_pi, degree
   implicit none
@@ -48,6 +49,7 @@ module simulation
     type(period_watch_t) :: periods              !! search for a periodic motion that ends the run
     type(answer_t), allocatable :: answers(:)    !! of the last whole cycle, if the case asks for them
     type(train_result_t), allocatable :: train(:)    !! of several cylinders on one crankshaft
+    type(kept_result_t), allocatable :: kept(:)      !! results that are kept of columns
     type(exponent_t) :: exponent                 !! Lyapunov exponent, if it is requested
   end type run_report_t
 
@@ -361,6 +363,7 @@ contains
     type(run_report_t), intent(out) :: report
     type(error_t), allocatable, intent(out) :: error
     type(cycle_watch_t), allocatable, intent(inout), optional :: cycles
+    integer :: ended, revolutions
     call self%stop()   ! no effect if it is over
     report = self%report
     report%periods = self%recorder%periods
@@ -375,7 +378,9 @@ contains
     allocate (report%answers(0))
     if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, &
       self%recorder%periods, self%recorder%extremes)
-    if (allocated(self%scene%chain%train)) report%train = train_results(self)
+    call find_last_cycle(self%recorder, ended, revolutions)
+    report%kept = self%recorder%ledger%results(ended, revolutions)
+    if (allocated(self%scene%chain%train)) report%train = self%recorder%extremes%train%results(self%scene, ended, revolutions)
     if (self%has_cycles) call move_alloc(self%recorder%cycles, cycles)
     if (allocated(self%recorder%films)) report%films = self%recorder%films%fields(self%scene)
     if (allocated(self%recorder%histories)) report%histories = self%recorder%histories
@@ -436,18 +441,14 @@ contains
     residual_limit = min(0.05_dp, max(1e-10_dp, 1e3_dp*tolerance*max(1.0_dp, abs(crank_travel)/(100*two_pi))))
   end function residual_limit
 
-  !> Results of several cylinders on one crankshaft.
-  function train_results(run) result(list)
-    type(run_t), intent(in) :: run
-    type(train_result_t), allocatable :: list(:)
-    integer :: revolutions, ended
-    revolutions = 0
+  !> Revolutions of the last whole cycle, 0 if there is none, and the number of the last one.
+  subroutine find_last_cycle(recorder, ended, revolutions)
+    type(recorder_t), intent(in) :: recorder
+    integer, intent(out) :: ended, revolutions
     ended = 0
-    if (allocated(run%recorder%cycles)) then
-      if (run%recorder%cycles%has_cycle(run%recorder%periods%cycle_revolutions())) &
-        revolutions = run%recorder%periods%cycle_revolutions()
-      ended = run%recorder%cycles%ended
-    end if
-    list = run%recorder%extremes%train%results(run%scene, ended, revolutions)
-  end function train_results
+    revolutions = 0
+    if (.not. allocated(recorder%cycles)) return
+    ended = recorder%cycles%ended
+    if (recorder%cycles%has_cycle(recorder%periods%cycle_revolutions())) revolutions = recorder%periods%cycle_revolutions()
+  end subroutine find_last_cycle
 end module simulation

@@ -3,7 +3,7 @@ module trace_columns
   use kinds, only: dp
   use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: nearest_word, allowed
-  use trace_row, only: trace_row_t, column_list_t, name_length
+  use trace_row, only: trace_row_t, column_list_t, name_length, least, largest
   use chain_motion, only: motion_t, accelerations_t, piston_pin, small_end, body_pin
   use chain_reactions, only: reactions_t
   use joint_columns, only: add_joint_columns
@@ -16,7 +16,7 @@ module trace_columns
   use scene_builder, only: assemble_scene
   implicit none
   private
-  public :: column_list_t, choose_columns, row_values, column_name
+  public :: column_list_t, choose_columns, row_values, column_name, unit_in
 
 contains
 
@@ -40,6 +40,7 @@ contains
     list%names = row%names(:row%n)
     list%meanings = row%meanings(:row%n)
     list%on_request = row%on_request(:row%n)
+    list%kept = row%kept
     allocate (wanted(row%n), source=.not. row%on_request(:row%n))
     if (case%output%columns /= 'standard') &
       call read_names(case%output%columns, list%names, row%on_request(:row%n), ideal_joint, wanted, error)
@@ -92,6 +93,13 @@ contains
     if (message /= '') call fail(error, message, status_case_file)
   end subroutine read_names
 
+  !> The unit in the name of a column.
+  pure function unit_in(name) result(unit)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: unit
+    unit = name(index(name, '[') + 1:index(name, ']') - 1)
+  end function unit_in
+
   !> Name and unit of column i of the list.
   pure function column_name(list, i) result(name)
     type(column_list_t), intent(in) :: list
@@ -101,7 +109,7 @@ contains
   end function column_name
 
   !> The values of a row at time t, from an evaluation of the scene and the work of the non-conservative forces.
-  pure subroutine row_values(list, scene, t, now, work, initial_energy, values)
+  pure subroutine row_values(list, scene, t, now, work, initial_energy, values, rates)
     type(column_list_t), intent(in) :: list
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t                !! [s]
@@ -109,6 +117,7 @@ contains
     real(dp), intent(in) :: work             !! of the non-conservative forces since t = 0 [J]
     real(dp), intent(in) :: initial_energy   !! [J]
     real(dp), intent(out) :: values(:)       !! (size(list%id))
+    real(dp), intent(out), optional :: rates(:)   !! (size(list%id)); of columns whose rate is not known anything
     type(trace_row_t) :: row
     integer :: i
     call row%choose(list)
@@ -116,6 +125,7 @@ contains
     do i = 1, size(values)   ! row%values(list%id) would allocate a copy of the indices
       values(i) = row%values(list%id(i))
     end do
+    if (present(rates)) rates = row%rates(list%id)
   end subroutine row_values
 
   !> Add every column of a scene to a row, in the order of the trace.
@@ -138,6 +148,11 @@ contains
     call add_motion(now%motion, now%accelerations, row)
     call row%add('crank_moment[N.m]', now%crank_moment, &
       'moment of the drive on the crank, positive in the sense of crank_angle; at constant speed the one that holds the speed')
+    if (.not. scene%chain%drive%free_crank .and. .not. scene%chain%has_crankshaft() .or. allocated(scene%chain%varying)) then
+      call row%keep('max_drive_torque', largest, 'largest moment of the drive on the crank, in the sense of crank_angle')
+      call row%keep('min_drive_torque', least, 'smallest moment of the drive on the crank; negative: against that sense')
+    end if
+    if (row%is_full()) return
     call add_forces(scene, now, row, reaction)
     energy = 0
     if (row%wants(2)) energy = scene%chain%energy(now%motion)
@@ -187,6 +202,8 @@ contains
     call row%add('rod_angle[rad]', rod_angle, 'angle of the connecting rod from the cylinder axis, positive from +x towards -y')
     call row%add('piston_position[m]', m%piston_position, 'height of the piston pin bearing above the crank axis, along x')
     call row%add('crank_speed[rad/s]', m%crank_speed, 'rate of crank_angle')
+    call row%keep('max_crank_speed', largest, 'largest speed of the crank', rate=a%crank)
+    call row%keep('min_crank_speed', least, 'smallest speed of the crank', rate=a%crank)
     call row%add('rod_speed[rad/s]', m%rod_speed, 'rate of rod_angle')
     call row%add('piston_velocity[m/s]', m%piston_velocity, 'rate of piston_position')
     call row%add('crank_acceleration[rad/s2]', a%crank, 'rate of crank_speed')
