@@ -174,10 +174,18 @@ EXTREMES = (
     ("gas/two_stroke", ("combustion.wiebe_form=1.7",)), ("sim_VI", ("integrator.revolutions=4", "combustion.wiebe_form=5.406771")),
     ("sim_II", ("integrator.revolutions=4",)), ("bearings/small_engine", ("initial.crank_angle_deg=123",)),
     ("sim_VI", ("integrator.revolutions=4",)), ("bearings/elastic_pin", ()), ("film/elastic", ()), ("wear/worn_bore", ("output.samples_per_revolution=36000",)),
+    ("bearings/refrigerant_compressor", ()), ("joints/both_pins", ("output.samples_per_revolution=36000",)), ("elastic/engine_rod", ()), ("elastic/engine_crankshaft", ()),
     ("cylinders/six_mwm", ("run.until=end", "output.window=all", "integrator.end_time=0.12")),
 )
 #: Answers with their columns: the largest value (1) or the smallest (-1).
-EXTREME_COLUMNS = (("cycle_max_cylinder_pressure", lambda row: row.get("cylinder_pressure"), 1),
+EXTREME_COLUMNS = (("cycle_max_drive_torque", lambda row: row.get("crank_moment"), 1),
+                   ("cycle_min_drive_torque", lambda row: row.get("crank_moment"), -1),
+                   ("cycle_max_crank_speed", lambda row: row.get("crank_speed"), 1),
+                   ("cycle_min_crank_speed", lambda row: row.get("crank_speed"), -1),
+                   ("cycle_max_rod_mid_deflection", lambda row: abs(row["rod_mid_deflection"]) if "rod_mid_deflection" in row else None, 1),
+                   ("cycle_max_rod_strain_energy", lambda row: row.get("rod_strain_energy"), 1),
+                   ("cycle_max_crankshaft_twist", lambda row: abs(row["crankshaft_twist"]) if "crankshaft_twist" in row else None, 1),
+                   ("cycle_max_cylinder_pressure", lambda row: row.get("cylinder_pressure"), 1),
                    ("cycle_min_film_thickness", lambda row: row.get("film_thickness"), -1),
                    ("cycle_max_eccentricity_ratio", lambda row: row.get("eccentricity_ratio"), 1),
                    ("cycle_max_segment_8_torque", lambda row: abs(row["segment_8_torque"]) if "segment_8_torque" in row else None, 1),
@@ -198,7 +206,7 @@ def test_extremes(program: Path, work: Path) -> None:
             if not inside or answer not in summary or column(inside[0]) is None:
                 continue
             most = max(inside, key=lambda row: sense*column(row))
-            margin = {"cycle_max_force": 1e-6, "cycle_max_eccentricity_ratio": 1e-6, "cycle_max_segment_8_torque": 1e-4,
+            margin = {"cycle_max_force": 1e-6, "cycle_max_drive_torque": 1e-6, "cycle_min_drive_torque": 1e-6, "cycle_max_eccentricity_ratio": 1e-6, "cycle_max_segment_8_torque": 1e-4,
                       "cycle_max_station_9_twist": 1e-4}.get(answer, 1e-9)
             check(sense*(summary[answer] - column(most)) >= -margin*abs(column(most)), f"{name}: no row is beyond {answer}",
                   f"{summary[answer]}, {column(most)}")

@@ -12,6 +12,7 @@ module cycle_answers
   use cycle_watch, only: cycle_watch_t
   use period_watch, only: period_watch_t
   use run_extremes, only: run_extremes_t
+  use result_ledger, only: ledger_t
   use archard_wear, only: of_pin, of_bore
   use gas_cycle, only: released_share
   use film_heat, only: temperature_sum, heat_to_oil, heat_to_housing
@@ -103,11 +104,12 @@ module cycle_answers
 contains
 
   !> The answers of a run that has ended; none if it has no whole cycle. The scene must tell the parts of the work apart.
-  function find_answers(scene, cycles, periods, extremes) result(answers)
+  function find_answers(scene, cycles, periods, extremes, ledger) result(answers)
     type(scene_t), intent(in) :: scene
     type(cycle_watch_t), intent(in) :: cycles
     type(period_watch_t), intent(in) :: periods
     type(run_extremes_t), intent(in) :: extremes
+    type(ledger_t), intent(in) :: ledger
     type(answer_t), allocatable :: answers(:)
     type(cycle_t) :: cycle
     real(dp) :: displacement   !! swept in all cycles of the gas in this cycle [m^3]
@@ -225,7 +227,8 @@ contains
       mean_speed = two_pi*revolutions/cycle%duration
       call add('cycle_mean_crank_speed', cycles%direction*mean_speed)
       if (allocated(scene%chain%floating)) call add('cycle_pin_turn', cycle%pin_turn)
-      call add('cycle_speed_fluctuation', (cycle%max_speed + cycle%max_negative_speed)/mean_speed)
+      call add('cycle_speed_fluctuation', (ledger%of_cycle('max_crank_speed', cycles%ended, revolutions) &
+        - ledger%of_cycle('min_crank_speed', cycles%ended, revolutions))/mean_speed)
       if (allocated(scene%given_load)) return
       call add('cycle_mean_piston_speed', 4*scene%chain%bodies%crank%length*revolutions/cycle%duration)
       if (.not. allocated(scene%gas)) return

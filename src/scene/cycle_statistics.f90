@@ -45,7 +45,6 @@ module cycle_statistics
     real(dp) :: max_pressure_angle = 0                !! crank angle then [rad]
     real(dp) :: pin_turn = 0                          !! of a floating pin [rad]
     real(dp) :: max_pin_angle = -huge(1.0_dp), min_pin_angle = huge(1.0_dp)   !! its angles since the start of the run [rad]
-    real(dp) :: max_speed = -huge(1.0_dp), max_negative_speed = -huge(1.0_dp)   !! of the crank, and of its negative [rad/s]
   end type cycle_t
 
   !> Sums and extremes over the revolutions.
@@ -77,8 +76,6 @@ contains
       total%pin_turn = total%pin_turn + one%pin_turn
       total%max_pin_angle = max(total%max_pin_angle, one%max_pin_angle)
       total%min_pin_angle = min(total%min_pin_angle, one%min_pin_angle)
-      total%max_speed = max(total%max_speed, one%max_speed)
-      total%max_negative_speed = max(total%max_negative_speed, one%max_negative_speed)
     end associate
     associate (total => self%total%pin, one => cycle%pin)
       where (one%min_film_thickness < total%min_film_thickness) total%thinnest_angle = one%thinnest_angle

@@ -198,15 +198,14 @@ contains
     end associate
   end subroutine record_asperities
 
-  !> Search the last step, up to t, where the scene is evaluated, for the largest pressure of the gas and for the extremes of the
-  !> crank speed in the present revolution.
-  subroutine search_machine(self, method, scene, t, now)
+  !> Search the last step, up to t, where the scene is evaluated, for the largest pressure of the gas and the extreme angles of a
+  !> floating pin in the present revolution.
+  subroutine search_machine(self, scene, t, now)
     class(cycle_watch_t), intent(inout) :: self
-    class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
-    call self%machine%search(method, scene, t, now, self%present)
+    call self%machine%search(scene, t, now, self%present)
   end subroutine search_machine
 
   !> Whether the last cycle of so many revolutions is whole and known.

@@ -1,10 +1,8 @@
-!> Follows the pressure of the gas, the speed of the crank and the angle of a floating pin: their extremes in each revolution,
-!> searched inside the steps.
+!> Follows the pressure of the gas and the angle of a floating pin: their extremes in each revolution, searched inside the steps.
 module machine_record
   use kinds, only: dp
   use constants, only: degree
   use chain_motion, only: body_pin
-  use ode_method, only: ode_method_t
   use scene_problem, only: scene_t, evaluation_t
   use working_gas, only: working_gas_t
   use peak_search, only: sample_t, peak_search_t, may_peak
@@ -19,7 +17,7 @@ module machine_record
   type :: machine_record_t
     private
     real(dp) :: t = 0                                     !! end of the last interval that was searched [s]
-    real(dp) :: angle = 0, speed = 0, acceleration = 0    !! of the crank at that time [rad], [rad/s], [rad/s^2]
+    real(dp) :: angle = 0, speed = 0                      !! of the crank at that time [rad], [rad/s]
     real(dp) :: pin_angle = 0, pin_speed = 0              !! of a floating pin [rad], [rad/s]
   contains
     procedure, non_overridable :: begin
@@ -37,17 +35,14 @@ contains
     self%t = t
     self%angle = now%motion%crank_angle
     self%speed = now%motion%crank_speed
-    self%acceleration = 0
-    if (scene%crank_moves) self%acceleration = now%accelerations%crank
     if (.not. allocated(scene%chain%floating)) return
     self%pin_angle = now%motion%pin_angle
     self%pin_speed = now%motion%turning(body_pin)
   end subroutine begin
 
   !> Search between the end of the last interval and t, where the scene is evaluated. Both must lie inside the last step.
-  subroutine search(self, method, scene, t, now, cycle)
+  subroutine search(self, scene, t, now, cycle)
     class(machine_record_t), intent(inout) :: self
-    class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
@@ -55,38 +50,8 @@ contains
     type(machine_record_t) :: next
     call next%begin(scene, t, now)
     if (allocated(scene%gas)) call search_pressure(scene%gas, self, next, cycle)
-    if (scene%crank_moves) then
-      call search_speed(1, cycle%max_speed)
-      call search_speed(-1, cycle%max_negative_speed)
-    else
-      cycle%max_speed = max(cycle%max_speed, next%speed)
-      cycle%max_negative_speed = max(cycle%max_negative_speed, -next%speed)
-    end if
     if (allocated(scene%chain%floating)) call follow_pin(self, next, cycle)
     call self%begin(scene, t, now)
-
-  contains
-
-    !> Search the largest speed, or its negative with the sense -1, if it may exceed `largest`.
-    subroutine search_speed(sense, largest)
-      integer, intent(in) :: sense
-      real(dp), intent(inout) :: largest
-      type(peak_search_t) :: peak
-      type(sample_t) :: left, right
-      real(dp) :: y(scene%n), time
-      logical :: is_done
-      left = sample_t(self%t, sense*self%speed, sense*self%acceleration)
-      right = sample_t(next%t, sense*next%speed, sense*next%acceleration)
-      call peak%begin(left, right)
-      is_done = .not. may_peak(left%t, left%value, left%slope, right%t, right%value, right%slope, largest)
-      do while (.not. is_done)
-        call peak%next_time(time, is_done)
-        if (is_done) exit
-        call method%interpolate(time, y)
-        call peak%add_value(time, sense*scene%crank_speed(time, y))
-      end do
-      largest = max(largest, peak%value(1))
-    end subroutine search_speed
   end subroutine search
 
   !> Search the largest pressure of the gas between two points. It follows from the crank angle alone, which may turn back between

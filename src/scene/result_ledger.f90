@@ -45,6 +45,7 @@ module result_ledger
     procedure :: change_phases
     procedure :: end_revolution
     procedure :: results
+    procedure :: of_cycle
   end type ledger_t
 
 contains
@@ -266,16 +267,10 @@ contains
     class(ledger_t), intent(in) :: self
     integer, intent(in) :: number, revolutions
     type(kept_result_t), allocatable :: list(:)
-    real(dp) :: cycle(2, size(self%last))
-    integer :: i, k
+    integer :: i
     allocate (list(0))
     call add('', max(self%whole, self%present))
-    if (revolutions == 0) return
-    cycle = self%recent(:, :, mod(number, longest_period))
-    do k = number - revolutions + 1, number
-      cycle = max(cycle, self%recent(:, :, mod(k, longest_period)))
-    end do
-    call add('cycle_', cycle)
+    if (revolutions > 0) call add('cycle_', extremes_of_cycle(self, number, revolutions))
 
   contains
 
@@ -290,4 +285,30 @@ contains
       end do
     end subroutine add
   end function results
+
+  !> A result of the last cycle of some revolutions up to one with a number; 0 if the scene does not have it.
+  pure real(dp) function of_cycle(self, name, number, revolutions) result(value)
+    class(ledger_t), intent(in) :: self
+    character(len=*), intent(in) :: name   !! without `cycle_`
+    integer, intent(in) :: number, revolutions
+    real(dp) :: extremes(2, size(self%last))
+    integer :: i
+    value = 0
+    extremes = extremes_of_cycle(self, number, revolutions)
+    do i = 1, size(self%kept)
+      if (self%kept(i)%name == name) value = found(self%kept(i)%what, extremes(:, self%at(i)))
+    end do
+  end function of_cycle
+
+  !> Largest values of the columns and negatives of their smallest ones in the last cycle.
+  pure function extremes_of_cycle(self, number, revolutions) result(extremes)
+    class(ledger_t), intent(in) :: self
+    integer, intent(in) :: number, revolutions
+    real(dp) :: extremes(2, size(self%last))
+    integer :: k
+    extremes = self%recent(:, :, mod(number, longest_period))
+    do k = number - revolutions + 1, number - 1
+      extremes = max(extremes, self%recent(:, :, mod(k, longest_period)))
+    end do
+  end function extremes_of_cycle
 end module result_ledger

@@ -164,7 +164,7 @@ contains
     end do
     call self%guide%search(method, scene, t, now, self%figures)
     call self%train%search(scene, t, now, present(cycles))
-    if (present(cycles)) call cycles%search_machine(method, scene, t, now)
+    if (present(cycles)) call cycles%search_machine(scene, t, now)
   end subroutine search
 
   !> Account for the values of a row: not for the present revolution, whose results must not depend on whether rows are written.

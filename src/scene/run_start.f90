@@ -7,6 +7,7 @@ module run_start
   use scene_problem, only: scene_t
   use scene_builder, only: build_scene, latest_end
   use run_recorder, only: recorder_t
+  use trace_columns, only: choose_columns
   implicit none
   private
   public :: find_start, try_start
@@ -59,7 +60,9 @@ contains
     real(dp) :: t
     call build_scene(case, .false., scene, error, without_tables=.true.)
     if (allocated(error) .or. .not. allocated(case%initial%state)) return
-    allocate (recorder%list%id(0))
+    call choose_columns(case, .false., recorder%list, error)
+    if (allocated(error)) return
+    recorder%list%id = [integer ::]
     call recorder%prepare(scene)
     call find_start(case, .false., scene, t, y, error, recorder)
   end subroutine try_start

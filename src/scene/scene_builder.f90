@@ -61,8 +61,6 @@ contains
     call choose_entry(case, scene)
     if (.not. allocated(scene%given_load)) call build_bodies(case, ideal_joint, scene)
     if (scene%chain%has_elastic_rod()) call scene%chain%elastic%rod%prepare(scene%chain%bodies%rod)
-    scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping, 0.0_dp, 0.0_dp)
-    call vary_drive(case, scene)
     scene%start_angle = case%initial%crank_angle_deg*degree
     scene%start_speed = case%initial%crank_speed
     scene%span = simulated_time(case)
@@ -135,6 +133,8 @@ contains
     integer, allocatable :: of_clearance(:), carried(:)   ! places
     integer :: n
     allocate (scene)
+    scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping, 0.0_dp, 0.0_dp)
+    call vary_drive(case, scene)
     of_clearance = pack(in_order, case%joints(in_order)%has_clearance() .and. .not. ideal_joint)
     carried = pack(in_order, case%joints(in_order)%is_carried() .and. .not. ideal_joint)
     scene%n_joints = size(of_clearance)

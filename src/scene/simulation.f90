@@ -377,7 +377,7 @@ contains
     call self%recorder%extremes%find_wear(self%scene, report%wear)
     allocate (report%answers(0))
     if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, &
-      self%recorder%periods, self%recorder%extremes)
+      self%recorder%periods, self%recorder%extremes, self%recorder%ledger)
     call find_last_cycle(self%recorder, ended, revolutions)
     report%kept = self%recorder%ledger%results(ended, revolutions)
     if (allocated(self%scene%chain%train)) report%train = self%recorder%extremes%train%results(self%scene, ended, revolutions)

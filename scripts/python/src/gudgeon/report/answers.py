@@ -107,6 +107,8 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
         if (change := rows("cycle_speed_fluctuation")) is not None and change > 1e-12:
             text += f", fluctuates by {100 * change:.3g} %"
         found.append(("Crank speed", text))
+    if text := rows.shown("cycle_max_drive_torque", "N m", 1):
+        found.append(("Largest drive torque", text))
     swing, drift = rows("pin_swing"), rows("pin_drift_per_revolution")
     if swing is not None:
         text = f"swings by {math.degrees(swing):.3g}°"
