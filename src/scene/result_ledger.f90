@@ -59,7 +59,8 @@ contains
     if (allocated(list%kept)) self%kept = list%kept
     self%list = list
     if (.not. allocated(list%names)) allocate (self%list%names(0))
-    self%list%id = pack([(i, i=1, size(list%names))], [(any(self%kept%column == i), i=1, size(list%names))])
+    n = size(self%list%names)
+    self%list%id = pack([(i, i=1, n)], [(any(self%kept%column == i), i=1, n)])
     n = size(self%list%id)
     self%at = [(findloc(self%list%id, self%kept(i)%column, 1), i=1, size(self%kept))]
     allocate (self%is_searched(2, n), self%has_rate(n), source=.false.)

@@ -265,8 +265,13 @@ contains
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     logical, intent(in) :: is_end   !! of the step, or of its final part
+    integer :: before
     call self%extremes%search(method, scene, t, now, is_end, self%cycles)
-    call self%ledger%follow(method, scene, t, now, self%extremes%figures%evaluations)
+    associate (f => self%extremes%figures)
+      before = f%evaluations
+      call self%ledger%follow(method, scene, t, now, f%evaluations)
+      f%peak_evaluations = f%peak_evaluations + (f%evaluations - before)
+    end associate
   end subroutine search
 
   !> End a revolution at (t, y), where the scene has been evaluated if that is inside the model, and begin the next one.
