@@ -176,10 +176,9 @@ def check_built(program: Path) -> None:
         text = page.read_text(encoding="utf-8")
         loaded = re.findall(r'<(?:script|link|img|iframe)\b[^>]*(?:src|href)="((?:https?:)?//[^"]+)"', text)
         check(not loaded, f"manual, {page.name}: loads nothing from a network", str(loaded))
-        for link in HREF.findall(text):
-            if "://" in link or link.startswith(("#", "mailto:", "data:", "//", "/")) or link == ".":
-                continue
-            check((page.parent / unquote(link.partition("#")[0])).exists(), f"manual, {page.name}: the link {link} leads to an existing file")
+        links = [link for link in HREF.findall(text) if "://" not in link and not link.startswith(("#", "mailto:", "data:", "//", "/")) and link != "."]
+        broken = [link for link in links if not (page.parent / unquote(link.partition("#")[0])).exists()]
+        check(bool(links) and not broken, f"manual, {page.name}: its links lead to existing files", str(broken))
 
 
 def commands_of(page: Path) -> list[str]:

@@ -30,7 +30,7 @@ module reference_pages
 
   !> Kinds of scenes that together have every column.
   type(scene_kind_t), parameter :: kinds(18) = [ &
-    scene_kind_t('Every scene', ''), &
+    scene_kind_t('Every scene', 'drive.kind=constant_speed'), &
     scene_kind_t('Joint with clearance (the last three columns only with `&contact`)', play//contact), &
     scene_kind_t('Contact with `geometry = ''conformal''`', play//contact//'contact.geometry=conformal'), &
     scene_kind_t('Friction with bristles (`lugre`, `dahl`, `elasto_plastic`)', play//contact//'friction.law=lugre '// &
@@ -209,13 +209,15 @@ contains
     type(column_list_t), intent(in) :: list
     character(len=name_length), allocatable, intent(inout) :: seen(:)
     character(len=:), allocatable, intent(inout) :: text
+    character(len=:), allocatable :: unit
     integer :: i
     do i = 1, size(list%kept)
       associate (kept => list%kept(i))
         if (any(seen == kept%name)) cycle
         seen = [character(len=name_length) :: seen, kept%name]
-        text = text//'| `'//trim(kept%name)//'`, `cycle_'//trim(kept%name)//'` | '//unit_in(list%names(kept%column))//' | '// &
-          escaped(sentence(trim(kept%meaning)))//' |'//newline
+        unit = unit_in(list%names(kept%column))
+        text = text//'| `'//trim(kept%name)//'` | '//unit//' | '//escaped(sentence(trim(kept%meaning)))//' |'//newline// &
+          '| `cycle_'//trim(kept%name)//'` | '//unit//' | The same in the last cycle. |'//newline
       end associate
     end do
   end subroutine add_kept
