@@ -15,7 +15,7 @@ log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 
 quietly() {   # run a command; stop with what it said if it failed or warned
-  "$@" >"$log" 2>&1 && ! grep -qiwE 'warnings?|errors?' "$log" && return
+  "$@" >"$log" 2>&1 && ! grep -v '━' "$log" | grep -qiwE 'warnings?|errors?' && return   # lines of progress name variables
   cat "$log" >&2
   echo "manual: $* failed or warned" >&2
   exit 1
