@@ -443,7 +443,7 @@ def tables_beside() -> None:
     """While one thread waits for a table of a film, others read and check cases."""
     with tempfile.TemporaryDirectory() as folder:
         case = case_of("film/sim_I_finite")
-        case.cache = folder
+        case.cache(folder)
         case.lubrication.cavitation = "reynolds"
         case.lubrication.film_points = 256
         ended: list[float] = []

@@ -171,7 +171,7 @@ def installed(program: str) -> None:
 
 
 def main() -> int:
-    program = sys.argv[1]
+    program = os.path.abspath(sys.argv[1])
     schema(program)
     units(program)
     written_by_f90nml(program)
