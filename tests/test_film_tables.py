@@ -72,8 +72,8 @@ class Cache(unittest.TestCase):
                 self.assertEqual(tables[0].read_bytes(), whole, f"a {what} table is replaced")
 
     def test_same_bits_of_all_builds(self) -> None:
-        """The program with all checks of the compiler makes the same table and the same trace as the released one, whose table it
-        reads; without the file in the cache's name for its own rounding it would make it again."""
+        """The program with all checks of the compiler makes the same table and the same trace as the released one. One whose elementary
+        functions round otherwise, as on another processor, keeps a table of its own."""
         found = subprocess.run(["fpm", "@strict", "--target", "runs", "--runner", "echo"], cwd=TOP, capture_output=True, text=True, check=True)
         strict = TOP / found.stdout.strip().splitlines()[-1].replace("/test/runs", "/app/gudgeon")
         traces, tables = [], []

@@ -22,12 +22,12 @@ contains
       associate (rod => elastic%rod)
         do i = 1, rod%n_bending + rod%n_axial
           call row%add(trim(shape_name(rod, i))//'[m]', motion%shape(i), trim(shape_meaning(rod, i)))
-          if (i == rod%n_bending + 1) call row%keep('max_rod_stretch', largest_size, 'largest elongation or shortening', &
-            rate=motion%shape_rate(i))
+          if (i == rod%n_bending + 1) call row%keep('max_rod_stretch', largest_size, &
+            'largest elongation or shortening of the rod', rate=motion%shape_rate(i))
         end do
         call row%add('rod_mid_deflection[m]', rod%mid_deflection(motion%shape), &
           'bending deflection of the rod midway between its pins')
-        call row%keep('max_rod_mid_deflection', largest_size, 'largest bending deflection midway between the pins', &
+        call row%keep('max_rod_mid_deflection', largest_size, 'largest bending deflection of the rod midway between its pins', &
           rate=rod%mid_deflection(motion%shape_rate))
         call row%add('rod_strain_energy[J]', rod%strain_energy(motion), 'elastic energy stored in the rod')
         call row%keep('max_rod_strain_energy', largest, 'largest elastic energy in the rod', &
@@ -46,7 +46,8 @@ contains
     end if
     if (.not. allocated(elastic%crankshaft)) return
     call row%add('crankshaft_twist[rad]', motion%flywheel_angle - motion%crank_angle, 'flywheel angle less crank angle')
-    call row%keep('max_crankshaft_twist', largest_size, 'largest twist', rate=motion%flywheel_speed - motion%crank_speed)
+    call row%keep('max_crankshaft_twist', largest_size, 'largest twist of the crankshaft', &
+      rate=motion%flywheel_speed - motion%crank_speed)
     call row%add('crankshaft_moment[N.m]', elastic%crankshaft%moment(motion), 'moment of the elastic shaft on the crank')
     call row%add('flywheel_speed[rad/s]', motion%flywheel_speed, 'angular velocity of the flywheel')
     call row%add_on_request('flywheel_acceleration[rad/s2]', accelerations%flywheel, 'angular acceleration of the flywheel')

@@ -9,7 +9,7 @@
 !> in the middle.
 module worn_bore
   use kinds, only: dp
-  use constants, only: two_pi
+  use constants, only: two_pi, gauss_points, gauss_weights
   implicit none
   private
   public :: worn_bore_t, touching_cells_t
@@ -40,8 +40,6 @@ module worn_bore
     real(dp) :: start = 0, rise = 0, bend = 0   !! [m]
     real(dp) :: ends(2) = 0                     !! values of s between which it is positive; equal if it is not
   end type piece_t
-
-  real(dp), parameter :: gauss_points(3) = 0.5_dp + sqrt(0.15_dp)*[-1, 0, 1], gauss_weights(3) = [5, 8, 5]/18.0_dp
 
 contains
 

@@ -324,6 +324,7 @@ contains
     angles = grid%angle
   end function angles_of_film
 
+  !> What a watch does at the beginning and the end of a computation, unless it says otherwise.
   subroutine nothing(self)
     class(table_watch_t), intent(inout) :: self
   end subroutine nothing

@@ -65,7 +65,7 @@ module film_map
 
 contains
 
-  !> The value of L/(2R), one of a series, for whose table that of this half length is moved.
+  !> The half length L/(2R) of the table that serves a bearing of this one: the nearest of a series, 0.25 % away at most.
   pure elemental real(dp) function table_length(half_length)
     real(dp), intent(in) :: half_length   !! > 0
     integer, parameter :: per_unit = 200   !! of ln L/(2R)
@@ -378,7 +378,7 @@ contains
     place = place_at(self, atan2(eps, w)*self%per_tau, chi_of(b, a, w)*self%per_chi)
   end subroutine find_place
 
-  !> Position in the table at `x` rows and `y` columns from its begin.
+  !> Position in the table at `x` rows and `y` columns from its beginning.
   pure type(place_t) function place_at(self, x, y) result(place)
     type(film_map_t), intent(in) :: self
     real(dp), intent(in) :: x, y

@@ -187,15 +187,14 @@ contains
     character(len=*), parameter :: on_request = ' Only where `&output columns` names it.'
     character(len=:), allocatable :: rows
     character(len=name_length) :: name
-    integer :: i, bracket
+    integer :: i
     rows = ''
     do i = 1, size(list%names)
       if (any(seen == list%names(i))) cycle
       if (any(list%names(i)(:10) == ['crank_pin_', 'small_end_']) .and. any(seen == list%names(i)(11:))) cycle
       seen = [character(len=name_length) :: seen, list%names(i)]
       name = list%names(i)
-      bracket = index(name, '[')
-      rows = rows//'| `'//name(:bracket - 1)//'` | '//name(bracket + 1:len_trim(name) - 1)//' | '// &
+      rows = rows//'| `'//name(:index(name, '[') - 1)//'` | '//unit_in(name)//' | '// &
         escaped(sentence(trim(list%meanings(i))))
       if (list%on_request(i)) rows = rows//on_request
       rows = rows//' |'//newline
@@ -209,15 +208,15 @@ contains
     type(column_list_t), intent(in) :: list
     character(len=name_length), allocatable, intent(inout) :: seen(:)
     character(len=:), allocatable, intent(inout) :: text
-    character(len=:), allocatable :: unit
+    character(len=name_length) :: unit
     integer :: i
     do i = 1, size(list%kept)
       associate (kept => list%kept(i))
         if (any(seen == kept%name)) cycle
         seen = [character(len=name_length) :: seen, kept%name]
         unit = unit_in(list%names(kept%column))
-        text = text//'| `'//trim(kept%name)//'` | '//unit//' | '//escaped(sentence(trim(kept%meaning)))//' |'//newline// &
-          '| `cycle_'//trim(kept%name)//'` | '//unit//' | The same in the last cycle. |'//newline
+        text = text//'| `'//trim(kept%name)//'` | '//trim(unit)//' | '//escaped(sentence(trim(kept%meaning)))//' |'//newline// &
+          '| `cycle_'//trim(kept%name)//'` | '//trim(unit)//' | The same in the last cycle. |'//newline
       end associate
     end do
   end subroutine add_kept

@@ -3,7 +3,7 @@ module peak_search
   use kinds, only: dp
   implicit none
   private
-  public :: sample_t, peak_search_t, may_peak
+  public :: sample_t, peak_search_t, may_peak, may_exceed
 
   integer, parameter :: most_values = 40
   real(dp), parameter :: resolution = 1e-8_dp   !! of the time, relative to the interval
@@ -47,6 +47,24 @@ contains
     may_peak = most > known
     if (may_peak .and. .not. (left_slope > 0 .and. right_slope < 0)) may_peak = most > max(left, right)
   end function may_peak
+
+  !> Whether a quantity whose slopes are not known may exceed `known` between two instants. It cannot if it is far below that at
+  !> both, compared with its changes between them and since an instant before, or if the parabola through the three values, with
+  !> its curvature doubled, is monotonic.
+  pure logical function may_exceed(t_left, left, t_right, right, known, has_before, t_before, before)
+    real(dp), intent(in) :: t_left, left, t_right, right, known
+    logical, intent(in) :: has_before          !! there is an instant before
+    real(dp), intent(in) :: t_before, before   !! it, if there is one
+    real(dp) :: change, earlier_change, rate, bend
+    change = right - left
+    earlier_change = 0
+    if (has_before) earlier_change = left - before
+    may_exceed = max(left, right) + 2*abs(change) + abs(earlier_change) > known
+    if (.not. (may_exceed .and. has_before)) return
+    rate = change/(t_right - t_left)
+    bend = abs(rate - earlier_change/(t_left - t_before))*(t_right - t_left)/(t_right - t_before)
+    may_exceed = abs(rate) <= 2*bend
+  end function may_exceed
 
   !> Begin a search between two samples with slopes.
   subroutine begin(self, left, right)

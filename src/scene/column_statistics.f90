@@ -2,6 +2,7 @@
 !> over each step by Gauss's rule of three points; extremes are searched inside steps.
 module column_statistics
   use kinds, only: dp
+  use constants, only: gauss_points, gauss_weights
   use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: nearest_word, allowed, replaced
   use ode_method, only: ode_method_t
@@ -178,8 +179,7 @@ contains
     real(dp), intent(in) :: t, initial_energy   !! [s], [J]
     integer, intent(inout) :: evaluations       !! of the scene
     integer, parameter :: n = 5                 !! points in an interval: its ends and those of Gauss
-    real(dp), parameter :: outer = sqrt(0.15_dp), place(n) = [0.0_dp, 0.5_dp - outer, 0.5_dp, 0.5_dp + outer, 1.0_dp], &
-      weight(n) = [0, 5, 8, 5, 0]/18.0_dp
+    real(dp), parameter :: place(n) = [0.0_dp, gauss_points, 1.0_dp], weight(n) = [0.0_dp, gauss_weights, 0.0_dp]
     real(dp) :: values(size(self%list%id), n), span
     logical :: is_good(n)
     integer :: i, k

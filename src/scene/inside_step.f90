@@ -1,14 +1,14 @@
 !> Evaluates a scene inside the last step of its integration, for output.
 module inside_step
   use kinds, only: dp
+  use constants, only: gauss_points, gauss_weights
   use ode_method, only: ode_method_t
   use scene_problem, only: scene_t, evaluation_t
   implicit none
   private
   public :: evaluate_inside, inner_points_t
 
-  integer, parameter :: n_inner = 3
-  real(dp), parameter :: places(n_inner) = 0.5_dp + sqrt(0.15_dp)*[-1, 0, 1], weights(n_inner) = [5, 8, 5]/18.0_dp
+  integer, parameter :: n_inner = size(gauss_points)
 
   !> The scene at the points of Gauss's rule inside an interval, for integrals over the time. They are evaluated once for all
   !> results that need them.
@@ -40,8 +40,8 @@ contains
     self%n = 0
     if (.not. span > 0) return
     self%n = n_inner
-    self%t = self%from + places*span
-    self%weight = weights*span
+    self%t = self%from + gauss_points*span
+    self%weight = gauss_weights*span
     do i = 1, n_inner
       call evaluate_inside(scene, method, self%t(i), y, self%now(i), self%in_domain(i), evaluations)
     end do

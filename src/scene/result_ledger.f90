@@ -11,7 +11,7 @@ module result_ledger
   use inside_step, only: evaluate_inside
   use trace_columns, only: column_list_t, row_values, unit_in
   use trace_row, only: kept_t, least, largest, largest_size
-  use peak_search, only: sample_t, peak_search_t, may_peak
+  use peak_search, only: sample_t, peak_search_t, may_peak, may_exceed
   use run_length, only: longest_period
   implicit none
   private
@@ -32,7 +32,7 @@ module result_ledger
     real(dp), allocatable, private :: present(:, :), whole(:, :)   !! largest values and negatives of the smallest ones, of the
                                                             !! present revolution and of the run; as is_searched
     real(dp), allocatable, private :: recent(:, :, :)       !! those of revolution k in element mod(k, longest_period)
-    logical, private :: is_fresh = .true.                   !! loads have changed at an event: the next interval begins anew
+    logical, private :: is_fresh = .true.                   !! since an event: values and rates of the last interval no longer hold
     logical, private :: has_before = .false.                !! the interval before is of the same phases
     real(dp), private :: t_before = 0, t = 0                !! beginning and end of the last interval [s]
     real(dp), allocatable, private :: before(:), last(:), last_rate(:)   !! values there, and rates at its end
@@ -86,7 +86,7 @@ contains
     do i = 1, size(self%kept)
       associate (kept => self%kept(i), extremes => self%whole(:, self%at(i)))
         value = found(kept%what, max(extremes, self%present(:, self%at(i))))
-        call list%add(trim(kept%name), value, unit_in(self%list%names(self%kept(i)%column)), trim(kept%meaning))
+        call list%add(trim(kept%name), value, unit_in(self%list%names(kept%column)), trim(kept%meaning))
         if (.not. list%sets .or. .not. list%goes_on) cycle
         if (kept%what /= least) extremes(1) = value
         if (kept%what /= largest) extremes(2) = merge(-value, value, kept%what == least)
@@ -168,7 +168,8 @@ contains
       real(dp) :: time
       logical :: is_done
       if (.not. self%has_rate(k)) then
-        if (.not. may_exceed(self, k, t, sense, self%values(k), self%present(i, k))) return
+        if (.not. may_exceed(self%t, sense*self%last(k), t, sense*self%values(k), self%present(i, k), self%has_before, &
+          self%t_before, sense*self%before(k))) return
         if (.not. has_slopes) call find_slopes(self, method, scene, t, evaluations)
         has_slopes = .true.
       end if
@@ -233,25 +234,6 @@ contains
     call evaluate_inside(scene, method, time, y, there, in_domain, evaluations)
     if (in_domain) call row_values(self%list, scene, time, there, 0.0_dp, 0.0_dp, self%inside)
   end subroutine look
-
-  !> Whether a column without rates may exceed what is known between the end of the last interval and t: not if it is far below that
-  !> at both ends, compared with its changes in this interval and the one before, or if the parabola through three points, with its
-  !> curvature doubled, is monotonic.
-  pure logical function may_exceed(self, k, t, sense, value, known)
-    class(ledger_t), intent(in) :: self
-    integer, intent(in) :: k
-    real(dp), intent(in) :: t, sense, value, known
-    real(dp) :: change, earlier, rate, bend
-    change = sense*(value - self%last(k))
-    earlier = 0
-    if (self%has_before) earlier = sense*(self%last(k) - self%before(k))
-    may_exceed = max(sense*self%last(k), sense*value) + 2*abs(change) + abs(earlier) > known .and. &
-      (abs(change) > 0 .or. abs(earlier) > 0)
-    if (.not. (may_exceed .and. self%has_before)) return
-    rate = change/(t - self%t)
-    bend = abs(rate - earlier/(self%t - self%t_before))*(t - self%t)/(t - self%t_before)
-    may_exceed = abs(rate) <= 2*bend
-  end function may_exceed
 
   !> End the present revolution; the next one begins with the values at its end.
   pure subroutine end_revolution(self, number)

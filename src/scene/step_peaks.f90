@@ -13,7 +13,7 @@ module step_peaks
   use joint_evaluation, only: joint_evaluation_t
   use scene_problem, only: scene_t, evaluation_t, phase_free, phase_contact
   use inside_step, only: evaluate_inside
-  use peak_search, only: sample_t, peak_search_t, may_peak
+  use peak_search, only: sample_t, peak_search_t, may_peak, may_exceed
   implicit none
   private
   public :: peak_watch_t, of_pin_force, of_penetration, of_normal_force, of_eccentricity, n_peaks
@@ -143,7 +143,7 @@ contains
 
     subroutine search_by_slopes(i)
       integer, intent(in) :: i
-      if (may_exceed(self, i, t_to, ends(i), known(i))) &
+      if (may_exceed(self%t, self%last(i), t_to, ends(i), known(i), self%has_before, self%t_before, self%before(i))) &
         call find_peak_by_slopes(self, method, scene, i, t_to, ends(i), known(i), largest(i))
     end subroutine search_by_slopes
   end subroutine search_interval
@@ -174,24 +174,6 @@ contains
     call scene%evaluate(method%t_old, method%y_old, now, in_domain)
     if (in_domain) call stand_at(self, method%t_old, self%values(scene, now), rate_of(self, now))
   end subroutine meet_beginning
-
-  !> Whether a quantity whose slopes are not known may exceed the known maximum inside the interval that ends at t. It cannot if it
-  !> is far below the maximum at both ends, compared with its changes in this interval and the one before, or if the parabola
-  !> through three points, with its curvature doubled, is monotonic.
-  pure logical function may_exceed(self, i, t, value, known)
-    class(peak_watch_t), intent(in) :: self
-    integer, intent(in) :: i
-    real(dp), intent(in) :: t, value, known
-    real(dp) :: change, earlier_change, rate, bend
-    change = value - self%last(i)
-    earlier_change = 0
-    if (self%has_before) earlier_change = self%last(i) - self%before(i)
-    may_exceed = max(self%last(i), value) + 2*abs(change) + abs(earlier_change) > known
-    if (.not. (may_exceed .and. self%has_before)) return
-    rate = change/(t - self%t)
-    bend = abs(rate - earlier_change/(self%t - self%t_before))*(t - self%t)/(t - self%t_before)
-    may_exceed = abs(rate) <= 2*bend
-  end function may_exceed
 
   !> Search the peak of a quantity without known slopes that may exceed the known maximum, and is `value` at t_to. Its slopes are
   !> computed first.

@@ -117,15 +117,15 @@ contains
     real(dp), intent(in) :: work             !! of the non-conservative forces since t = 0 [J]
     real(dp), intent(in) :: initial_energy   !! [J]
     real(dp), intent(out) :: values(:)       !! (size(list%id))
-    real(dp), intent(out), optional :: rates(:)   !! (size(list%id)); of columns whose rate is not known anything
+    real(dp), intent(out), optional :: rates(:)   !! (size(list%id)), not defined for a column without one
     type(trace_row_t) :: row
     integer :: i
     call row%choose(list)
     call add_columns(scene, t, now, work, initial_energy, row)
     do i = 1, size(values)   ! row%values(list%id) would allocate a copy of the indices
       values(i) = row%values(list%id(i))
+      if (present(rates)) rates(i) = row%rates(list%id(i))
     end do
-    if (present(rates)) rates = row%rates(list%id)
   end subroutine row_values
 
   !> Add every column of a scene to a row, in the order of the trace.

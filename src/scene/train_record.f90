@@ -4,7 +4,7 @@
 !> Between two evaluated points a quantity is the cubic through its values and rates there: the steps resolve the fastest shape.
 module train_record
   use kinds, only: dp
-  use constants, only: two_pi
+  use constants, only: two_pi, gauss_points, gauss_weights
   use text_tools, only: integer_text
   use number_text, only: short_text
   use run_state, only: run_state_t
@@ -249,20 +249,19 @@ contains
     type(point_t), intent(in) :: left, right
     real(dp), intent(in) :: h
     complex(dp), intent(inout) :: order(:, :)
-    real(dp), parameter :: place(3) = [0.1127016653792583_dp, 0.5_dp, 0.8872983346207417_dp], weight(3) = [5, 8, 5]/18.0_dp
     real(dp) :: value(train%n), angle, turning
     complex(dp) :: step, factor
     integer :: i, j, k
-    do i = 1, 3
-      angle = cubic(left%angle, left%speed(1), right%angle, right%speed(1), h, place(i))
-      turning = left%speed(1) + place(i)*(right%speed(1) - left%speed(1))
-      value(1) = front(train, [(cubic(left%twist(j), left%twist_rate(j), right%twist(j), right%twist_rate(j), h, place(i)), &
+    do i = 1, size(gauss_points)
+      angle = cubic(left%angle, left%speed(1), right%angle, right%speed(1), h, gauss_points(i))
+      turning = left%speed(1) + gauss_points(i)*(right%speed(1) - left%speed(1))
+      value(1) = front(train, [(cubic(left%twist(j), left%twist_rate(j), right%twist(j), right%twist_rate(j), h, gauss_points(i)), &
         j=1, train%n)])
       do j = 1, train%n - 1
-        value(j + 1) = cubic(left%torque(j), left%torque_rate(j), right%torque(j), right%torque_rate(j), h, place(i))
+        value(j + 1) = cubic(left%torque(j), left%torque_rate(j), right%torque(j), right%torque_rate(j), h, gauss_points(i))
       end do
       step = exp(cmplx(0.0_dp, -0.5_dp*angle, dp))
-      factor = weight(i)*h*turning
+      factor = gauss_weights(i)*h*turning
       do k = 1, most_orders
         factor = factor*step
         do j = 1, train%n
