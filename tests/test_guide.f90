@@ -13,6 +13,12 @@ module test_guide
   use joint_places, only: n_places
   use chain_motion, only: motion_t, accelerations_t
   use chain_loads, only: loads_t, unloaded
+  use guide_case, only: guide_case_t
+  use guide_element, only: guide_element_t
+  use guide_elements, only: build_guide
+  use piston_skirt, only: skirt_t
+  use run_state, only: run_state_t
+  use state_layout, only: layout_t, slice_t
   use guide_events, only: inward_acceleration
   use piston_guide, only: piston_guide_t, guide_loads_t, corner_t, n_corners
   use laws, only: contact_law_of, friction_law_of
@@ -22,6 +28,13 @@ module test_guide
   public :: run_test_guide
 
   integer, parameter :: long = 60
+  !> An element with a state, which another kind of element may have: a thickness that a flow fills and that friction empties.
+  type, extends(guide_element_t) :: filling_film_t
+  contains
+    procedure :: prepare => prepare_film
+    procedure :: find_loads => find_film_loads
+  end type filling_film_t
+
   character(len=*), parameter :: slap = 'cases/joints/slider_clearance.nml', ideal = 'cases/flores/ideal.nml'
 
 contains
@@ -33,6 +46,7 @@ contains
     call friction_follows_the_law_of_the_pin(check)
     call corners_are_where_they_are(check)
     call forces_turn_the_piston(check)
+    call elements_have_states(check)
     call corners_accelerate(check)
     call one_impact_gives_back_its_share(check)
     call energy_of_elastic_corners(check)
@@ -173,6 +187,7 @@ contains
     class(checks_t), intent(inout) :: check
     real(dp), parameter :: tilt = 0.02_dp, h(4) = [0.05_dp, -0.04_dp, 0.05_dp, -0.04_dp], mu = 0.3_dp, c = 7
     real(dp), parameter :: b(4) = [0.025_dp, 0.025_dp, -0.025_dp, -0.025_dp]
+    type(guide_case_t) :: wanted
     type(piston_guide_t) :: guide
     type(guide_loads_t) :: own
     type(motion_t) :: motion
@@ -180,15 +195,17 @@ contains
     type(error_t), allocatable :: error
     real(dp) :: place(2), force(2), total(2), moment
     integer :: i
-    call contact_law_of("law='lankarani_nikravesh'", guide%contact, error)
+    wanted%kind = 'clearance'
+    wanted%viscous = c
+    call contact_law_of("law='lankarani_nikravesh'", wanted%contact, error)
     if (.not. allocated(error)) &
-      call friction_law_of("law='ambrosio' coefficient=0.3 v0=0 v1=1e-9", guide%friction, error)
+      call friction_law_of("law='ambrosio' coefficient=0.3 v0=0 v1=1e-9", wanted%friction, error)
     call check%that(.not. allocated(error), 'laws of a corner')
     if (allocated(error)) return
+    call build_guide(wanted, guide)
     guide%clearance = -2e-3_dp   ! in a bore too narrow for it every corner is in the wall
     guide%radius = 0.025_dp
     guide%height = h(:2)
-    guide%viscous = c
     guide%touches = .true.
     guide%impact_speed = 1
     motion%tilting%offset = 1e-4_dp
@@ -196,8 +213,9 @@ contains
     motion%tilting%tilt = tilt
     motion%tilting%tilt_rate = 40
     motion%tilting%com_velocity = 0.3_dp
+    motion%piston_velocity = 0
     all = unloaded
-    call guide%slide(motion, own, all)
+    call guide%find_loads(motion, [real(dp) ::], own, all)
     total = [-c*0.3_dp, 0.0_dp]
     moment = 0
     do i = 1, 4
@@ -207,10 +225,76 @@ contains
       total = total + force
       moment = moment + place(1)*force(2) - place(2)*force(1)
     end do
-    call check%close_to(-all%axial_force, total(1), 1e-12_dp*norm2(total), 'friction of four corners and of the rings [N]')
+    call check%close_to(own%friction_force, total(1), 1e-12_dp*norm2(total), 'friction of four corners and of the rings [N]')
     call check%close_to(all%bore_force, total(2), 1e-12_dp*norm2(total), 'force of the bore across it [N]')
     call check%close_to(all%bore_moment, moment, 1e-12_dp*norm2(total), 'its moment about the centre of mass [N m]')
   end subroutine forces_turn_the_piston
+
+  !> Two elements with a state each in an ideal guide beside its viscous friction: their states stand one after the other in the
+  !> state vector, start, are declared and have rates; forces add up.
+  subroutine elements_have_states(check)
+    class(checks_t), intent(inout) :: check
+    class(guide_element_t), allocatable :: film
+    type(guide_case_t) :: wanted
+    type(piston_guide_t) :: guide
+    type(guide_loads_t) :: own
+    type(layout_t) :: layout
+    type(slice_t) :: before
+    type(run_state_t) :: list
+    type(motion_t) :: motion
+    type(loads_t) :: all
+    real(dp) :: y(3), dydt(3)
+    integer :: i
+    wanted%kind = 'friction'
+    wanted%viscous = 7
+    call build_guide(wanted, guide)
+    do i = 1, 2
+      allocate (filling_film_t :: film)
+      call film%prepare(wanted)
+      film%start = i*1e-6_dp
+      call guide%add(film)
+    end do
+    do i = 1, 2
+      call layout%claim_states(1, 1.0_dp, before)
+      call guide%claim(layout, 100.0_dp, 1.0_dp)
+      if (i == 1) call layout%count_again()
+    end do
+    call check%equal(layout%n(), 3, 'states of two elements behind another one')
+    y = [5.0_dp, 0.0_dp, 0.0_dp]
+    call guide%set_start(y)
+    call check%close_to(norm2(y - [5.0_dp, 1e-6_dp, 2e-6_dp]), 0.0_dp, 0.0_dp, 'states of elements at the start')
+    call guide%declare(list, y)
+    call check%equal(size(list%numbers), 2, 'numbers that they declare')
+    call check%close_to(list%numbers(2)%values(1), 2e-6_dp, 0.0_dp, 'state of the second one')
+    motion%piston_velocity = -3
+    all = unloaded
+    all%axial_force = 11
+    call guide%find_loads(motion, y, own, all)
+    call check%close_to(own%friction_force, 3*(7 + 3e-6_dp), 1e-14_dp, 'sum of the frictions of three elements [N]')
+    dydt = 0
+    call guide%set_rates(motion%tilting, 0.0_dp, 0.0_dp, own, dydt)
+    call check%close_to(norm2(dydt - [0.0_dp, 11 - 3e-6_dp, 11 - 6e-6_dp]), 0.0_dp, 1e-14_dp, 'rates of their states')
+  end subroutine elements_have_states
+
+  subroutine prepare_film(self, wanted)
+    class(filling_film_t), intent(inout) :: self
+    type(guide_case_t), intent(in) :: wanted
+    self%n_states = 1
+    self%state_name = 'film'
+    self%state_unit = 'm'
+  end subroutine prepare_film
+
+  pure subroutine find_film_loads(self, skirt, motion, y, now)
+    class(filling_film_t), intent(in) :: self
+    type(skirt_t), intent(in) :: skirt
+    type(motion_t), intent(in) :: motion
+    real(dp), intent(in) :: y(*)
+    type(guide_loads_t), intent(inout) :: now
+    associate (thickness => y(self%states%first))
+      now%friction_force = now%friction_force - thickness*now%speed
+      now%rates(self%rates%first) = now%gas_force - thickness*abs(now%speed)
+    end associate
+  end subroutine find_film_loads
 
   !> Second derivative of the penetration of every corner, by differences of its rate along a motion with constant accelerations.
   subroutine corners_accelerate(check)

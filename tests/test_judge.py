@@ -488,7 +488,7 @@ MUTANTS = [
     ("sliding speed of the crank pin without part of the bearing's rotation", "joint_evaluation.f90",
      "- joint%bearing_speed*(joint%distance + pin_radius)",
      "- joint%bearing_speed*pin_radius", "both", "crank pin: sliding speed"),
-    ("friction of a corner without its moment on the piston", "piston_guide.f90",
+    ("friction of a corner without its moment on the piston", "skirt_corners.f90",
      "*corner%normal_force - corner%from_com(2)*corner%friction_force", "*corner%normal_force",
      "slap", "Euler, piston"),
     ("Coriolis force on the rod's shapes wrong", "elastic_rod_body.f90", "on_shape(n + j) = -2*turn*",

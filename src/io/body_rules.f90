@@ -6,7 +6,7 @@ module body_rules
   use case_definition, only: case_t
   use case_values, only: case_values_t
   use friction_law, only: friction_law_t
-  use piston_guide, only: piston_guide_t, corner_t, n_corners
+  use piston_skirt, only: skirt_t, corner_t, n_corners
   use chain_motion, only: tilting_t, motion_t, accelerations_t, turn_crank, piston_pin, n_pins
   use chain_bodies, only: rod_t, crank_t, piston_t, bodies_t, new_bodies, drive_t
   use chain_loads, only: loads_t, unloaded
@@ -86,16 +86,16 @@ contains
   subroutine check_piston_start(c, values)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(inout) :: values
-    type(piston_guide_t) :: guide
+    type(skirt_t) :: skirt
     type(corner_t) :: corner(n_corners)
     type(tilting_t) :: at
-    call c%guide%build(guide)
+    skirt = c%guide%skirt()
     at%offset = c%initial%piston_offset
     at%tilt = c%initial%piston_tilt
     at%offset_rate = 0
     at%tilt_rate = 0
-    call guide%place_corners(at, corner)
-    if (guide%admits(at)) then
+    call skirt%place_corners(at, corner)
+    if (skirt%admits(at)) then
       call values%forbid(maxval(corner%depth) > c%guide%piston_radius, 'initial', 'piston_tilt', &
         'must not put a corner of the skirt into the bore''s wall by more than piston_radius = '//short_text(c%guide%piston_radius))
     else if (abs(at%tilt) < 1) then

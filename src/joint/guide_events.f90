@@ -16,9 +16,9 @@ contains
   pure integer function n_guide_events(guide)
     type(piston_guide_t), intent(in) :: guide
     n_guide_events = 0
-    if (.not. guide%is_loose) return
+    if (guide%touching == 0) return
     n_guide_events = n_corners
-    if (guide%contact%may_lose_force) n_guide_events = 2*n_corners
+    if (guide%slots(guide%touching)%element%contact%may_lose_force) n_guide_events = 2*n_corners
   end function n_guide_events
 
   !> Event functions and their rates: the penetration of a corner [m] while it is not in contact, and minus the penetration while it
@@ -59,7 +59,7 @@ contains
     real(dp), intent(out) :: share, share_rate
     share = 1
     share_rate = 0
-    if (guide%touches(i)) call guide%contact%find_share(corner%depth, corner%depth_rate, &
+    if (guide%touches(i)) call guide%slots(guide%touching)%element%contact%find_share(corner%depth, corner%depth_rate, &
       inward_acceleration(i, corner, motion, accelerations), share, share_rate)
   end subroutine corner_share
 
@@ -91,7 +91,7 @@ contains
   !> Whether the force begins and ends with a power of the penetration that is not an integer.
   pure logical function contact_has_kink(guide)
     type(piston_guide_t), intent(in) :: guide
-    contact_has_kink = guide%contact%geometry%three_halves > 0
+    contact_has_kink = guide%slots(guide%touching)%element%contact%geometry%three_halves > 0
   end function contact_has_kink
 
   !> Predicted end of the first of such contacts, of corners that are moving out of the wall; else the largest number.

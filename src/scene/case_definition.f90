@@ -14,7 +14,7 @@ module case_definition
   use joint_places, only: places, n_places, in_order, name_prefix, pin_title, piston_pin, small_end, main_bearing
   use joint_case, only: joint_case_t
   use pin_case, only: pin_case_t, pin_floating, pin_of_piston
-  use guide_case, only: guide_case_t, guide_clearance
+  use guide_case, only: guide_case_t
   use elastic_rod, only: elastic_rod_t
   use elastic_crankshaft, only: elastic_crankshaft_t
   use train_case, only: cylinder_case_t, shaft_case_t, damper_case_t
@@ -191,7 +191,7 @@ contains
   pure logical function has_loose_guide(self)
     class(case_t), intent(in) :: self
     has_loose_guide = .false.
-    if (allocated(self%guide)) has_loose_guide = self%guide%kind == guide_clearance
+    if (allocated(self%guide)) has_loose_guide = self%guide%has_clearance()
   end function has_loose_guide
 
   !> Whether a pin or the piston in its bore has clearance. The ideal twin has none.

@@ -20,7 +20,7 @@ contains
     call self%find_loads(self%n_joints, joints, y, now)
     if (allocated(self%gas)) call self%load_gas(now)
     if (allocated(self%chain%train)) call load_train(self, now)
-    call load_guide(self, now)
+    call load_guide(self, y, now)
     call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment, solvable)
     if (solvable) call add_guide_friction(self, joints, now, solvable)
     in_domain = solvable
@@ -79,21 +79,19 @@ contains
 
   !> Add the loads of the guide to those of joints and gas; the friction force only if it follows from the loads of the piston pin
   !> known so far.
-  pure subroutine load_guide(self, now)
+  pure subroutine load_guide(self, y, now)
     class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: y(self%n)
     type(evaluation_t), intent(inout) :: now
-    real(dp) :: ratio, rest
     if (.not. allocated(self%guide)) return
     call self%chain%move_piston(now%motion)
-    if (self%guide%is_loose) then
-      call move_centre(now%motion)
-      call self%guide%slide(now%motion, now%guide, now%loads)
-    else
-      call self%guide%friction_on_guide(now%motion%piston_velocity, ratio, rest)
-      if (normal_is_known(self)) rest = rest + ratio*abs(normal_force(self, now))
-      now%guide%friction_force = rest
-      now%loads%axial_force = now%loads%axial_force - rest
-    end if
+    if (self%guide%is_loose) call move_centre(now%motion)
+    call self%guide%find_loads(now%motion, y, now%guide, now%loads)
+    associate (friction => now%guide%friction_force)
+      if (.not. self%guide%is_loose .and. normal_is_known(self)) &
+        friction = friction + now%guide%friction_ratio*abs(normal_force(self, now))
+      now%loads%axial_force = now%loads%axial_force - friction
+    end associate
   end subroutine load_guide
 
   !> Add the friction of an ideal guide that depends on the accelerations, which it changes itself. The accelerations without it
@@ -109,12 +107,11 @@ contains
     logical, intent(out) :: in_domain
     type(loads_t) :: unit
     type(accelerations_t) :: change
-    real(dp) :: ratio, rest, normal, probe, slope, moment
+    real(dp) :: normal, probe, slope, moment
     in_domain = .true.
     if (.not. allocated(self%guide)) return
     if (self%guide%is_loose .or. normal_is_known(self)) return
-    call self%guide%friction_on_guide(now%motion%piston_velocity, ratio, rest)
-    if (.not. abs(ratio) > 0) return
+    if (.not. abs(now%guide%friction_ratio) > 0) return
     unit = unloaded
     unit%axial_force = -1
     call self%chain%response(now%motion, unit, change, moment)
@@ -122,8 +119,10 @@ contains
     if (self%may_stick) normal = normal_with(self, joints, now, 0.0_dp, change, moment)
     probe = max(abs(normal), 1.0_dp)
     slope = (normal_with(self, joints, now, probe, change, moment) - normal)/probe
-    in_domain = abs(ratio*slope) < 1
-    if (in_domain) call add_friction(self, ratio*abs(normal/(1 - ratio*slope*sign(1.0_dp, normal))), change, moment, now)
+    associate (ratio => now%guide%friction_ratio)
+      in_domain = abs(ratio*slope) < 1
+      if (in_domain) call add_friction(self, ratio*abs(normal/(1 - ratio*slope*sign(1.0_dp, normal))), change, moment, now)
+    end associate
   end subroutine add_guide_friction
 
   !> Whether the force between an ideal guide and the piston does not depend on the accelerations: if the piston pin has clearance

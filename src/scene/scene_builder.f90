@@ -11,6 +11,7 @@ module scene_builder
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
   use joint_events, only: may_touch, may_pass_static
   use load_elements, only: add_elements
+  use guide_elements, only: build_guide
   use train_builder, only: build_train, build_other_gas, axis_gravity
   use film_heat, only: film_heat_t
   use clearance_joint, only: clearance_joint_t
@@ -57,7 +58,6 @@ contains
     makes_tables = .true.
     if (present(without_tables)) makes_tables = .not. without_tables
     call assemble_scene(case, ideal_joint, makes_tables, scene)
-    if (allocated(scene%guide)) call scene%guide%prepare()
     call choose_entry(case, scene)
     if (.not. allocated(scene%given_load)) call build_bodies(case, ideal_joint, scene)
     if (scene%chain%has_elastic_rod()) call scene%chain%elastic%rod%prepare(scene%chain%bodies%rod)
@@ -155,7 +155,7 @@ contains
     if (allocated(case%load) .and. .not. ideal_joint) call give_load(case%load, scene)
     if (allocated(case%guide) .and. .not. (ideal_joint .and. case%has_loose_guide())) then
       allocate (scene%guide)
-      call case%guide%build(scene%guide)
+      call build_guide(case%guide, scene%guide)
       scene%guide%start = [case%initial%piston_offset, case%initial%piston_tilt]
       scene%guide%start_rate = [case%initial%piston_offset_rate, case%initial%piston_tilt_rate]
       do n = 1, size(scene%joints)

@@ -324,7 +324,7 @@ contains
     logical :: begins(self%n_joints)
     integer :: i
     if (allocated(self%guide)) then
-      if (self%guide%is_loose .and. .not. any(self%guide%touches)) call prepare_corners(self, y)
+      if (.not. any(self%guide%touches)) call prepare_corners(self, y)
       call find_corner_speeds(self, t, y, self%guide%touches .and. .not. self%guide%impact_speed > 0)
     end if
     if (allocated(self%given_load)) call self%given_load%start(self%crank_angle(t, y), self%start_speed)
@@ -387,10 +387,10 @@ contains
       where (wanted) guide%impact_speed = huge(guide%impact_speed)   ! elastic forces
       call scene%evaluate(t, y, pressed, in_domain)
       do i = 1, n_corners
-        associate (corner => pressed%guide%corner(i))
+        associate (corner => pressed%guide%corner(i), contact => guide%slots(guide%touching)%element%contact)
           if (.not. wanted(i)) cycle
           guide%impact_speed(i) = max(corner%depth_rate, 0.0_dp)
-          if (corner%depth > 0) guide%impact_speed(i) = guide%contact%free_impact_speed(corner%depth, corner%depth_rate, &
+          if (corner%depth > 0) guide%impact_speed(i) = contact%free_impact_speed(corner%depth, corner%depth_rate, &
             inward_acceleration(i, corner, free%motion, free%accelerations) - &
             inward_acceleration(i, corner, pressed%motion, pressed%accelerations))
         end associate
@@ -500,7 +500,7 @@ contains
     logical :: in_domain
     integer :: i
     scene%guide%touches = .false.
-    if (.not. scene%guide%is_loose) return
+    if (scene%guide%touching == 0) return
     call scene%guide%find_contact_state(y, corner)
     call scene%evaluate(0.0_dp, y, now, in_domain)
     do i = 1, n_corners

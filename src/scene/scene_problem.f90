@@ -324,7 +324,7 @@ contains
       end associate
     end do
     if (allocated(self%guide)) call self%guide%set_rates(now%motion%tilting, now%accelerations%offset, now%accelerations%tilt, &
-      dydt)
+      now%guide, dydt)
     if (allocated(self%chain%floating)) call self%chain%floating%set_rates(now%motion, now%accelerations, dydt)
     if (allocated(self%chain%elastic)) call self%chain%elastic%set_rates(now%motion, now%accelerations, dydt)
     if (allocated(self%chain%train)) call self%chain%train%set_rates(now%motion, now%accelerations, dydt)

@@ -4,10 +4,10 @@ module guide_case
   use model_parameters, only: has_parameters_t, parameter_list_t
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
-  use piston_guide, only: piston_guide_t
+  use piston_skirt, only: skirt_t
   implicit none
   private
-  public :: guide_case_t, guide_clearance
+  public :: guide_case_t
 
   character(len=*), parameter :: guide_friction = 'friction', guide_clearance = 'clearance'   !! the kinds of guide
 
@@ -21,7 +21,8 @@ module guide_case
     class(contact_law_t), allocatable :: contact
   contains
     procedure :: parameters
-    procedure :: build
+    procedure :: has_clearance
+    procedure :: skirt
     procedure :: most_friction
   end type guide_case_t
 
@@ -72,17 +73,19 @@ contains
     end do
   end function most_friction
 
-  !> Build the guide. Its initial state is set elsewhere.
-  subroutine build(self, guide)
+  !> Whether the piston has clearance in its bore.
+  pure logical function has_clearance(self)
     class(guide_case_t), intent(in) :: self
-    type(piston_guide_t), intent(inout) :: guide
-    guide%viscous = self%viscous
-    if (allocated(self%friction)) allocate (guide%friction, source=self%friction)
-    guide%is_loose = self%kind == guide_clearance
-    if (.not. guide%is_loose) return
-    guide%clearance = self%bore_clearance
-    guide%radius = self%piston_radius
-    guide%height = [self%skirt_top, -self%skirt_bottom] - self%piston_com(1)
-    allocate (guide%contact, source=self%contact)
-  end subroutine build
+    has_clearance = self%kind == guide_clearance
+  end function has_clearance
+
+  !> The skirt in its bore, at first without contact.
+  pure type(skirt_t) function skirt(self)
+    class(guide_case_t), intent(in) :: self
+    skirt%is_loose = self%has_clearance()
+    if (.not. skirt%is_loose) return
+    skirt%clearance = self%bore_clearance
+    skirt%radius = self%piston_radius
+    skirt%height = [self%skirt_top, -self%skirt_bottom] - self%piston_com(1)
+  end function skirt
 end module guide_case

@@ -1,0 +1,32 @@
+!> The elements of the guide. A new kind needs a `use` line and a line in `build_guide`.
+module guide_elements
+  use guide_case, only: guide_case_t
+  use guide_element, only: guide_element_t
+  use piston_guide, only: piston_guide_t
+  use bore_friction, only: bore_friction_t
+  use skirt_corners, only: skirt_corners_t
+  implicit none
+  private
+  public :: build_guide
+
+contains
+
+  !> Build the guide of a case, with the elements for the laws that it names. Its initial state is set elsewhere.
+  subroutine build_guide(wanted, guide)
+    type(guide_case_t), intent(in) :: wanted
+    type(piston_guide_t), intent(out) :: guide
+    guide%skirt_t = wanted%skirt()
+    call add(bore_friction_t())
+    if (wanted%has_clearance()) call add(skirt_corners_t())
+
+  contains
+
+    subroutine add(element)
+      class(guide_element_t), intent(in) :: element
+      class(guide_element_t), allocatable :: prepared
+      allocate (prepared, source=element)
+      call prepared%prepare(wanted)
+      call guide%add(prepared)
+    end subroutine add
+  end subroutine build_guide
+end module guide_elements
