@@ -13,6 +13,7 @@ module test_guide
   use joint_places, only: n_places
   use chain_motion, only: motion_t, accelerations_t
   use chain_loads, only: loads_t, unloaded
+  use contact_laws, only: new_power_geometry
   use guide_case, only: guide_case_t
   use guide_element, only: guide_element_t
   use guide_elements, only: build_guide
@@ -202,6 +203,7 @@ contains
       call friction_law_of("law='ambrosio' coefficient=0.3 v0=0 v1=1e-9", wanted%friction, error)
     call check%that(.not. allocated(error), 'laws of a corner')
     if (allocated(error)) return
+    call new_power_geometry(1e8_dp, 1.5_dp, wanted%contact%geometry)
     call build_guide(wanted, guide)
     guide%clearance = -2e-3_dp   ! in a bore too narrow for it every corner is in the wall
     guide%radius = 0.025_dp
@@ -259,12 +261,12 @@ contains
       call guide%claim(layout, 100.0_dp, 1.0_dp)
       if (i == 1) call layout%count_again()
     end do
-    call check%equal(layout%n(), 3, 'states of two elements behind another one')
+    call check%that(layout%n() == 3, 'states of two elements behind another one')
     y = [5.0_dp, 0.0_dp, 0.0_dp]
     call guide%set_start(y)
     call check%close_to(norm2(y - [5.0_dp, 1e-6_dp, 2e-6_dp]), 0.0_dp, 0.0_dp, 'states of elements at the start')
     call guide%declare(list, y)
-    call check%equal(size(list%numbers), 2, 'numbers that they declare')
+    call check%that(size(list%numbers) == 2, 'numbers that they declare')
     call check%close_to(list%numbers(2)%values(1), 2e-6_dp, 0.0_dp, 'state of the second one')
     motion%piston_velocity = -3
     all = unloaded

@@ -1,8 +1,8 @@
 !> What acts on the piston in its bore: the abstract element of the guide.
 !>
-!> A guide has a list of elements, which all act at the same time: friction, corners of the skirt. An element adds its loads to those
-!> of the guide, and its columns to a row; states of its own it declares as components. A new kind is one file, and two lines in
-!> `guide_elements`.
+!> A guide has a list of elements, which all act at the same time: friction, corners of the skirt. An element adds its loads to
+!> those of the guide, and its columns to a row; states of its own it declares as components. A new kind is one file, and two lines
+!> in `guide_elements`.
 module guide_element
   use kinds, only: dp
   use state_layout, only: slice_t

@@ -165,7 +165,7 @@ contains
     end associate
   end subroutine find_contact_state
 
-  !> Loads of the bore on the piston. With clearance force and moment are those of the chain too; the friction is not added to it yet.
+  !> Loads of the bore on the piston. With clearance force and moment are set in those of the chain too; the friction is not.
   pure subroutine find_loads(self, motion, y, now, all)
     class(piston_guide_t), intent(in) :: self
     type(motion_t), intent(in) :: motion
