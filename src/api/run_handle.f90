@@ -4,7 +4,6 @@ module run_handle
   use, intrinsic :: iso_fortran_env, only: int64
   use error_handling, only: error_t, fail, status_integration, status_output
   use case_definition, only: case_t
-  use joint_places, only: n_places
   use trace_columns, only: column_list_t, choose_columns
   use film_files, only: provide_tables, progress_watch_t
   use text_lock, only: lock_texts, unlock_texts
@@ -176,20 +175,12 @@ contains
     integer, intent(out) :: status
     type(error_t), allocatable :: error
     type(case_t) :: case
-    integer :: i
     if (.not. allocated(self%table)) then
       call self%run%finish(self%report, error)
       if (.not. allocated(error)) call march_histories(self%case, .false., self%report, error)
-      if (self%is_twin) then
-        case = self%case
-        do i = 1, n_places
-          case%joints(i)%kind = 'ideal'
-        end do
-        if (allocated(case%notes)) deallocate (case%notes)
-        self%table = summary_table(case, self%report, clock() - self%began, .true.)
-      else
-        self%table = summary_table(self%case, self%report, clock() - self%began)
-      end if
+      case = self%case
+      if (self%is_twin) call case%become_ideal()
+      self%table = summary_table(case, self%report, clock() - self%began, self%is_twin)
       call self%keep(error, self%status)
     end if
     status = self%status

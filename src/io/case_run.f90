@@ -18,9 +18,8 @@ module case_run
   use run_line, only: lines_for_user
   use run_progress, only: progress_t, clock, tell
   use text_file, only: read_whole
-  use posix_files, only: synchronise_folder, file_length, absolute_path, error_text, interrupted
+  use posix_files, only: synchronise_folder, file_length, absolute_path, error_text
   use text_tools, only: printable, replaced
-  use joint_places, only: n_places
   implicit none
   private
   public :: case_run_t, name_file
@@ -149,16 +148,16 @@ contains
     type(error_t), allocatable :: state_error
     real(dp) :: now, last   !! of the last file of the state [s]
     integer :: steps
+    logical :: was_interrupted
     call self%progress%start(self%case%name, self%shows_progress)
     call run%begin(self%case, self%is_twin, self%list, files, self%error)
     if (.not. allocated(self%error)) then
       last = self%began
       steps = 1
       do while (.not. run%is_over)
-        call go_on(run, steps)
+        call go_on(run, steps, was_interrupted)
         call self%progress%update(run%t/run%expected_end(), run%t)
         if (any(files%file%has_failed())) call run%stop()
-        if (interrupted()) call run%stop()
         now = clock()
         if (now - last < between_states) cycle
         call write_state(self, run, state_error)
@@ -216,14 +215,10 @@ contains
     type(case_t) :: case
     character(len=:), allocatable :: remark
     real(dp) :: wall_time   ! [s]
-    integer :: i
     call files%tell_error(error)
     if (allocated(error)) self%report%status = 'stopped: '//error%message
     case = self%case
-    do i = 1, merge(n_places, 0, self%is_twin)
-      case%joints(i)%kind = 'ideal'
-    end do
-    if (self%is_twin .and. allocated(case%notes)) deallocate (case%notes)
+    if (self%is_twin) call case%become_ideal()
     remark = ''
     if (allocated(self%certificate)) then
       if (.not. allocated(self%certificate%reason)) then

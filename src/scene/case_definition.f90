@@ -118,6 +118,7 @@ module case_definition
     procedure :: has_loose_guide
     procedure :: has_clearance => has_clearance_anywhere
     procedure :: is_elastic
+    procedure :: become_ideal
     procedure :: has_train
     procedure :: delays
   end type case_t
@@ -205,6 +206,16 @@ contains
     class(case_t), intent(in) :: self
     is_elastic = allocated(self%elastic_rod) .or. allocated(self%crankshaft)
   end function is_elastic
+
+  !> Become the case of the summary of the ideal twin: with ideal joints, and without notes on the case.
+  subroutine become_ideal(self)
+    class(case_t), intent(inout) :: self
+    integer :: i
+    do i = 1, n_places
+      self%joints(i)%kind = 'ideal'
+    end do
+    if (allocated(self%notes)) deallocate (self%notes)
+  end subroutine become_ideal
 
   !> Whether there are several cylinders, or a crankshaft of several stations.
   pure logical function has_train(self)
