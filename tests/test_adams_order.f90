@@ -97,10 +97,12 @@ contains
       worst = 0
       do i = 1, size(h)
         call plain%update(h(i), merge(h(max(1, i - 1)), 0.0_dp, i > 1), min(i, k), min(i - 1, k))
-        do tries = 1, merge(2, 0, i > k)   ! when the history is complete
-          call rejected%update(tries*2*h(i), h(max(1, i - 1)), k, k)
-          call rejected%undo_update(tries*2*h(i), k)
-        end do
+        if (i > k) then   ! the history is complete
+          do tries = 1, 2
+            call rejected%update(tries*2*h(i), h(max(1, i - 1)), k, k)
+            call rejected%undo_update(tries*2*h(i), k)
+          end do
+        end if
         call rejected%update(h(i), merge(h(max(1, i - 1)), 0.0_dp, i > 1), min(i, k), min(i - 1, k))
         if (i <= k) cycle
         if (abs(h(i) - h(max(1, i - 1))) > 0) worst = max(worst, maxval(abs(rejected%g(:k + 1) - plain%g(:k + 1))), &

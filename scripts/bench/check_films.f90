@@ -36,10 +36,13 @@ program check_films
   do i = 1, size(bearings)
     do k = 1, size(conditions)
       if (bearing /= '' .and. (bearings(i) /= bearing .or. conditions(k) /= condition)) cycle
-      if (points > 0) call compare(trim(bearings(i)), trim(conditions(k)), points, nodes)
-      do l = 1, merge(0, size(levels), points > 0)
-        call compare(trim(bearings(i)), trim(conditions(k)), 0, levels(l))
-      end do
+      if (points > 0) then
+        call compare(trim(bearings(i)), trim(conditions(k)), points, nodes)
+      else
+        do l = 1, size(levels)
+          call compare(trim(bearings(i)), trim(conditions(k)), 0, levels(l))
+        end do
+      end if
     end do
   end do
 

@@ -79,10 +79,12 @@ contains
     call row%add('engine_moment_x[N.m]', engine%moment(1), 'moment of these forces by their axial positions, about x')
     call row%add('engine_moment_y[N.m]', engine%moment(2), 'the same about y')
     call row%add('engine_moment_z[N.m]', engine%moment(3), 'roll moment of the frame on the engine: of the guides about the shaft')
-    do j = 1, merge(train%n, 0, train%is_chain)
-      if (j /= train%full) call row%add_on_request(numbered('station', j, 'speed[rad/s]', row), motion%train%speed(j), &
-        'angular velocity of this station')
-    end do
+    if (train%is_chain) then
+      do j = 1, train%n
+        if (j /= train%full) call row%add_on_request(numbered('station', j, 'speed[rad/s]', row), motion%train%speed(j), &
+          'angular velocity of this station')
+      end do
+    end if
     call add_bearings(engine%throw(:, :train%n_throws), row)
     do j = 1, size(train%cylinders)
       call add_cylinder(train%cylinders(j)%number, engine%cylinder(j), motion%train%gas_force(j), row)

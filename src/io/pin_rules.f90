@@ -32,14 +32,17 @@ contains
     type(case_values_t), intent(inout) :: values
     character(len=*), parameter :: keys(2) = [character(len=7) :: 'mass', 'inertia']
     integer :: i
-    do i = 1, merge(size(keys), 0, allocated(c%pin))
-      if (c%has_floating_pin()) then
-        call values%demand(values%is_said(values%place_of('pin', trim(keys(i)))), 'pin', trim(keys(i)), 'with kind = ''floating''')
-      else
-        call values%forbid(values%is_said(values%place_of('pin', trim(keys(i)))), 'pin', trim(keys(i)), &
-          'is for kind = ''floating'': else the '//trim(keys(i))//' of the pin belongs to '//c%pin%kind)
-      end if
-    end do
+    if (allocated(c%pin)) then
+      do i = 1, size(keys)
+        if (c%has_floating_pin()) then
+          call values%demand(values%is_said(values%place_of('pin', trim(keys(i)))), 'pin', trim(keys(i)), &
+            'with kind = ''floating''')
+        else
+          call values%forbid(values%is_said(values%place_of('pin', trim(keys(i)))), 'pin', trim(keys(i)), &
+            'is for kind = ''floating'': else the '//trim(keys(i))//' of the pin belongs to '//c%pin%kind)
+        end if
+      end do
+    end if
     if (c%has_floating_pin()) then
       call values%forbid(.not. all(c%joints([piston_pin, small_end])%has_clearance()), 'pin', 'kind', &
         'needs two joints with kind = ''clearance'', place = ''piston_pin'' and place = ''small_end''')

@@ -61,10 +61,12 @@ contains
     is_open = size(process) > 1
     if (is_open) call open_pipe(queue, is_open)
     if (is_open) call open_pipe(notes, is_open)
-    do i = 1, merge(size(process), 0, is_open)
-      call fork_worker(process(i))
-      if (process(i) == 0) call work(tasks, i, queue, notes)
-    end do
+    if (is_open) then
+      do i = 1, size(process)
+        call fork_worker(process(i))
+        if (process(i) == 0) call work(tasks, i, queue, notes)
+      end do
+    end if
     if (any(process > 0)) then
       call close_end(queue(1))
       call close_end(notes(2))

@@ -42,9 +42,11 @@ contains
       call visit_joint(case%joints(in_order(i)), trim(places(in_order(i))%name), &
         any(case%joints(in_order(:i - 1))%has_bearing()), list)
     end do
-    do i = 1, merge(n_places, 0, list%sets .and. any(case%joints%has_bearing()))
-      call drop_laws(case%joints(i))
-    end do
+    if (list%sets .and. any(case%joints%has_bearing())) then
+      do i = 1, n_places
+        call drop_laws(case%joints(i))
+      end do
+    end if
     call visit_guide(case%guide, list)
     call list%group('elastic_rod', 'Elastic connecting rod. Without this group the rod is rigid', .true.)
     call rod%parameters(list)

@@ -59,16 +59,18 @@ contains
     do while (self%next <= size(self%times))
       if (self%times(self%next) > t_to) exit
       call evaluate_inside(scene, method, self%times(self%next), y, now, in_domain, evaluations)
-      do i = 1, merge(size(scene%joints), 0, in_domain)
-        if (scene%joints(i)%acting(phase_film) == 0) cycle
-        associate (element => scene%joints(i)%slots(scene%joints(i)%acting(phase_film))%element)
-          if (.not. element%film%gives_pressure()) cycle
-          call element%see_film(now%joint(i), seen, rate, share, thickening)
-        end associate
-        self%n = self%n + 1
-        self%kept(:, self%n) = [self%times(self%next), now%motion%crank_angle, real(i, dp), share*thickening, seen%eccentricity, &
-          seen%eccentricity_rate, seen%pin_speed, seen%turning_speed]
-      end do
+      if (in_domain) then
+        do i = 1, size(scene%joints)
+          if (scene%joints(i)%acting(phase_film) == 0) cycle
+          associate (element => scene%joints(i)%slots(scene%joints(i)%acting(phase_film))%element)
+            if (.not. element%film%gives_pressure()) cycle
+            call element%see_film(now%joint(i), seen, rate, share, thickening)
+          end associate
+          self%n = self%n + 1
+          self%kept(:, self%n) = [self%times(self%next), now%motion%crank_angle, real(i, dp), share*thickening, seen%eccentricity, &
+            seen%eccentricity_rate, seen%pin_speed, seen%turning_speed]
+        end do
+      end if
       self%next = self%next + 1
     end do
   end subroutine record

@@ -67,18 +67,20 @@ contains
     call method%interpolate(t, y)
     better = y
     last_change = huge(last_change)
-    do pass = 1, merge(most_passes, 0, method%may_improve(t))
-      call scene%derivatives(t, better, rates, in_domain)
-      evaluations = evaluations + 1
-      if (.not. in_domain) better = y
-      if (.not. in_domain) exit
-      next = better
-      call method%improve(t, rates, next, change)
-      if (.not. change < last_change) exit
-      better = next
-      if (.not. change > small) exit
-      last_change = change
-    end do
+    if (method%may_improve(t)) then
+      do pass = 1, most_passes
+        call scene%derivatives(t, better, rates, in_domain)
+        evaluations = evaluations + 1
+        if (.not. in_domain) better = y
+        if (.not. in_domain) exit
+        next = better
+        call method%improve(t, rates, next, change)
+        if (.not. change < last_change) exit
+        better = next
+        if (.not. change > small) exit
+        last_change = change
+      end do
+    end if
     call scene%evaluate(t, better, now, in_domain)
     evaluations = evaluations + 1
     if (in_domain) then
