@@ -27,6 +27,35 @@ PAGES = {
     ("--completion", "zsh"): "share/zsh/site-functions/_gudgeon",
     ("--completion", "fish"): "share/fish/vendor_completions.d/gudgeon.fish",
 }
+#: Functions of FMI, by that of the sources which does the work of all of them.
+FMI = {
+    "fmi_free_instance": "fmi2FreeInstance fmi3FreeInstance",
+    "fmi_exit_initialization": "fmi2ExitInitializationMode fmi3ExitInitializationMode",
+    "fmi_terminate": "fmi2Terminate fmi3Terminate",
+    "fmi_reset": "fmi2Reset fmi3Reset",
+    "fmi_get_state": "fmi2GetFMUstate fmi3GetFMUState",
+    "fmi_set_state": "fmi2SetFMUstate fmi3SetFMUState",
+    "fmi_free_state": "fmi2FreeFMUstate fmi3FreeFMUState",
+    "fmi_accepted": "fmi2SetDebugLogging fmi3SetDebugLogging fmi2EnterInitializationMode",
+    "fmi_no_instance": "fmi3InstantiateModelExchange fmi3InstantiateScheduledExecution",
+    "fmi_refused": """
+        fmi2GetBoolean fmi2GetString fmi2SetBoolean fmi2SetString fmi2SerializedFMUstateSize fmi2SerializeFMUstate
+        fmi2DeSerializeFMUstate fmi2GetDirectionalDerivative fmi2EnterEventMode fmi2NewDiscreteStates fmi2EnterContinuousTimeMode
+        fmi2CompletedIntegratorStep fmi2SetTime fmi2SetContinuousStates fmi2GetDerivatives fmi2GetEventIndicators
+        fmi2GetContinuousStates fmi2GetNominalsOfContinuousStates fmi2SetRealInputDerivatives fmi2GetRealOutputDerivatives
+        fmi2CancelStep fmi2GetIntegerStatus fmi2GetStringStatus
+
+        fmi3GetFloat32 fmi3GetInt8 fmi3GetUInt8 fmi3GetInt16 fmi3GetUInt16 fmi3GetUInt32 fmi3GetInt64 fmi3GetUInt64 fmi3GetString
+        fmi3GetBinary fmi3GetClock fmi3SetFloat32 fmi3SetInt8 fmi3SetUInt8 fmi3SetInt16 fmi3SetUInt16 fmi3SetUInt32 fmi3SetInt64
+        fmi3SetUInt64 fmi3SetString fmi3SetBinary fmi3SetClock fmi3GetNumberOfVariableDependencies fmi3GetVariableDependencies
+        fmi3SerializedFMUStateSize fmi3SerializeFMUState fmi3DeserializeFMUState fmi3GetDirectionalDerivative
+        fmi3GetAdjointDerivative fmi3EnterConfigurationMode fmi3ExitConfigurationMode fmi3GetIntervalDecimal fmi3GetIntervalFraction
+        fmi3GetShiftDecimal fmi3GetShiftFraction fmi3SetIntervalDecimal fmi3SetIntervalFraction fmi3SetShiftDecimal
+        fmi3SetShiftFraction fmi3EvaluateDiscreteStates fmi3UpdateDiscreteStates fmi3EnterContinuousTimeMode
+        fmi3CompletedIntegratorStep fmi3SetTime fmi3SetContinuousStates fmi3GetContinuousStateDerivatives fmi3GetEventIndicators
+        fmi3GetContinuousStates fmi3GetNominalsOfContinuousStates fmi3GetNumberOfEventIndicators fmi3GetNumberOfContinuousStates
+        fmi3EnterStepMode fmi3EnterEventMode fmi3GetOutputDerivatives fmi3ActivateModelPartition""",
+}
 MANIFEST = """name = "gudgeon"
 [build]
 auto-executables = false
@@ -63,9 +92,10 @@ def build(folder: Path) -> Path:
     run(["fpm", "build", "--directory", str(folder), "--flag", COMPILE], folder)
     objects = found_objects(folder)
     library = folder / "libgudgeon.so"
-    if library.is_file() and all(os.path.getmtime(path) < library.stat().st_mtime for path in objects):
+    if library.is_file() and all(os.path.getmtime(path) < library.stat().st_mtime for path in [*objects, __file__]):
         return library
     link = ["-shared", f"-Wl,--version-script={HERE / 'exports.map'}", "-Wl,-z,defs", "-Wl,-rpath,$ORIGIN"]
+    link += [f"-Wl,--defsym={name}={one}" for one, names in FMI.items() for name in names.split()]
     run(["gfortran", *COMPILE.split(), *link, *objects, "-o", f"{library}.part"], folder)
     os.replace(f"{library}.part", library)
     return library
