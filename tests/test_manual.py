@@ -50,18 +50,18 @@ def check_markdown() -> None:
     """Every link and every path in a page refers to a file that exists."""
     for page in pages():
         text = page.read_text(encoding="utf-8")
-        name = page.relative_to(ROOT)
+        broken = []
         for link in LINK.findall(text):
             if "://" in link or link.startswith("mailto:"):
                 continue
             place, _, anchor = link.partition("#")
             target = (page.parent / place).resolve() if place else page
-            check(target.exists(), f"{name}: the link {link} leads to an existing file")
-            if anchor and target.suffix == ".md" and target.exists():
-                check(anchor in anchors(target), f"{name}: the link {link} leads to an existing heading")
+            if not target.exists() or (anchor and target.suffix == ".md" and anchor not in anchors(target)):
+                broken.append(link)
         for path in PATH.findall(text):
-            found = any(ROOT.glob(path)) if "*" in path else (ROOT / path).exists()
-            check(found or path.endswith("linear_ramp.f90"), f"{name}: the path {path} exists")
+            if not (any(ROOT.glob(path)) if "*" in path else (ROOT / path).exists()) and not path.endswith("linear_ramp.f90"):
+                broken.append(path)
+        check(not broken, f"{page.relative_to(ROOT)}: its links and paths lead to existing files and headings", str(broken))
 
 
 def tables(page: Path) -> list[list[list[str]]]:
@@ -98,11 +98,9 @@ def check_tables() -> None:
         if name.startswith("data/measured/"):
             check_origin(page, name)
             continue
-        for table in tables(page):
-            if table[0][0] and table[0][0] in NOT_MEASURED.get(name, ""):
-                continue
-            cells = [cell for row in table[1:] for cell in row if MEASURED.search(re.sub(r"`[^`]*`|\[.*?\]\(.*?\)", "", cell))]
-            check(not cells, f"{name}: the table '{table[0][0]}' has no measured numbers", str(cells[:2]))
+        cells = [cell for table in tables(page) if not table[0][0] or table[0][0] not in NOT_MEASURED.get(name, "")
+                 for row in table[1:] for cell in row if MEASURED.search(re.sub(r"`[^`]*`|\[.*?\]\(.*?\)", "", cell))]
+        check(not cells, f"{name}: its tables have no measured numbers", str(cells[:2]))
 
 
 def check_origin(page: Path, name: str) -> None:
@@ -123,10 +121,10 @@ def check_page_of_cases() -> None:
         there = (value_in(case, "joint", "clearance"), value_in(case, "initial", "crank_speed"), heat, value_in(case, "integrator", "revolutions"))
         check(all(a == b or (a and b and abs(a / b - 1) < 1e-9) for a, b in zip(said, there)), f"cases/README.md: simulation {row[0]}", f"{said}, {there}")
     text = page.read_text(encoding="utf-8")
-    for case in sorted((ROOT / "cases").rglob("*.nml")):
-        if case.parent.name in ("studies", "base", "wiebe") or re.fullmatch(r"sim_[IV]+(_oscillating|_finite)?", case.stem):
-            continue
-        check(re.search(rf"[`/]{case.stem}`", text), f"cases/README.md names {case.relative_to(ROOT)}")
+    cases = [case for case in sorted((ROOT / "cases").rglob("*.nml"))
+             if case.parent.name not in ("studies", "base", "wiebe") and not re.fullmatch(r"sim_[IV]+(_oscillating|_finite)?", case.stem)]
+    missing = [case.stem for case in cases if not re.search(rf"[`/]{case.stem}`", text)]
+    check(not missing, "cases/README.md names every case", str(missing))
     named: set[str] = set()
     for row in table_with(page, "figures"):
         for part in row[0].split(", "):
@@ -140,12 +138,12 @@ def check_page_of_cases() -> None:
 def check_lists() -> None:
     """Lists of tests, folders, references and pages are complete."""
     text = (ROOT / "tests/README.md").read_text(encoding="utf-8")
-    for test in sorted([*(ROOT / "tests").glob("test_*.py"), *(ROOT / "tests").glob("test_*.sh")]):
-        check(f"`{test.name}`" in text, f"tests/README.md names {test.name}")
+    missing = [test.name for test in (ROOT / "tests").glob("test_*.*") if test.suffix in (".py", ".sh") and f"`{test.name}`" not in text]
+    check(not missing, "tests/README.md names every test", str(missing))
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    for folder in [*(ROOT / "src").iterdir(), *(ROOT / name for name in ("cases", "data", "scripts", "src", "tests"))]:
-        if folder.is_dir():
-            check(f"`{folder.name}/`" in text, f"CONTRIBUTING.md: the map has {folder.relative_to(ROOT)}")
+    folders = [*(ROOT / "src").iterdir(), *(ROOT / name for name in ("cases", "data", "scripts", "src", "tests"))]
+    missing = [folder.name for folder in folders if folder.is_dir() and f"`{folder.name}/`" not in text]
+    check(not missing, "CONTRIBUTING.md: the map has every folder", str(missing))
     listed = first_column(ROOT / "data/references.csv")
     there = {path.stem for path in (ROOT / "data").glob("*.csv") if (ROOT / "data" / f"{path.stem}.events.csv").exists()}
     there |= {f"film/models/{path.stem}" for path in (ROOT / "data/film/models").glob("*.nml")}
@@ -227,14 +225,17 @@ def check_words(program: Path) -> None:
     common = "".join(path.read_text(encoding="utf-8") for path in source.glob("*.py"))
     for page in pages():
         text = page.read_text(encoding="utf-8")
+        wrong = []
         for code in [*re.findall(r"`([^`\n]+)`", text), *re.findall(r"^    (.+)$", text, re.MULTILINE)]:
             code = code.removeprefix("$ ").split("#")[0].split(" > ")[0]
             found = re.match(r"gudgeon-plot ([a-z]+)\b", code)
             if not found and not code.startswith("gudgeon "):
                 continue
-            check(not found or found[1] in words, f"{page.name}: {code}: is there")
-            for option in re.findall(r"(?<!\S)(--[a-z-]+)", code):
-                check(option in (words.get(found[1], "") + common if found else options), f"{page.name}: {code}: has the option {option}")
+            if found and found[1] not in words:
+                wrong.append(code)
+            there = words.get(found[1], "") + common if found else options
+            wrong += [f"{code}: {option}" for option in re.findall(r"(?<!\S)(--[a-z-]+)", code) if option not in there]
+        check(not wrong, f"{page.relative_to(ROOT)}: its commands and their options are there", str(wrong))
 
 
 def check_locale() -> None:
@@ -249,11 +250,11 @@ def check_keys(program: Path) -> None:
     said = "".join(subprocess.run([program, "--reference", subject], capture_output=True, text=True).stdout for subject in ("case", "bearing", "study"))
     groups, keys = set(re.findall(r"^## &(\w+)", said, re.MULTILINE)) | {"so_far", "name"}, set(re.findall(r"^\| `(\w+)` \|", said, re.MULTILINE))
     for page in (ROOT / "data/manual").glob("*.md"):
-        for group in re.findall(r"`&(\w+)", page.read_text(encoding="utf-8")):
-            check(group in groups, f"{page.name}: the group &{group} is there")
-    for row in table_with(ROOT / "data/manual/typical_values.md", "typical of"):
-        for key in re.findall(r"`(?:\w+\.)?(\w+)`", row[1]):
-            check(key in keys, f"typical_values.md: the key {key} is there")
+        named = set(re.findall(r"`&(\w+)", page.read_text(encoding="utf-8")))
+        check(named <= groups, f"{page.name}: the groups that it names are there", str(named - groups))
+    rows = table_with(ROOT / "data/manual/typical_values.md", "typical of")
+    named = {key for row in rows for key in re.findall(r"`(?:\w+\.)?(\w+)`", row[1])}
+    check(named <= keys, "typical_values.md: its keys are there", str(named - keys))
 
 
 def check_pictures() -> None:
@@ -263,8 +264,8 @@ def check_pictures() -> None:
     there = {str(path.relative_to(ROOT)) for folder in ("cases", "data", "scripts") for path in (ROOT / folder).rglob("*") if path.suffix in (".png", ".svg")}
     there = {path for path in there if "/build/" not in path}
     check(there == set(listed), "data/pictures.csv has every picture", str(there ^ set(listed)))
-    for picture, command in listed.items():
-        check(command.startswith("gudgeon-plot ") or (ROOT / command.split()[0]).is_file(), f"{picture}: its command is there", command)
+    missing = {command for command in listed.values() if not (command.startswith("gudgeon-plot ") or (ROOT / command.split()[0]).is_file())}
+    check(not missing, "data/pictures.csv: the commands are there", str(missing))
 
 
 def check_tutorials(program: Path) -> None:
@@ -308,8 +309,8 @@ def check_messages() -> None:
     """Each message with a cure is one that the source has, and the list of all is not empty."""
     done = subprocess.run([sys.executable, ROOT / "scripts/manual/messages.py"], capture_output=True, text=True)
     check(done.stdout.count("\n- ") > 250, "the messages of the program are found in its source", done.stderr[-300:])
-    for row in table_with(ROOT / "data/manual/messages.md", "message"):
-        check(row[0].strip("`") in done.stdout, "a message with a cure is in the source", row[0])
+    missing = [row[0] for row in table_with(ROOT / "data/manual/messages.md", "message") if row[0].strip("`") not in done.stdout]
+    check(not missing, "each message with a cure is in the source", str(missing))
 
 
 def check_drawings() -> None:
@@ -392,16 +393,15 @@ def check_reference(program: Path) -> None:
             options = ["-q", "--certify"] if case.stem in ("sim_I", "dry_0500um") else short
             done = subprocess.run([program, *options, "-o", folder, case], cwd=ROOT, capture_output=True, text=True, timeout=600)
             check(done.returncode in (0, 4), f"{case.stem}: a run, done or stopped by its limit", done.stderr)
+            results: set[tuple[str, str]] = set()
             for trace in Path(folder).glob("*.csv"):
                 rows = trace.read_text(encoding="utf-8").splitlines()
                 if trace.name.endswith(".summary.csv"):
-                    for row in rows[1:]:
-                        name, unit = row.split(",", 1)[0], row.rsplit(",", 1)[1]
-                        check(is_described(name, unit, known), f"the manual describes {name} [{unit}]", trace.name)
+                    results |= {(row.split(",", 1)[0], row.rsplit(",", 1)[1]) for row in rows[1:]}
                 elif not trace.name.endswith(("certificate.csv", "film.csv")):
-                    for column in rows[0].split(","):
-                        name, _, unit = column.rstrip("]").partition("[")
-                        check(is_described(name, unit, known), f"the manual describes the column {column}", trace.name)
+                    results |= {(name, unit) for name, _, unit in (column.rstrip("]").partition("[") for column in rows[0].split(","))}
+            missing = [name for name, unit in results if not is_described(name, unit, known)]
+            check(results and not missing, f"the manual describes the results of {case.stem}, with their units", str(missing))
 
 
 def check_study(program: Path) -> None:
@@ -415,8 +415,9 @@ def check_study(program: Path) -> None:
                               capture_output=True, text=True)
         check(done.returncode == 0, "the study of the manual runs", done.stderr)
         runs = Path(folder) / "study.runs.csv"
-        for column in runs.read_text(encoding="utf-8").splitlines()[0].split(",") if runs.exists() else []:
-            check("." in column or f"`{column.partition('[')[0]}`" in page, f"the manual describes the column {column} of a study")
+        columns = runs.read_text(encoding="utf-8").splitlines()[0].split(",") if runs.exists() else []
+        missing = [column for column in columns if "." not in column and f"`{column.partition('[')[0]}`" not in page]
+        check(columns and not missing, "the manual describes the columns of a study", str(missing))
 
 
 def code_after(text: str, words: str) -> str:
