@@ -13,8 +13,8 @@ import importlib
 from typing import Any
 
 _HOMES = {
-    "Case": "case", "CaseError": "case", "Column": "case", "read": "case", "template": "case",
-    "Run": "run", "RunError": "run", "Summary": "run", "Certificate": "run", "load": "run", "compare": "run",
+    "Case": "case", "CaseError": "case", "Column": "_library", "read": "case", "template": "case",
+    "Run": "run", "RunError": "run", "Summary": "run", "Certificate": "run", "load": "files", "compare": "run",
     "orders": "run", "Page": "run",
     "Stepper": "stepper", "Snapshot": "stepper", "Inputs": "stepper",
     "sweep": "_sweep", "schema": "_schema", "fmu": "_fmu", "Key": "_keys", "keys": "_keys", "groups": "_keys",

@@ -18,7 +18,8 @@ from xml.etree import ElementTree as xml
 
 from . import _library
 from ._keys import Key, keys
-from .case import Case, Column, read
+from ._library import Column
+from .case import Case, read
 from .run import _Owner
 from .stepper import Inputs
 

@@ -5,10 +5,19 @@ from __future__ import annotations
 import ctypes as c
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
+
+
+class Column(NamedTuple):
+    """A column of a run."""
+
+    name: str
+    unit: str
+    meaning: str
+
 
 _handle, _text, _size, _int = c.c_void_p, c.c_char_p, c.c_size_t, c.c_int
 
@@ -119,3 +128,25 @@ def text_from(function: Callable[..., int], *arguments: Any, guess: int = 4096) 
 def message(handle: int) -> str:
     """The last message of a handle."""
     return text_from(library().message, handle)
+
+
+def described_columns(count: int, describe: Callable[..., int], handle: int) -> list[Column]:
+    """The columns that a function describes by their numbers."""
+    name, unit, meaning = (c.create_string_buffer(200) for _ in range(3))
+    found = []
+    for i in range(count):
+        describe(handle, i, name, 200, unit, 200, meaning, 200)
+        found.append(Column(name.value.decode(), unit.value.decode(), meaning.value.decode()))
+    return found
+
+
+def columns_of_run(number: int) -> list[Column]:
+    return described_columns(library().columns(number), library().column, number)
+
+
+def meant(word: str, words: Sequence[str]) -> str:
+    """What is said after a word that is not there."""
+    from difflib import get_close_matches
+
+    near = get_close_matches(word, words, 1)
+    return f"; did you mean {near[0]}?" if near else ""

@@ -5,16 +5,16 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from . import _library
 from ._keys import GroupInfo, Key, groups, keys
-from ._library import library, text_from
+from ._library import Column, described_columns, library, meant, text_from
+from .run import Certificate, Run, carry_out
+from .stepper import Stepper
 
 if TYPE_CHECKING:
     from ._groups import Groups
-    from .run import Certificate, Run
-    from .stepper import Stepper
 else:
     Groups = object
 
@@ -29,14 +29,6 @@ class CaseError(ValueError):
         self.key = next((name for name in keys if f"&{name.replace('.', ' ')} " in text.replace("(", " ")), None)
 
 
-class Column(NamedTuple):
-    """A column of a run."""
-
-    name: str
-    unit: str
-    meaning: str
-
-
 class Group:
     """A group of a case. Its keys are attributes; None means the default. `del case.contact.law` does the same."""
 
@@ -46,7 +38,7 @@ class Group:
 
     def _key(self, name: str) -> str:
         if all(key.name != name for key in self._info.keys):
-            raise AttributeError(f"&{self._info.name} has no key {name}{_meant(name, [key.name for key in self._info.keys])}")
+            raise AttributeError(f"&{self._info.name} has no key {name}{meant(name, [key.name for key in self._info.keys])}")
         return f"{self._info.name}.{name}"
 
     def __getattr__(self, name: str) -> Any:
@@ -144,7 +136,7 @@ class Case(Groups):
             return Group(self, groups()[name])
         if any(group.startswith(name + ".") for group in groups()):
             return Place(self, name)
-        raise AttributeError(f"a case has no group {name}{_meant(name, list(groups()))}")
+        raise AttributeError(f"a case has no group {name}{meant(name, list(groups()))}")
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name != "name":
@@ -245,7 +237,7 @@ class Case(Groups):
     def columns(self) -> list[Column]:
         """The columns that a run will have."""
         self.check()
-        return _columns(library().case_columns(self._handle), library().case_column, self._handle)
+        return described_columns(library().case_columns(self._handle), library().case_column, self._handle)
 
     def run(
         self,
@@ -266,15 +258,11 @@ class Case(Groups):
         more runs; ideal_twin: run the twin with ideal joints too. Raises CaseError for a wrong case, RunError if the integration
         cannot go on: its `run` has the results so far, as has that of a KeyboardInterrupt or TimeoutError.
         """
-        from .run import carry_out
-
         case = self if accuracy is None and columns is None else self._with(accuracy, columns)
         return carry_out(case, until, end, progress, timeout, certify, ideal_twin)
 
     def begin(self, end: float | None = None, columns: str | Sequence[str] | None = None) -> Stepper:
         """A run that is advanced step by step, and whose inputs may change between steps."""
-        from .stepper import Stepper
-
         return Stepper(self._with(None, columns), end)
 
     def certify(self) -> Certificate:
@@ -308,19 +296,12 @@ def _find(name: str) -> Key:
     try:
         return keys[name]
     except KeyError:
-        raise KeyError(f"no key {name}{_meant(name, list(keys))}") from None
+        raise KeyError(f"no key {name}{meant(name, list(keys))}") from None
 
 
 def _find_group(name: str) -> None:
     if name not in groups():
-        raise KeyError(f"no group {name}{_meant(name, list(groups()))}")
-
-
-def _meant(word: str, words: Sequence[str]) -> str:
-    from difflib import get_close_matches
-
-    near = get_close_matches(word, words, 1)
-    return f"; did you mean {near[0]}?" if near else ""
+        raise KeyError(f"no group {name}{meant(name, list(groups()))}")
 
 
 def _read(key: Key, text: str) -> Any:
@@ -347,17 +328,6 @@ def _write(key: Key, value: Any) -> str:
 
 def _given_text(case: Case, key: Key) -> str:
     return text_from(library().case_get, case._handle, f"{key.group}.{key.name}".encode(), guess=256)
-
-
-def _columns(count: int, describe: Callable[..., int], handle: int) -> list[Column]:
-    import ctypes
-
-    name, unit, meaning = (ctypes.create_string_buffer(200) for _ in range(3))
-    found = []
-    for i in range(count):
-        describe(handle, i, name, 200, unit, 200, meaning, 200)
-        found.append(Column(name.value.decode(), unit.value.decode(), meaning.value.decode()))
-    return found
 
 
 def template(kind: str = "complete") -> Case:

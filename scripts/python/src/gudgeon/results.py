@@ -464,3 +464,12 @@ def file_of(word: str | Path, kind: str, folder: Path | None = None, run_missing
     if not path.exists():
         raise MissingResult(f"{path} is missing: the run has not written it")
     return path
+
+
+def cycles_turned(time: np.ndarray, angle: np.ndarray, length: float, end: float | None) -> np.ndarray:
+    """Cycles of `length` [rad] that the crank has turned through until each row, raised by rounding. A whole number is reached at
+    `end` [s], where the cycle ends whose answers are in the summary: rows before the first whole cycle have negative values. Without
+    it cycles are counted from the first row."""
+    travel = np.abs(angle - angle[0]) / length
+    before = 0.0 if end is None else (np.interp(end, time, travel) + 1e-6) % 1 - 1e-6
+    return travel - before + 1e-9

@@ -6,21 +6,21 @@ import csv
 import ctypes
 import math
 import time
-from collections.abc import Callable, Container, Generator, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from . import _library
-from ._library import library
-from .case import Case, Column, _columns, _meant
+from ._library import Column, columns_of_run, library, meant
 
 if TYPE_CHECKING:
     import numpy as np
     import pandas as pd
     import xarray as xr
+
+    from .case import Case
 
 SLICE = 0.03  # of a run, after which interruptions are looked for [s]
 EVENT_COLUMNS = ["time", "crank_angle", "event", "normal_speed", "duration", "max_penetration", "max_normal_force", "joint"]
@@ -46,7 +46,7 @@ class Summary(Mapping[str, Any]):
 
     def __getitem__(self, name: str) -> Any:
         if name not in self._texts:
-            raise KeyError(f"no quantity {name}{_meant(name, list(self._texts))}")
+            raise KeyError(f"no quantity {name}{meant(name, list(self._texts))}")
         return _number(self._texts[name])
 
     def __contains__(self, name: object) -> bool:
@@ -112,7 +112,7 @@ class Run:
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self._index:
-            raise KeyError(f"no column {name}{_meant(name, self.names)}")
+            raise KeyError(f"no column {name}{meant(name, self.names)}")
         return self._rows[:, self._index[name]]
 
     def __getattr__(self, name: str) -> np.ndarray:
@@ -187,6 +187,8 @@ class Run:
 
     def _cycles_turned(self, revolutions: int | None = None) -> np.ndarray:
         """Cycles that the crank has turned through until each row, see `cycles_turned`."""
+        from .results import cycles_turned
+
         if revolutions is None:
             revolutions = int(self.summary.get("cycle_revolutions", 1))
         end = self.summary["cycle_start"] + self.summary["cycle_duration"] if "cycle_start" in self.summary else None
@@ -194,8 +196,8 @@ class Run:
 
     @property
     def cycles(self) -> pd.DataFrame:
-        """Least, mean and largest value of each column in the rows of each whole cycle. Answers of the last cycle that are searched
-        inside the steps are in the summary (`cycle_...`).
+        """Least, mean and largest value of each column in the rows of each whole cycle. Between rows a value may go further: the true
+        extremes of the last cycle, searched inside the steps, are in the summary (`cycle_max_...`, `cycle_min_...`).
 
         >>> cycles = gudgeon.template("engine").run().cycles
         >>> cycles["crank_angle"].columns.tolist(), len(cycles) > 1
@@ -321,17 +323,6 @@ def _label(column: str, unit: str) -> str:
     return column.replace("_", " ") + (f" [{unit}]" if unit else "")
 
 
-def cycles_turned(time: np.ndarray, angle: np.ndarray, length: float, end: float | None) -> np.ndarray:
-    """Cycles of `length` [rad] that the crank has turned through until each row, raised by rounding. A whole number is reached at
-    `end` [s], where the cycle ends whose answers are in the summary: rows before the first whole cycle have negative values. Without
-    it cycles are counted from the first row."""
-    import numpy as np
-
-    travel = np.abs(angle - angle[0]) / length
-    before = 0.0 if end is None else (np.interp(end, time, travel) + 1e-6) % 1 - 1e-6
-    return travel - before + 1e-9
-
-
 class Page:
     """A page of HTML that needs no other file and no network; notebooks show it."""
 
@@ -369,7 +360,7 @@ def from_handle(case: Case, owner: _Owner | int) -> Run:
     owner = _Owner(owner) if isinstance(owner, int) else owner
     number = owner.number
     library().run_finish(number)
-    columns = _columns(library().columns(number), library().column, number)
+    columns = columns_of_run(number)
     count = ctypes.c_int64()
     address = library().rows(number, count)
     if count.value * len(columns):
@@ -466,61 +457,6 @@ def _bar(share: float) -> None:
 
     if sys.stderr.isatty() or "ipykernel" in sys.modules:
         print(f"\r{share:4.0%} {'#' * round(40 * share)}", end="\n" if share >= 1 else "", file=sys.stderr, flush=True)
-
-
-def load(path: str | Path, folder: str | Path | None = None) -> Run:
-    """A run from its files: `load("results/sim_I")`, or a name that is looked for in `results/`. Its case may read the tables that it
-    names in the folder of the files, or in `folder`; "/": anywhere. Raises ValueError with the name of a file that is damaged."""
-    import numpy as np
-    import pandas as pd
-
-    base = Path(str(path).removesuffix(".csv"))
-    if not Path(f"{base}.csv").is_file():
-        base = Path("results") / base
-    with _reading(f"{base}.csv") as path, open(path) as file:
-        headings = [name.partition("[") for name in file.readline().strip().split(",")]
-        columns = [Column(name, unit.rstrip("]"), "") for name, _, unit in headings]
-        if not columns[0].name:
-            raise ValueError("no columns")
-        rows = np.loadtxt(file, delimiter=",", ndmin=2)
-        if rows.size and rows.shape[1] != len(columns):
-            raise ValueError(f"{rows.shape[1]} columns instead of {len(columns)}")
-        rows = rows.reshape(-1, len(columns))
-    rows.flags.writeable = False
-    with _reading(f"{base}.summary.csv") as path:
-        table = pd.read_csv(path, dtype=str, keep_default_na=False)[["quantity", "value", "unit"]]
-    events = None
-    if Path(f"{base}.events.csv").is_file():
-        with _reading(f"{base}.events.csv") as path:
-            events = _events_of_file(path)
-    case, resolved = None, Path(f"{base}.resolved.nml")
-    if resolved.is_file():
-        with _reading(f"{resolved}"):
-            case = Case.from_text(resolved.read_text(), base.name, folder or base.parent)
-    run = Run(case, columns, rows, events, table.values.tolist(), base.name)
-    run._resolved = resolved.read_text() if case else None
-    run._files = base
-    if Path(f"{base}.ideal.csv").is_file():
-        run.twin = load(f"{base}.ideal.csv", folder)
-    return run
-
-
-@contextmanager
-def _reading(path: str) -> Generator[str]:
-    """What is wrong with the contents of a file becomes one error with its name."""
-    try:
-        yield path
-    except (ValueError, LookupError) as error:
-        raise ValueError(f"{path}: not a file of results, or damaged: {' '.join(str(error).split())}") from None
-
-
-def _events_of_file(path: str) -> list[list[Any]]:
-    import pandas as pd
-
-    table = pd.read_csv(path)
-    if len(table.columns) != len(EVENT_COLUMNS):
-        raise ValueError(f"{len(table.columns)} columns instead of {len(EVENT_COLUMNS)}")
-    return table.values.tolist()
 
 
 def compare(a: Run, b: Run, *names: str, ax: Any = None) -> pd.DataFrame:

@@ -6,12 +6,11 @@ import ctypes
 from collections.abc import Iterator, MutableMapping
 from typing import TYPE_CHECKING, Any
 
-from ._library import library, message
-from .case import Case, _meant
-from .run import RunError, _columns, _Owner, advance, from_handle
+from ._library import columns_of_run, library, meant, message
+from .run import Run, RunError, _Owner, advance, from_handle
 
 if TYPE_CHECKING:
-    from .run import Run
+    from .case import Case
 
 
 class Inputs(MutableMapping[str, float]):
@@ -30,7 +29,7 @@ class Inputs(MutableMapping[str, float]):
 
     def _at(self, name: str) -> int:
         if name not in self._index:
-            raise KeyError(f"no input {name}{_meant(name, list(self._index))}; there are: {', '.join(self._index) or 'none'}")
+            raise KeyError(f"no input {name}{meant(name, list(self._index))}; there are: {', '.join(self._index) or 'none'}")
         return self._index[name]
 
     def __getitem__(self, name: str) -> float:
@@ -80,7 +79,7 @@ class Stepper:
         self._owner = _Owner(case._begin(False, end))
         self._case = case.copy()
         self.inputs = Inputs(self._owner)
-        self._names = [column.name for column in _columns(library().columns(self._number), library().column, self._number)]
+        self._names = [column.name for column in columns_of_run(self._number)]
         self._values = (ctypes.c_double * len(self._names))()
 
     @property

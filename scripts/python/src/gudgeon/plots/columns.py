@@ -17,8 +17,7 @@ from gudgeon.plots.style import (
     VERMILION,
     WIDTH,
 )
-from gudgeon.results import Run
-from gudgeon.run import cycles_turned
+from gudgeon.results import Run, cycles_turned
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import MultipleLocator
