@@ -9,14 +9,13 @@ The numbers are from the summaries of runs with the method auto and the toleranc
 """
 from __future__ import annotations
 
-import csv
-import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from measured import TOP, built_program, write_table
+import measured
+from measured import built_program, run, write_table
 
 SIMULATIONS = [f"sim_{number}{film}" for film in ("", "_oscillating") for number in ("I", "II", "III", "IV", "V", "VI")]
 FINITE = [f"film/sim_{number}_finite" for number in ("I", "II", "III", "IV", "V", "VI")]
@@ -129,26 +128,17 @@ TABLES = {
 }
 
 
-def summary(program: Path, row: Row) -> dict[str, str]:
-    with tempfile.TemporaryDirectory() as out:
-        values = [part for value in ("output.ideal_twin=F", "output.columns=time", "output.samples_per_revolution=1", *row.values)
-                  for part in ("-s", value)]
-        done = subprocess.run([program, "-q", "-a", "standard", "-o", out, *values, f"cases/{row.case}.nml"], cwd=TOP, capture_output=True,
-                              text=True, check=False)
-        if done.returncode != 0:
-            raise SystemExit(f"measure_cases: {row.case} {row.values}: {done.stderr}")
-        with (Path(out) / f"{Path(row.case).name}.summary.csv").open(encoding="utf-8") as file:
-            return {line["quantity"]: line["value"] for line in csv.DictReader(file)}
-
-
 def write(program: Path, name: str) -> None:
     table = TABLES[name]
-    lines = ["| | " + " | ".join(column[0] for column in table.columns) + " |", "|---|" + "---|" * len(table.columns)]
+    rows = []
     for row in table.rows:
-        values = summary(program, row)
-        cells = [format(factor * float(values[quantity]), how) if quantity in values else "" for _, quantity, factor, how in table.columns]
-        lines.append(f"| {row.label} | " + " | ".join(cells) + " |")
-    print(write_table(name, table.title, f"scripts/bench/measure_cases.py {name}", table.note + "\n\n" + "\n".join(lines)))
+        with tempfile.TemporaryDirectory() as out:
+            values = run(program, row.case, out, ("output.ideal_twin=F", "output.columns=time", "output.samples_per_revolution=1", *row.values),
+                         ("-a", "standard"))
+        rows.append([row.label, *(format(factor * float(values[quantity]), how) if quantity in values else ""
+                                  for _, quantity, factor, how in table.columns)])
+    text = table.note + "\n\n" + measured.table(("", *(column[0] for column in table.columns)), rows)
+    print(write_table(name, table.title, f"scripts/bench/measure_cases.py {name}", text))
 
 
 def main() -> int:

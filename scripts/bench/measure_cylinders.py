@@ -7,14 +7,11 @@ Needs valgrind. Instructions are counted since they do not depend on what else t
 """
 from __future__ import annotations
 
-import argparse
-import csv
 import re
-import subprocess
 import tempfile
 from pathlib import Path
 
-from measured import TOP, built_program, write_table
+from measured import counted, program_of, table, write_table
 
 ENGINES = {"a film of finite length": "film/sim_IV_finite", "a dry pin": "cylinders/four_dry", "ideal pins, Wiebe": "cylinders/inline_four",
            "ideal pins, a table": "cylinders/six_mwm"}
@@ -43,7 +40,7 @@ def scene(cylinders: int, stations: bool) -> list[str]:
     return found
 
 
-def run(program: Path, case: str, settings: list[str], turns: int) -> tuple[int, int, int]:
+def cost(program: Path, case: str, settings: list[str], turns: int) -> tuple[int, int, int]:
     """Evaluations, instructions inside them, instructions of a run."""
     common = ("run.until=end", "drive.kind=constant_speed", "drive.torque=0.0", "drive.damping=0.0", f"integrator.revolutions={turns}",
               "integrator.relative_tolerance=1e-6",
@@ -51,13 +48,8 @@ def run(program: Path, case: str, settings: list[str], turns: int) -> tuple[int,
               "output.window=all", "cylinder=none", *RIGID)
     with tempfile.TemporaryDirectory() as folder:
         profile = Path(folder) / "profile"
-        done = subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={profile}", program, "-q", "-o", folder,
-                               *(word for setting in (*common, *SINGLE.get(case, ()), *settings) for word in ("--set", setting)), TOP / "cases" / f"{case}.nml"],
-                              capture_output=True, text=True, check=True)
-        with (Path(folder) / f"{Path(case).name}.summary.csv").open(newline="") as file:
-            summary = {row["quantity"]: row["value"] for row in csv.DictReader(file)}
-        inside = inclusive(profile.read_text(), "scene_problem_MOD_derivatives")
-    return int(summary["rhs_evaluations"]), inside, int(re.search(r"refs: +([\d,]+)", done.stderr)[1].replace(",", ""))
+        evaluations, instructions = counted(program, case, folder, (*common, *SINGLE.get(case, ()), *settings), str(profile))
+        return evaluations, inclusive(profile.read_text(), "scene_problem_MOD_derivatives"), instructions
 
 
 def inclusive(profile: str, function: str) -> int:
@@ -71,23 +63,22 @@ def inclusive(profile: str, function: str) -> int:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=Path, help="program to measure instead of the fast build")
-    program = parser.parse_args().program or built_program()
-    text = NOTE + ("| engine | cylinders, shaft | evaluations | instructions of one | of one cylinder | thousand instructions | of one cylinder |\n"
-                   "|---|---|---|---|---|---|---|\n")
+    program = program_of(__doc__)
+    rows = []
     for name, case in ENGINES.items():
         one = None
         for cylinders, stations in ((1, False), (1, True), (6, False), (6, True)):
             settings = scene(cylinders, stations)
-            run(program, case, settings, 1)   # makes the film table
-            few, many = (run(program, case, settings, turns) for turns in TURNS)
+            cost(program, case, settings, 1)   # makes the film table
+            few, many = (cost(program, case, settings, turns) for turns in TURNS)
             evaluations, instructions = ((many[k] - few[k]) / (TURNS[1] - TURNS[0]) for k in (0, 2))
             one = one or (many[1], instructions)
             shaft = "nine stations" if stations else "rigid"
-            text += (f"| {name} | {cylinders}, {shaft} | {evaluations:.0f} | {many[1]} | {many[1] / one[0]:.2f} "
-                     f"| {1e-3 * instructions:.0f} | {instructions / one[1]:.2f} |\n")
-            print(text.splitlines()[-1], flush=True)
+            rows.append((name, f"{cylinders}, {shaft}", f"{evaluations:.0f}", f"{many[1]}", f"{many[1] / one[0]:.2f}",
+                         f"{1e-3 * instructions:.0f}", f"{instructions / one[1]:.2f}"))
+            print(*rows[-1], flush=True)
+    text = NOTE + table(("engine", "cylinders, shaft", "evaluations", "instructions of one", "of one cylinder", "thousand instructions",
+                         "of one cylinder"), rows)
     print(write_table("cylinders", "Cost of several cylinders", "scripts/bench/measure_cylinders.py", text))
 
 

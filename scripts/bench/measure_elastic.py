@@ -10,11 +10,11 @@ cases/, which are shipped.
 """
 
 import argparse
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+import measured
 from measured import TOP, built_program, use_virtual_environment, write_table
 
 use_virtual_environment()
@@ -46,7 +46,7 @@ def main() -> int:
 
     def run(*settings: str) -> Run:
         out = Path(scratch) / str(len(list(Path(scratch).iterdir())))
-        subprocess.run([program, "-q", "-o", out, *(word for setting in settings for word in ("--set", setting)), CASE], check=True)
+        measured.run(program, CASE, out, settings)
         return load_run(out / f"{CASE.stem}.csv")
 
     try:
@@ -65,7 +65,7 @@ def main() -> int:
         if options.write:
             print(write_table(options.what, title, f"scripts/bench/measure_elastic.py {options.what} --write", text))
         print(*style.save(drawing, shipped if options.write else options.out, options.what, options.format or ["png"]))
-    except (OSError, subprocess.CalledProcessError) as failure:
+    except OSError as failure:
         print(f"measure_elastic.py: {failure}", file=sys.stderr)
         return 1
     language.current.warn("measure_elastic.py")

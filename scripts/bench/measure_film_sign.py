@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from measured import write_table
+from measured import table, write_table
 
 STATES = ((0.5, -0.001), (0.5, 0.3), (0.5, -0.3), (0.9, 0.3), (0.9, -0.3), (0.99, -0.3))   # eps, eps'
 WEDGE = 1.0      # W = omega - 2 gamma'
@@ -50,12 +50,13 @@ def closed_form(eps: float, rate: float) -> tuple[float, float]:
 
 
 def main() -> None:
-    lines = ["| eps | eps' | f_r, f_t from (5.20) | corrected formula | f_r as printed |", "|---|---|---|---|---|"]
+    rows = []
     for eps, rate in STATES:
         one, two = integrated(eps, rate), closed_form(eps, rate)
         printed = two[0] if rate >= 0 else -two[0]
-        lines.append(f"| {eps} | {rate} | {one[0]:.4f}, {one[1]:.4f} | {two[0]:.4f}, {two[1]:.4f} | {printed:.4f} |")
-    print(write_table("film_sign", "Sign of the radial force of the Pinkus-Sternlicht film", "scripts/bench/measure_film_sign.py", NOTE + "\n\n" + "\n".join(lines)))
+        rows.append((f"{eps}", f"{rate}", f"{one[0]:.4f}, {one[1]:.4f}", f"{two[0]:.4f}, {two[1]:.4f}", f"{printed:.4f}"))
+    text = NOTE + "\n\n" + table(("eps", "eps'", "f_r, f_t from (5.20)", "corrected formula", "f_r as printed"), rows)
+    print(write_table("film_sign", "Sign of the radial force of the Pinkus-Sternlicht film", "scripts/bench/measure_film_sign.py", text))
 
 
 if __name__ == "__main__":

@@ -9,15 +9,13 @@ fails or has other rows or events.
 """
 from __future__ import annotations
 
-import argparse
 import csv
-import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from measured import TOP, built_program, write_table
+from measured import TOP, program_of, run, table, write_table
 
 STATES = ("crank_angle", "rod_angle", "piston_position", "crank_speed", "rod_speed", "piston_velocity")
 OTHER_NAMES = {"normal_force[N]": "asperity_force[N]"}   # another name in the reference of mixed_sim_I
@@ -69,10 +67,7 @@ def compare(program: Path, reference: Reference) -> tuple[float, float, float, i
     with tempfile.TemporaryDirectory() as folder:
         settings = ["integrator.relative_tolerance=1e-11", "integrator.revolutions=0", f"integrator.end_time={times[-1]!r}",
                     f"output.interval={times[-1] / (len(times) - 1)!r}", "output.digits=17", "output.ideal_twin=F"]
-        words = [word for setting in settings for word in ("--set", setting)]
-        done = subprocess.run([program, "-q", "-o", folder, *words, reference.case], cwd=TOP, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise RuntimeError(f"{reference.name}: {done.stderr.strip()}")
+        run(program, reference.case, folder, settings)
         ours = columns(Path(folder) / f"{reference.case.stem}.csv")
         our_events = events(Path(folder) / f"{reference.case.stem}.events.csv")
     if len(ours["time[s]"]) != len(times):
@@ -93,13 +88,8 @@ def compare(program: Path, reference: Reference) -> tuple[float, float, float, i
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", type=Path, help="program to run (default: the release build)")
-    options = parser.parse_args()
-    program = options.program.resolve() if options.program else None
-    if program is None:
-        program = built_program()
-    lines = ["| reference | states | of its runs | other columns | of its runs | compared | events of both its runs | times [s] | of its runs [s] |", "|---" * 9 + "|"]
+    program = program_of(__doc__)
+    rows = []
     failed = 0
     for one in references():
         try:
@@ -108,12 +98,14 @@ def main() -> int:
             print(f"measure_references: {problem}", file=sys.stderr)
             failed += 1
             continue
-        lines.append(f"| `{one.name}` | {states:.1e} | {one.own[0]} | {others:.1e} | {one.own[1]} | {count} | {one.events} | "
-                     f"{f'{late:.1e}' if count else ''} | {one.own[2]} |")
-        print(lines[-1], flush=True)
+        rows.append((f"`{one.name}`", f"{states:.1e}", one.own[0], f"{others:.1e}", one.own[1], f"{count}", one.events,
+                     f"{late:.1e}" if count else "", one.own[2]))
+        print(*rows[-1], flush=True)
     if failed:
         return 1
-    print(write_table("references", "Agreement with the reference curves", "scripts/bench/measure_references.py", NOTE + "\n\n" + "\n".join(lines)))
+    text = NOTE + "\n\n" + table(("reference", "states", "of its runs", "other columns", "of its runs", "compared", "events of both its runs",
+                                   "times [s]", "of its runs [s]"), rows)
+    print(write_table("references", "Agreement with the reference curves", "scripts/bench/measure_references.py", text))
     return 0
 
 

@@ -9,12 +9,11 @@ Each case runs by the methods radau and auto at three tolerances. Its rows are c
 """
 from __future__ import annotations
 
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-from measured import TOP, built_program, use_virtual_environment, write_table
+from measured import built_program, run, table, use_virtual_environment, write_table
 
 use_virtual_environment()
 
@@ -31,13 +30,17 @@ KINDS = {"coordinates": ("crank_angle", "rod_angle", "piston_position", "eccentr
          "speeds": ("crank_speed", "rod_speed", "piston_velocity"),
          "forces and accelerations": ("rod_acceleration", "piston_acceleration", "pin_force_x", "pin_force_y", "guide_force")}
 
+NOTE = """Largest errors in the rows of a trace, over the range of each column, by `radau` and by `auto`, against Radau at 1e-11. Films of finite
+length have a finer table at tighter tolerances, whose error is included.
+
+"""
+
 
 def run_of(program: Path, case: str, method: str, tolerance: float) -> Run:
     """A run of a case, without its ideal twin."""
     with tempfile.TemporaryDirectory() as folder:
-        words = [program, "-q", "-j", "1", "-o", folder, "-s", "output.ideal_twin=F", "-s", "output.digits=15",
-                 "-s", f"integrator.method={method}", "-s", f"integrator.relative_tolerance={tolerance!r}", TOP / "cases" / f"{case}.nml"]
-        subprocess.run(words, check=True)
+        run(program, case, folder, ("output.ideal_twin=F", "output.digits=15", f"integrator.method={method}",
+                                    f"integrator.relative_tolerance={tolerance!r}"))
         return load_run(Path(folder) / f"{Path(case).name}.csv")
 
 
@@ -51,22 +54,20 @@ def main() -> int:
     if len(sys.argv) > 1:
         print(__doc__, file=sys.stderr)
         return 2
-    lines = ["Largest errors in the rows of a trace, over the range of each column, by `radau` and by `auto`, against Radau at 1e-11. Films of finite",
-             "length have a finer table at tighter tolerances, whose error is included.", "",
-             "| case | tolerance | " + " | ".join(f"{kind}: {method}" for kind in KINDS for method in METHODS) + " |",
-             "|---|---|" + "---|" * (len(KINDS) * len(METHODS))]
+    rows = []
     try:
         program = built_program()
         for case in CASES:
             exact = run_of(program, case, "radau", REFERENCE)
             for tolerance in TOLERANCES:
                 runs = [run_of(program, case, method, tolerance) for method in METHODS]
-                cells = [f"{largest_error(run, exact, names):.1e}" for names in KINDS.values() for run in runs]
-                lines.append(f"| `{case}` | {tolerance:.0e} | " + " | ".join(cells) + " |")
-    except (MissingResult, subprocess.CalledProcessError) as failure:
+                rows.append([f"`{case}`", f"{tolerance:.0e}",
+                             *(f"{largest_error(one, exact, names):.1e}" for names in KINDS.values() for one in runs)])
+    except MissingResult as failure:
         print(f"measure_rows.py: {failure}", file=sys.stderr)
         return 1
-    print(write_table("rows", "Accuracy of rows inside the steps", "scripts/bench/measure_rows.py", "\n".join(lines) + "\n"))
+    text = NOTE + table(("case", "tolerance", *(f"{kind}: {method}" for kind in KINDS for method in METHODS)), rows)
+    print(write_table("rows", "Accuracy of rows inside the steps", "scripts/bench/measure_rows.py", text))
     return 0
 
 

@@ -8,12 +8,11 @@ Cost is counted in evaluations of the scene, so that the tables are the same on 
 """
 
 import argparse
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-from measured import FOLDER, TOP, built_program, use_virtual_environment, write_table
+from measured import FOLDER, built_program, run, table, use_virtual_environment, write_table
 
 use_virtual_environment()
 
@@ -48,12 +47,9 @@ class Runs:
 
     def __call__(self, case: str, *settings: str) -> tuple[dict[str, float], pd.DataFrame | None]:
         """The numbers of the summary, and the worn surfaces if the run counts wear."""
-        words = [word for setting in ("output.samples_per_revolution=1", "output.ideal_twin=F", *settings) for word in ("--set", setting)]
-        subprocess.run([self.program, "-q", "-o", self.folder, *words, TOP / "cases" / f"{case}.nml"], check=True)
         base = self.folder / Path(case).name
         summary = {}
-        for line in base.with_name(f"{base.name}.summary.csv").read_text(encoding="utf-8").splitlines()[1:]:
-            name, value = line.split(",")[:2]
+        for name, value in run(self.program, case, self.folder, ("output.samples_per_revolution=1", "output.ideal_twin=F", *settings)).items():
             try:
                 summary[name] = float(value)
             except ValueError:
@@ -63,30 +59,25 @@ class Runs:
         return summary, pd.read_csv(worn) if worn.exists() else None
 
 
-def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
-    lines = [head, ("---",) * len(head), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
-
 def distribution_error(worn: pd.DataFrame, true: pd.DataFrame) -> float:
     """Largest difference of the cumulative volumes of the bore, over its volume; the bins of one are whole parts of the other's."""
-    mine, fine = (table["bore_volume[m3]"].cumsum().to_numpy() for table in (worn, true))
+    mine, fine = (one["bore_volume[m3]"].cumsum().to_numpy() for one in (worn, true))
     step = len(fine) // len(mine)
     return float(np.abs(mine - fine[step - 1::step]).max() / fine[-1])
 
 
-def over_tolerances(run: Runs) -> str:
+def over_tolerances(runs: Runs) -> str:
     parts = ["""## Tolerance
 
 Error of the volume worn from the bore against a run at 1e-12, that of its distribution (largest difference of the cumulative volume over
 the volume), and evaluations with and without the group `&wear`."""]
     for title, case, settings in SCENES:
-        true, true_worn = run(case, *settings, f"integrator.relative_tolerance={REFERENCE}")
+        true, true_worn = runs(case, *settings, f"integrator.relative_tolerance={REFERENCE}")
         rows = []
         for tolerance in TOLERANCES:
             chosen = (*settings, f"integrator.relative_tolerance={tolerance}")
-            summary, worn = run(case, *chosen)
-            without, _ = run(case, *(setting for setting in chosen if not setting.startswith("wear.")), "wear=none")
+            summary, worn = runs(case, *chosen)
+            without, _ = runs(case, *(setting for setting in chosen if not setting.startswith("wear.")), "wear=none")
             error = abs(summary["worn_volume_bore"] / true["worn_volume_bore"] - 1)
             rows.append((f"{tolerance:.0e}", f"{error:.1e}", f"{distribution_error(worn, true_worn):.1e}", f"{summary['evaluations']:.0f}",
                          f"{without['evaluations']:.0f}", f"{summary['evaluations'] / without['evaluations']:.2f}"))
@@ -94,12 +85,12 @@ the volume), and evaluations with and without the group `&wear`."""]
     return "\n\n".join(parts)
 
 
-def over_bins(run: Runs) -> str:
+def over_bins(runs: Runs) -> str:
     settings = ("wear.extrapolation=10000", "integrator.revolutions=2.5")
-    true, true_worn = run("wear/worn_bore", *settings, f"wear.bins={FINEST_BINS}")
+    true, true_worn = runs("wear/worn_bore", *settings, f"wear.bins={FINEST_BINS}")
     rows = []
     for bins in BINS:
-        summary, worn = run("wear/worn_bore", *settings, f"wear.bins={bins}")
+        summary, worn = runs("wear/worn_bore", *settings, f"wear.bins={bins}")
         rows.append((str(bins), f"{abs(summary['worn_volume_bore'] / true['worn_volume_bore'] - 1):.1e}",
                      f"{distribution_error(worn, true_worn):.1e}", f"{summary['evaluations']:.0f}"))
     return f"""## Bins of a worn bore
@@ -110,9 +101,9 @@ proportion to the number of bins that touch.
 {table(("bins", "volume", "distribution", "evaluations"), rows)}"""
 
 
-def over_extrapolation(run: Runs) -> str:
+def over_extrapolation(runs: Runs) -> str:
     def simulated(revolutions: int) -> tuple[dict[str, float], pd.DataFrame]:
-        summary, worn = run("wear/worn_bore", f"integrator.revolutions={revolutions}", f"wear.extrapolation={8000 // revolutions}",
+        summary, worn = runs("wear/worn_bore", f"integrator.revolutions={revolutions}", f"wear.extrapolation={8000 // revolutions}",
                             "wear.greatest_step_ratio=1")
         assert worn is not None
         return summary, worn
@@ -138,8 +129,8 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=FOLDER, metavar="DIR", help="folder of the page (default: data/measured)")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="wear") as folder:
-        run = Runs(folder)
-        text = "\n\n".join((over_tolerances(run), over_bins(run), over_extrapolation(run)))
+        runs = Runs(folder)
+        text = "\n\n".join((over_tolerances(runs), over_bins(runs), over_extrapolation(runs)))
     print(write_table("wear", "Wear: accuracy and cost", "scripts/bench/measure_wear.py", text, options.out))
     return 0
 
