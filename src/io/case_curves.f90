@@ -12,7 +12,7 @@ module case_curves
   use case_definition, only: case_t
   use compliance_file, only: parse_compliances
   use history_case, only: history_case_t, bore_case_t
-  use joint_places, only: places, n_places
+  use joint_places, only: n_places
   use case_schema, only: shown_group
   use case_values, only: case_values_t
   use curve_file, only: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque, load
@@ -38,8 +38,8 @@ contains
     if (into%drive%table%is_wanted()) call provide(values, into%file, 'drive', 'torque_table', turning_speed, torque, &
       into%drive%table)
     do i = 1, n_places
-      call provide_history(values, into%file, into%joints(i)%history, values%law_group('supply', trim(places(i)%name)), &
-        values%law_group('bore', trim(places(i)%name)))
+      call provide_history(values, into%file, into%joints(i)%history, values%law_group('supply', i), &
+        values%law_group('bore', i))
     end do
     if (allocated(into%load)) then
       if (mod(into%load%period_deg, 360) == 0) call provide(values, into%file, 'bearing_load', 'table', crank_angle, load, &

@@ -287,22 +287,14 @@ contains
       type(joint_case_t), intent(in) :: joint
       integer, intent(in) :: place   !! index in `places`
       if (.not. joint%has_bearing()) return
-      if (joint%is_too_short_for_its_film() .and. .not. is_given(law_group('lubrication', place), 'law')) &
+      if (joint%is_too_short_for_its_film() .and. .not. is_given(values%law_group('lubrication', place), 'law')) &
         call remark(joint_group(place), 'bearing_length', 'is less than two diameters, and the film by default that of a '// &
         'long bearing, which is too thick here: &lubrication law = ''finite_bearing''', joint_group(place)//'.bearing_radius')
       if (.not. joint%can_touch()) return
-      if (joint%contact%geometry%is_of_spheres() .and. .not. is_given(law_group('contact', place), 'geometry')) &
-        call remark(law_group('contact', place), 'youngs_modulus', 'gives by default the contact of two spheres, far too '// &
-        'soft for a pin in its bearing: geometry = ''conformal''', '')
+      if (joint%contact%geometry%is_of_spheres() .and. .not. is_given(values%law_group('contact', place), 'geometry')) &
+        call remark(values%law_group('contact', place), 'youngs_modulus', 'gives by default the contact of two spheres, far '// &
+        'too soft for a pin in its bearing: geometry = ''conformal''', '')
     end subroutine note_defaults
-
-    !> Name of the group in which the law of a joint is given.
-    function law_group(name, place) result(group)
-      character(len=*), intent(in) :: name
-      integer, intent(in) :: place   !! index in `places`
-      character(len=:), allocatable :: group
-      group = values%law_group(name, trim(places(place)%name))
-    end function law_group
 
     !> Whether the case gives a key itself.
     logical function is_given(group, name)

@@ -4,6 +4,7 @@ module case_values
   use kinds, only: dp
   use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, nearest_word, allowed
+  use joint_places, only: places
   use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, group_names, &
     real_kind, integer_kind, word_kind, text_kind
   use namelist_reader, only: entry_t, token_t, read_values
@@ -516,9 +517,10 @@ contains
   !> Name of the group in which a law of the joint at a place is given.
   function law_group(self, name, place) result(group)
     class(case_values_t), intent(in) :: self
-    character(len=*), intent(in) :: name, place   !! of the law's group and of the place
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: place   !! index in `places`
     character(len=:), allocatable :: group
-    group = place//'.'//name
+    group = trim(places(place)%name)//'.'//name
     if (.not. self%is_present(find_group(self%groups, group))) group = name
   end function law_group
 end module case_values

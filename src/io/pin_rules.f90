@@ -19,7 +19,7 @@ contains
     if (.not. into%has_floating_pin()) return
     do place = 1, size(places)
       if (.not. allocated(into%joints(place)%film)) cycle
-      key = values%place_of(values%law_group('lubrication', trim(places(place)%name)), 'film_moment')
+      key = values%place_of(values%law_group('lubrication', place), 'film_moment')
       if (values%values(key)%given(1)) cycle
       into%joints(place)%film%film_moment = .true.
       values%values(key)%switch = .true.
@@ -67,7 +67,7 @@ contains
       character(len=:), allocatable :: group
       associate (joint => c%joints(place))
         if (.not. allocated(joint%film)) return
-        group = values%law_group('lubrication', trim(places(place)%name))
+        group = values%law_group('lubrication', place)
         call values%forbid(.not. joint%film%gives_pressure(), group, 'law', &   ! that of an oscillating pin
           'follows the motion of an ideal mechanism, for &pin kind = ''rod'' alone; finite_bearing, for example, can')
         if (.not. c%has_floating_pin()) return

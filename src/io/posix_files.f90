@@ -9,11 +9,11 @@ module posix_files
   use posix_signals, only: signal_set_t, hold_interrupts, restore_interrupts, interrupted, ignore_write_signals
   implicit none
   private
-  public :: open_file, to_read, to_append, open_standard_input, open_for_writing, lock_file, file_length, absolute_path, &
+  public :: open_file, to_read, to_append, open_standard_input, open_for_writing, file_length, absolute_path, &
     read_bytes, write_all, truncate_file, reserve_file, synchronise_file, synchronise_folder, close_file, rename_file, &
     remove_file, make_directory, remove_folder, list_folder, longest_name, is_terminal, wait_for_input, error_text, signal_set_t, &
     hold_interrupts, restore_interrupts, interrupted, fill_standard_descriptors, ignore_write_signals
-  public :: error_no_entry, error_interrupted, error_locked, error_exists, error_is_directory, error_no_space, &
+  public :: error_no_entry, error_interrupted, error_locked, error_is_directory, error_no_space, &
     error_broken_pipe, error_not_regular, error_is_link
 
   !> Error numbers of Linux, and two of this module: the file is neither a regular file nor a folder, and a symbolic link that must

@@ -96,9 +96,9 @@ contains
   !> Number of processors that this program may use.
   integer function available_processors() result(number)
     integer(c_int64_t) :: mask(128)
+    integer(c_int) :: unused
     mask = 0
-    number = 1
-    if (c_affinity(0_c_int, int(8*size(mask), c_size_t), mask) > 0) number = 1
+    unused = c_affinity(0_c_int, int(8*size(mask), c_size_t), mask)
     number = max(1, sum(popcnt(mask)))
   end function available_processors
 end module posix_processes

@@ -9,7 +9,7 @@ module run_progress
   use posix_files, only: is_terminal, write_all, error_text, error_broken_pipe
   implicit none
   private
-  public :: progress_t, progress_wanted, clock, tell, say, rate_text, duration_text
+  public :: progress_t, progress_wanted, clock, tell, say, rate_text
 
   integer, parameter :: standard_output = 1, standard_error = 2   !! file descriptors
   real(dp), parameter :: least_interval = 0.2_dp   !! shortest time between two lines [s]
