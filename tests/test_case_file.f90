@@ -476,6 +476,9 @@ contains
                  '(or quasi_static) with contact, friction or lubrication: an ideal joint has no clearance; remove these '// &
                  'groups, for '// &
                  'example with --set contact=none')
+    call refused(check, whole//'&friction law=''coulomb'' coefficient=0.1 /'//n//'&joint place=''main_bearing'' '// &
+      'kind=''clearance'' clearance=1e-4 bearing_radius=0.012 /', 'x.nml: &joint of main_bearing kind = clearance: must be '// &
+      'ideal or quasi_static: the crank turns about a fixed axis')
     call refused(check, whole//'&joint place=''crank_pin'' kind=''clearance'' clearance=1e-4 /', &
                  'x.nml: &joint of crank_pin bearing_radius: required with kind = ''clearance'' (m)')
     call refused_on(check, whole//second, ['crank_pin.joint.clearance=0.2'], &

@@ -4,7 +4,7 @@ module joint_rules
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use joint_places, only: places, n_places, in_order, joint_group, main_bearing
-  use chain_motion, only: n_bodies, body_crank, body_big_end, body_small_end, body_piston
+  use chain_motion, only: n_bodies, body_crank, body_big_end, body_small_end, body_piston, body_frame
   use archard_wear, only: of_bore
   use friction_law, only: friction_law_t
   use case_schema, only: find_group
@@ -211,12 +211,12 @@ contains
     type(joint_case_t), intent(in) :: joint
     integer, intent(in) :: place   !! index in `places`
     type(case_values_t), intent(inout) :: values
-    real(dp) :: turning(n_bodies), speed, limit
+    real(dp) :: turning(body_frame:n_bodies), speed, limit
     if (.not. (joint%has_clearance() .and. allocated(joint%friction))) return
     associate (m => c%mechanism, bearing => joint%bearing(c%mechanism%rod_length))
+      turning = 0
       turning(body_crank) = 1
       turning([body_big_end, body_small_end]) = m%crank_length/m%rod_length
-      turning(body_piston) = 0
       speed = turning(places(place)%pin_body) + turning(places(place)%bearing)
       speed = speed*abs(c%initial%crank_speed)*bearing%pin_radius()
     end associate
