@@ -114,7 +114,7 @@ contains
     if (options%name /= '') case%name = options%name
     call choose_columns(case, .false., list, job%error)
     if (.not. allocated(job%error)) call choose_columns(case, .true., ideal_list, job%error)
-    if (.not. allocated(job%error)) call try_start(case, job%error)
+    if (.not. allocated(job%error)) call try_start(case, list, job%error)
     if (allocated(job%error)) then
       call name_file(path, job%error)
       return

@@ -6,8 +6,8 @@ module guide_events
   use piston_guide, only: piston_guide_t, corner_t, n_corners
   implicit none
   private
-  public :: n_guide_events, corner_events, corner_force_events, corner_share, change_contact, begin_corner_contact, &
-    contact_has_kink, corner_kink_time, inward_acceleration
+  public :: n_guide_events, find_guide_events, corners_may_lose_force, corner_force_events, pass_guide_event, &
+    find_lost_corner_forces, begin_corner_contact, contact_has_kink, corner_kink_time, inward_acceleration
 
 contains
 
@@ -21,17 +21,25 @@ contains
     if (guide%slots(guide%touching)%element%contact%may_lose_force) n_guide_events = 2*n_corners
   end function n_guide_events
 
-  !> Event functions and their rates: the penetration of a corner [m] while it is not in contact, and minus the penetration while it
-  !> is.
-  pure subroutine corner_events(guide, y, g, g_rate)
+  !> Event functions of a guide that has them, and their rates: the penetration of a corner [m] while it is not in contact, and
+  !> minus the penetration while it is. Those that need the forces are -1 and 0 here.
+  pure subroutine find_guide_events(guide, y, g, g_rate)
     type(piston_guide_t), intent(in) :: guide
     real(dp), intent(in) :: y(:)
-    real(dp), intent(out) :: g(n_corners), g_rate(n_corners)
+    real(dp), intent(out) :: g(:), g_rate(:)
     type(corner_t) :: corner(n_corners)
+    g = -1
+    g_rate = 0
     call guide%find_contact_state(y, corner)
-    g = merge(-corner%depth, corner%depth, guide%touches)
-    g_rate = merge(-corner%depth_rate, corner%depth_rate, guide%touches)
-  end subroutine corner_events
+    g(:n_corners) = merge(-corner%depth, corner%depth, guide%touches)
+    g_rate(:n_corners) = merge(-corner%depth_rate, corner%depth_rate, guide%touches)
+  end subroutine find_guide_events
+
+  !> Whether the forces of corners in contact may be lost.
+  pure logical function corners_may_lose_force(guide)
+    type(piston_guide_t), intent(in) :: guide
+    corners_may_lose_force = n_guide_events(guide) > n_corners .and. any(guide%touches)
+  end function corners_may_lose_force
 
   !> Event functions of a law whose damper may cancel the elastic force: a contact loses its force, or the force acts again.
   pure subroutine corner_force_events(guide, corner, motion, accelerations, g, g_rate)
@@ -39,15 +47,31 @@ contains
     type(corner_t), intent(in) :: corner(n_corners)
     type(motion_t), intent(in) :: motion
     type(accelerations_t), intent(in) :: accelerations
-    real(dp), intent(out) :: g(n_corners), g_rate(n_corners)
+    real(dp), intent(inout) :: g(:), g_rate(:)   !! those of all events of the guide
     integer :: i
     do i = 1, n_corners
-      call corner_share(guide, i, corner(i), motion, accelerations, g(i), g_rate(i))
-      if (guide%force_is_lost(i)) cycle
-      g(i) = -g(i)
-      g_rate(i) = -g_rate(i)
+      associate (at => n_corners + i)
+        call corner_share(guide, i, corner(i), motion, accelerations, g(at), g_rate(at))
+        if (guide%force_is_lost(i)) cycle
+        g(at) = -g(at)
+        g_rate(at) = -g_rate(at)
+      end associate
     end do
   end subroutine corner_force_events
+
+  !> Find the corners in contact whose forces are lost, since they move out too fast.
+  pure subroutine find_lost_corner_forces(guide, corner, motion, accelerations)
+    type(piston_guide_t), intent(inout) :: guide
+    type(corner_t), intent(in) :: corner(n_corners)
+    type(motion_t), intent(in) :: motion
+    type(accelerations_t), intent(in) :: accelerations
+    real(dp) :: share, share_rate
+    integer :: i
+    do i = 1, n_corners
+      call corner_share(guide, i, corner(i), motion, accelerations, share, share_rate)
+      guide%force_is_lost(i) = share < 0
+    end do
+  end subroutine find_lost_corner_forces
 
   !> The damped over the elastic force of corner i, without the limit 0, and its rate [1/s]; 1 and 0 without contact.
   pure subroutine corner_share(guide, i, corner, motion, accelerations, share, share_rate)
@@ -63,20 +87,26 @@ contains
       inward_acceleration(i, corner, motion, accelerations), share, share_rate)
   end subroutine corner_share
 
-  !> Change the state of corner i: its contact ends, or a new contact begins.
-  pure subroutine change_contact(guide, i, y)
+  !> Pass an event: the contact of a corner begins or ends, or its force is lost or acts again. `enters`: a contact begins whose
+  !> force has a kink there.
+  pure subroutine pass_guide_event(guide, event, y, enters)
     type(piston_guide_t), intent(inout) :: guide
-    integer, intent(in) :: i
+    integer, intent(in) :: event
     real(dp), intent(in) :: y(:)
+    logical, intent(out) :: enters
     type(corner_t) :: corner(n_corners)
-    if (guide%touches(i)) then
-      guide%touches(i) = .false.
-      guide%force_is_lost(i) = .false.
+    enters = .false.
+    if (event > n_corners) then
+      guide%force_is_lost(event - n_corners) = .not. guide%force_is_lost(event - n_corners)
+    else if (guide%touches(event)) then
+      guide%touches(event) = .false.
+      guide%force_is_lost(event) = .false.
     else
       call guide%find_contact_state(y, corner)
-      call begin_corner_contact(guide, i, corner(i)%depth_rate)
+      call begin_corner_contact(guide, event, corner(event)%depth_rate)
+      enters = contact_has_kink(guide)
     end if
-  end subroutine change_contact
+  end subroutine pass_guide_event
 
   !> Begin a contact of corner i with a penetration rate [m/s].
   pure subroutine begin_corner_contact(guide, i, rate)

@@ -15,6 +15,7 @@
 module period_watch
   use kinds, only: dp
   use constants, only: two_pi
+  use case_definition, only: case_t
   use scene_problem, only: scene_t
   use run_length, only: longest_period
   implicit none
@@ -57,6 +58,7 @@ module period_watch
                                                                            !! depth)
     real(dp), private :: times(0:depth - 1) = 0
   contains
+    procedure :: choose
     procedure :: begin
     procedure :: record_point
     procedure :: end_revolution
@@ -74,6 +76,18 @@ contains
     class(period_watch_t), intent(in) :: self
     revolutions = merge(self%period, self%forcing, self%period > 0)
   end function cycle_revolutions
+
+  !> The search that a case asks for.
+  subroutine choose(self, case)
+    class(period_watch_t), intent(inout) :: self
+    type(case_t), intent(in) :: case
+    self%is_on = case%run%is_until_periodic()
+    self%longest = case%run%period_revolutions
+    self%tolerance = case%run%periodic_tolerance
+    self%integration_tolerance = case%integrator%relative_tolerance
+    self%most_revolutions = case%run%most_revolutions
+    self%keeps_one_more = self%is_on .and. case%output%window == 'last_period'
+  end subroutine choose
 
   !> Begin with a scene at (t, y). Revolutions that it has made before count as a part of the largest number.
   subroutine begin(self, scene, t, y)

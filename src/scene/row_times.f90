@@ -1,8 +1,11 @@
 !> When the rows of a trace are due: at equally spaced times, at equally spaced crank angles, or at every accepted step.
 module row_times
   use kinds, only: dp
+  use constants, only: degree
   use ode_method, only: ode_method_t
+  use case_definition, only: case_t
   use scene_problem, only: scene_t
+  use scene_builder, only: latest_end, sample_interval
   use angle_grid, only: angle_grid_t
   use crank_passage, only: find_turning
   implicit none
@@ -19,6 +22,7 @@ module row_times
     real(dp), private :: t = 0, ends(2) = 0   !! of the step: time reached; times at which the crank turns back, and at its end [s]
     integer, private :: part = 1
   contains
+    procedure :: choose
     procedure :: begin
     procedure :: enter_step
     procedure :: find_next
@@ -26,6 +30,21 @@ module row_times
   end type row_times_t
 
 contains
+
+  !> The rows that a case asks for.
+  subroutine choose(self, case)
+    class(row_times_t), intent(inout) :: self
+    type(case_t), intent(in) :: case
+    if (case%output%sampling == 'crank_angle') then
+      self%angles%per_revolution = case%output%samples_per_revolution
+      self%angles%origin = case%output%angle_origin_deg*degree
+    else
+      self%interval = sample_interval(case)
+    end if
+    self%first_sample = case%output%start_time
+    self%every_step = case%output%every_step
+    self%end_time = latest_end(case)
+  end subroutine choose
 
   !> Find out whether a row is due at the start, at a time and a crank angle [rad], and which one comes next.
   subroutine begin(self, t, crank_angle, is_due)

@@ -3,6 +3,8 @@ module run_limits
   use kinds, only: dp
   use constants, only: two_pi
   use crank_turns, only: turn_limit_t
+  use case_definition, only: case_t
+  use scene_builder, only: longest_turn
   implicit none
   private
   public :: run_limits_t
@@ -16,10 +18,21 @@ module run_limits
     integer, private :: evaluations_then = 0        !! number of evaluations at the beginning of the present revolution
     real(dp), private :: time_then = 0, travel_then = 0   !! time [s] and crank travel [rad] at that beginning
   contains
+    procedure :: choose
     procedure :: follow
   end type run_limits_t
 
 contains
+
+  !> The limits of a case; `revolution_time` is the duration of a revolution at the starting speed [s].
+  subroutine choose(self, case, revolution_time)
+    class(run_limits_t), intent(inout) :: self
+    type(case_t), intent(in) :: case
+    real(dp), intent(in) :: revolution_time
+    self%turn_limit%longest = longest_turn(case)
+    self%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
+    self%revolution_time = revolution_time
+  end subroutine choose
 
   !> Account for an accepted point. A revolution that takes longer than the first would have taken is counted as ended there: a
   !> crank at rest must not use an unlimited number of evaluations.

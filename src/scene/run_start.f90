@@ -7,7 +7,7 @@ module run_start
   use scene_problem, only: scene_t
   use scene_builder, only: build_scene, latest_end
   use run_recorder, only: recorder_t
-  use trace_columns, only: choose_columns
+  use trace_row, only: column_list_t
   implicit none
   private
   public :: find_start, try_start
@@ -50,9 +50,10 @@ contains
     end if
   end subroutine find_start
 
-  !> Build the scene of a case and start it, without tables. Errors: see `begin`.
-  subroutine try_start(case, error)
+  !> Build the scene of a case with these columns and start it, without tables. Errors: see `begin`.
+  subroutine try_start(case, list, error)
     type(case_t), intent(in) :: case
+    type(column_list_t), intent(in) :: list
     type(error_t), allocatable, intent(out) :: error
     type(scene_t), allocatable :: scene
     type(recorder_t) :: recorder
@@ -60,8 +61,7 @@ contains
     real(dp) :: t
     call build_scene(case, .false., scene, error, without_tables=.true.)
     if (allocated(error) .or. .not. allocated(case%initial%state)) return
-    call choose_columns(case, .false., recorder%list, error)
-    if (allocated(error)) return
+    recorder%list = list
     recorder%list%id = [integer ::]
     call recorder%prepare(scene)
     call find_start(case, .false., scene, t, y, error, recorder)

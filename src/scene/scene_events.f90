@@ -8,8 +8,8 @@ submodule (scene_problem) scene_events
   use clearance_joint, only: most_joints
   use elastic_film, only: wall_load, wall_deflection
   use joint_evaluation, only: outward_acceleration
-  use guide_events, only: n_guide_events, corner_events, corner_force_events, corner_share, change_contact, &
-    begin_corner_contact, contact_has_kink, corner_kink_time, inward_acceleration
+  use guide_events, only: n_guide_events, find_guide_events, corners_may_lose_force, corner_force_events, pass_guide_event, &
+    find_lost_corner_forces, begin_corner_contact, contact_has_kink, corner_kink_time, inward_acceleration
   use piston_guide, only: corner_t, n_corners
   use crank_turns, only: n_turn_events
   implicit none
@@ -23,6 +23,7 @@ contains
     class(scene_t), intent(inout) :: scene
     integer :: i
     scene%n_events = 0
+    scene%events_of = slice_t()
     scene%may_stick = .false.
     do i = 1, size(scene%joints)
       if (may_touch(scene%joints(i))) &
@@ -43,59 +44,58 @@ contains
       integer, intent(in) :: owner, n
       integer :: j
       do j = 1, n
-        scene%n_events = scene%n_events + 1
-        scene%event_of(scene%n_events) = event_owner_t(owner, j)
+        scene%event_of(scene%n_events + j) = event_owner_t(owner, j)
       end do
+      scene%events_of(owner) = slice_t(scene%n_events + 1, scene%n_events + n)
+      scene%n_events = scene%n_events + n
     end subroutine number
   end subroutine number_events
 
   module procedure all_events
-    integer :: i, k, n
-    logical :: needs_forces
-    real(dp) :: angles(most_cylinders), speeds(most_cylinders)   ! of the other cylinders
-    needs_forces = .false.
-    k = 0
+    integer :: i
+    real(dp) :: angle, speed                                         ! of the crank
+    real(dp) :: angles(most_cylinders), speeds(most_cylinders)       ! of the other cylinders
+    angle = self%crank_angle(t, y)
+    speed = self%crank_speed(t, y)
     do i = 1, self%n_joints
-      n = self%joints(i)%n_events
-      if (n > 0) call find_joint_events(self%joints(i), y, g(k + 1:k + n), g_rate(k + 1:k + n))
-      needs_forces = needs_forces .or. has_force_events(self%joints(i))
-      k = k + n
+      associate (at => self%events_of(i))
+        if (at%last >= at%first) call find_joint_events(self%joints(i), y, g(at%first:at%last), g_rate(at%first:at%last))
+      end associate
     end do
-    if (allocated(self%gas)) then
-      n = self%gas%n_events
-      call self%gas%events(self%crank_angle(t, y), self%crank_speed(t, y), g(k + 1:k + n), g_rate(k + 1:k + n))
-      k = k + n
-    end if
-    if (allocated(self%other_gas)) then
-      n = self%other_gas%n_events(self%gas)
-      if (n > 0) then
+    associate (at => self%events_of(of_gas))
+      if (at%last >= at%first) call self%gas%events(angle, speed, g(at%first:at%last), g_rate(at%first:at%last))
+    end associate
+    associate (at => self%events_of(of_other_gas))
+      if (at%last >= at%first) then
         call other_cranks(self, t, y, angles, speeds)
-        call self%other_gas%events(self%gas, angles, speeds, g(k + 1:k + n), g_rate(k + 1:k + n))
+        call self%other_gas%events(self%gas, angles, speeds, g(at%first:at%last), g_rate(at%first:at%last))
       end if
-      k = k + n
-    end if
-    if (allocated(self%turns)) then
-      call self%turns%events(self%crank_angle(t, y), self%crank_speed(t, y), g(k + 1:k + n_turn_events), &
-        g_rate(k + 1:k + n_turn_events))
-      k = k + n_turn_events
-    end if
-    if (allocated(self%wear_cycle)) then
-      k = k + 1
-      call self%wear_cycle%event(self%crank_angle(t, y), self%crank_speed(t, y), g(k), g_rate(k))
-    end if
-    if (allocated(self%guide)) then
-      n = n_guide_events(self%guide)
-      if (n >= n_corners) call corner_events(self%guide, y, g(k + 1:k + n_corners), g_rate(k + 1:k + n_corners))
-      g(k + n_corners + 1:k + n) = -1
-      g_rate(k + n_corners + 1:k + n) = 0
-      needs_forces = needs_forces .or. corners_may_lose_force(self)
-    end if
-    if (allocated(self%given_load)) then   ! there is no guide then
-      if (self%given_load%n_events() > 0) &
-        call self%given_load%event(self%crank_angle(t, y), self%crank_speed(t, y), g(k + 1), g_rate(k + 1))
-    end if
-    if (needs_forces) call find_force_events(self, t, y, g, g_rate)
+    end associate
+    associate (at => self%events_of(of_turns))
+      if (at%last >= at%first) call self%turns%events(angle, speed, g(at%first:at%last), g_rate(at%first:at%last))
+    end associate
+    associate (at => self%events_of(of_wear))
+      if (at%last >= at%first) call self%wear_cycle%event(angle, speed, g(at%first), g_rate(at%first))
+    end associate
+    associate (at => self%events_of(of_guide))
+      if (at%last >= at%first) call find_guide_events(self%guide, y, g(at%first:at%last), g_rate(at%first:at%last))
+    end associate
+    associate (at => self%events_of(of_load))
+      if (at%last >= at%first) call self%given_load%event(angle, speed, g(at%first), g_rate(at%first))
+    end associate
+    if (needs_forces(self)) call find_force_events(self, t, y, g, g_rate)
   end procedure all_events
+
+  !> Whether some event functions need the forces at present.
+  pure logical function needs_forces(scene)
+    class(scene_t), intent(in) :: scene
+    integer :: i
+    needs_forces = .false.
+    do i = 1, scene%n_joints
+      needs_forces = needs_forces .or. has_force_events(scene%joints(i))
+    end do
+    if (allocated(scene%guide)) needs_forces = needs_forces .or. corners_may_lose_force(scene%guide)
+  end function needs_forces
 
   !> The event functions that depend on the accelerations: those of set-valued friction and of contacts whose forces may be lost.
   pure subroutine find_force_events(scene, t, y, g, g_rate)
@@ -104,32 +104,25 @@ contains
     real(dp), intent(inout) :: g(:), g_rate(:)   !! those of all events
     type(evaluation_t) :: now
     logical :: in_domain
-    integer :: i, k
+    integer :: i
     call scene%evaluate(t, y, now, in_domain)
     if (.not. in_domain) return
-    k = 0
     do i = 1, scene%n_joints
-      associate (joint => scene%joints(i), n => scene%joints(i)%n_events)
+      associate (joint => scene%joints(i), at => scene%events_of(i))
         if (has_force_events(joint)) call find_joint_force_events(joint, now%joint(i), &
-          joint%relative_rates(now%accelerations), g(k + 1:k + n), g_rate(k + 1:k + n))
-        k = k + n
+          joint%relative_rates(now%accelerations), g(at%first:at%last), g_rate(at%first:at%last))
       end associate
     end do
     if (.not. allocated(scene%guide)) return
-    k = scene%n_events - n_corners
-    if (corners_may_lose_force(scene)) &
-      call corner_force_events(scene%guide, now%guide%corner, now%motion, now%accelerations, g(k + 1:), g_rate(k + 1:))
+    associate (at => scene%events_of(of_guide))
+      if (corners_may_lose_force(scene%guide)) call corner_force_events(scene%guide, now%guide%corner, now%motion, &
+        now%accelerations, g(at%first:at%last), g_rate(at%first:at%last))
+    end associate
   end subroutine find_force_events
-
-  !> Whether the forces of corners of the skirt in contact may be lost.
-  pure logical function corners_may_lose_force(scene)
-    class(scene_t), intent(in) :: scene
-    corners_may_lose_force = n_guide_events(scene%guide) > n_corners .and. any(scene%guide%touches)
-  end function corners_may_lose_force
 
   module procedure handle_event
     real(dp) :: contact(2)
-    logical :: slides
+    logical :: slides, enters
     action = event_continue
     associate (i => self%event_of(index)%joint, event => self%event_of(index)%event)
       if (i == of_gas) then
@@ -143,11 +136,9 @@ contains
         call self%given_load%pass(self%crank_speed(t, y))
       else if (i == of_wear) then
         self%wear_cycle%begin = self%crank_angle(t, y)
-      else if (i == of_guide .and. event > n_corners) then
-        self%guide%force_is_lost(event - n_corners) = .not. self%guide%force_is_lost(event - n_corners)
       else if (i == of_guide) then
-        if (contact_has_kink(self%guide) .and. .not. self%guide%touches(event)) self%entry_time = t
-        call change_contact(self%guide, event, y)
+        call pass_guide_event(self%guide, event, y, enters)
+        if (enters) self%entry_time = t
       else if (event > contact_changes) then
         call pass_joint_event(self%joints(i), event, slides)
         if (slides) call find_sliding_direction(self, i, t, y, .false.)
@@ -403,7 +394,6 @@ contains
     class(scene_t), intent(inout) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t) :: now
-    real(dp) :: share, share_rate
     logical :: in_domain, has_corners
     integer :: i
     has_corners = .false.
@@ -415,11 +405,7 @@ contains
       if (may_lose_force(scene%joints(i))) call &
         find_lost_force(scene%joints(i), now%joint(i), scene%joints(i)%relative_rates(now%accelerations))
     end do
-    if (.not. has_corners) return
-    do i = 1, n_corners
-      call corner_share(scene%guide, i, now%guide%corner(i), now%motion, now%accelerations, share, share_rate)
-      scene%guide%force_is_lost(i) = share < 0
-    end do
+    if (has_corners) call find_lost_corner_forces(scene%guide, now%guide%corner, now%motion, now%accelerations)
   end subroutine find_lost_forces
 
   !> Start of a pin at the wall, within rounding: if it moves away from the wall or, at rest, is drawn away from it, there is no

@@ -46,6 +46,7 @@ module scene_problem
 
   !> Owners of events other than joints.
   integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2, of_wear = -3, of_other_gas = -4, of_load = -5
+  integer, parameter :: first_owner = of_load
 
   !> The owner of an event function of the integrator.
   type :: event_owner_t
@@ -103,6 +104,7 @@ module scene_problem
                                          !! of a joint
     real(dp) :: entry_time = -huge(1.0_dp)          !! beginning of the last contact [s]
     type(event_owner_t) :: event_of(max_events)     !! owners of the event functions
+    type(slice_t) :: events_of(first_owner:most_bearings)   !! and the event functions of each owner, a joint or one of the above
   contains
     procedure :: claim
     procedure, non_overridable :: read_crank

@@ -12,7 +12,7 @@ module simulation
   use scene_inputs, only: inputs, inputs_of, input_value, change_input
   use inside_step, only: evaluate_inside
   use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, crank_creeps
-  use scene_builder, only: build_scene, simulated_time, latest_end, longest_turn, sample_interval, settings_for
+  use scene_builder, only: build_scene, simulated_time, settings_for
   use crank_turns, only: all_made, turned_back
   use trace_columns, only: column_list_t
   use cycle_watch, only: cycle_watch_t
@@ -29,7 +29,7 @@ module simulation
   use train_record, only: train_result_t
   use result_ledger, only: kept_result_t
   use trace_sink, only: trace_sink_t
-  use constants, only: two_pi, degree
+  use constants, only: two_pi
   implicit none
   private
   public :: simulate, run_t, run_report_t, interrupted_text
@@ -126,24 +126,9 @@ contains
     if (allocated(error)) return
     associate (recorder => self%recorder, scene => self%scene)
       recorder%list = list
-      if (case%output%sampling == 'crank_angle') then
-        recorder%rows%angles%per_revolution = case%output%samples_per_revolution
-        recorder%rows%angles%origin = case%output%angle_origin_deg*degree
-      else
-        recorder%rows%interval = sample_interval(case)
-      end if
-      recorder%rows%first_sample = case%output%start_time
-      recorder%periods%is_on = case%run%is_until_periodic()
-      recorder%periods%longest = case%run%period_revolutions
-      recorder%periods%tolerance = case%run%periodic_tolerance
-      recorder%periods%integration_tolerance = case%integrator%relative_tolerance
-      recorder%periods%most_revolutions = case%run%most_revolutions
-      recorder%periods%keeps_one_more = recorder%periods%is_on .and. case%output%window == 'last_period'
-      recorder%rows%end_time = latest_end(case)
-      recorder%limits%turn_limit%longest = longest_turn(case)
-      recorder%rows%every_step = case%output%every_step
-      recorder%limits%max_evaluations_per_revolution = case%integrator%max_evaluations_per_revolution
-      recorder%limits%revolution_time = two_pi/scene%speed_scale()
+      call recorder%rows%choose(case)
+      call recorder%periods%choose(case)
+      call recorder%limits%choose(case, two_pi/scene%speed_scale())
       recorder%sink => sink
       if (present(cycles)) self%has_cycles = allocated(cycles)
       if (self%has_cycles) then
