@@ -410,14 +410,14 @@ study large <<'END'
 &parameter key = 'initial.crank_speed', from = 100, to = 200, count = 10 /
 &parameter key = 'mechanism.piston_mass', from = 0.5, to = 1, count = 25 /
 END
-timeout -s KILL 100 "$gudgeon" sweep --check "$work/large.nml" >"$work/out"
+(ulimit -t 100; exec "$gudgeon" sweep --check "$work/large.nml") >"$work/out"
 check "a large grid is checked, status $?" [ "$(cat "$work/out")" = "$work/large.nml: correct, 10000000 runs (100000 of them checked)" ]
 study large_grid <<'END'
 &study case = 'base.nml' /
 &parameter key = 'joint.clearance', from = 1e-5, to = 4e-5, count = 3000 /
 &parameter key = 'lubrication.viscosity', from = 0.005, to = -1e-9, count = 3000 /
 END
-timeout -s KILL 100 "$gudgeon" sweep --check "$work/large_grid.nml" >"$work/out" 2>"$work/err"
+(ulimit -t 100; exec "$gudgeon" sweep --check "$work/large_grid.nml") >"$work/out" 2>"$work/err"
 check "a large grid with a wrong last value, status $?" grep -q 'run 3000: .*viscosity = -1.000000000E-09: must be > 0' "$work/err"
 for signal in INT TERM; do
   timeout -k 10 -s $signal 0.3 "$gudgeon" sweep -o "$work/large" "$work/large.nml" 2>/dev/null

@@ -8,7 +8,7 @@ module reference_pages
   use case_definition, only: case_t
   use case_file, only: parse_case, template
   use trace_columns, only: choose_columns, unit_in
-  use trace_row, only: column_list_t, name_length
+  use trace_row, only: column_list_t, name_length, of_run, of_cycle
   use text_tools, only: replaced
   use summary_quantities, only: quantity_t, quantities_of_runs, event_columns, wear_columns, study_columns
   use named_oils, only: oils, sources
@@ -26,7 +26,7 @@ module reference_pages
   end type scene_kind_t
 
   character(len=*), parameter :: play = 'joint.kind=clearance ', contact = 'contact.law=hertz ', &
-    film = 'lubrication.viscosity=0.0117 '
+    film = 'lubrication.viscosity=0.0117 lubrication.report=T '
 
   !> Kinds of scenes that together have every column.
   type(scene_kind_t), parameter :: kinds(18) = [ &
@@ -119,7 +119,8 @@ contains
     type(error_t), allocatable :: error
     type(column_list_t) :: list
     integer :: i
-    allocate (seen(0), seen_kept(0))
+    allocate (seen(0))
+    seen_kept = quantities_of_runs%name   ! those that a formula gives where no column does
     kept = ''
     text = '## Columns of NAME.csv'//newline//newline
     do i = 1, size(kinds)
@@ -208,17 +209,26 @@ contains
     type(column_list_t), intent(in) :: list
     character(len=name_length), allocatable, intent(inout) :: seen(:)
     character(len=:), allocatable, intent(inout) :: text
-    character(len=name_length) :: unit
     integer :: i
     do i = 1, size(list%kept)
       associate (kept => list%kept(i))
-        if (any(seen == kept%name)) cycle
-        seen = [character(len=name_length) :: seen, kept%name]
-        unit = unit_in(list%names(kept%column))
-        text = text//'| `'//trim(kept%name)//'` | '//trim(unit)//' | '//escaped(sentence(trim(kept%meaning)))//' |'//newline// &
-          '| `cycle_'//trim(kept%name)//'` | '//trim(unit)//' | The same in the last cycle. |'//newline
+        if (kept%told /= of_cycle) call add(trim(kept%name), kept%unit, trim(kept%meaning))
+        if (kept%told == of_run) cycle
+        if (kept%told == of_cycle) call add('cycle_'//trim(kept%name), kept%unit, trim(kept%meaning)//' in the last cycle')
+        if (kept%told /= of_cycle) call add('cycle_'//trim(kept%name), kept%unit, 'the same in the last cycle')
+        if (kept%has_angle) &
+          call add('cycle_'//trim(kept%name)//'_angle', 'deg', 'crank angle then, from 0 to the length of the cycle')
       end associate
     end do
+
+  contains
+
+    subroutine add(name, unit, meaning)
+      character(len=*), intent(in) :: name, unit, meaning
+      if (any(seen == name)) return
+      seen = [character(len=name_length) :: seen, name]
+      text = text//'| `'//name//'` | '//trim(unit)//' | '//escaped(sentence(meaning))//' |'//newline
+    end subroutine add
   end subroutine add_kept
 
   function quantity_table(list) result(text)

@@ -197,6 +197,7 @@ contains
     logical, intent(in) :: is_cycle   !! the duty is a cycle, not a steady state
     character(len=:), allocatable :: text
     text = ''
+    if (.not. allocated(history%rows)) return   ! it was not marched: the run did not come to its end
     associate (found => history%summary)
       if (size(history%rows) > 0) then
         if (found%max_pressure > largest_pressure) call add_line('film_history: a film pressure of '// &

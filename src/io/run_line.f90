@@ -6,8 +6,7 @@ module run_line
   use simulation, only: run_report_t
   use run_figures, only: pin_figures_t, floating_figures_t
   use period_watch, only: period_watch_t
-  use cycle_answers, only: cycle_quantities
-  use joint_places, only: places, n_places, in_order
+  use joint_places, only: places, n_places, in_order, name_prefix
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use result_notes, only: notes_on_results, relative_residual
@@ -129,23 +128,17 @@ contains
 
   !> A value of the last whole cycle in brackets, where it differs from that of the whole run by more than 5 %, as after a start far
   !> from the settled motion; empty otherwise.
-  function cycle_text(report, name, place, of_run) result(text)
+  function cycle_text(report, name, unit, of_run) result(text)
     type(run_report_t), intent(in) :: report
-    character(len=*), intent(in) :: name   !! of the answer of the cycle
-    integer, intent(in) :: place
+    character(len=*), intent(in) :: name, unit   !! of the result of the cycle
     real(dp), intent(in) :: of_run
     character(len=:), allocatable :: text
     real(dp), parameter :: remarkable = 0.05_dp
-    integer :: i
+    real(dp) :: value
+    logical :: is_known
+    call report%value_of(name, value, is_known)
     text = ''
-    if (.not. allocated(report%answers)) return
-    do i = 1, size(report%answers)
-      associate (it => report%answers(i))
-        if (cycle_quantities(it%quantity)%name == name .and. it%place == place .and. &
-          abs(it%value - of_run) > remarkable*abs(of_run)) &
-          text = ' ('//quantity_text(it%value, trim(cycle_quantities(it%quantity)%unit))//' in the last cycle)'
-      end associate
-    end do
+    if (is_known .and. abs(value - of_run) > remarkable*abs(of_run)) text = ' ('//quantity_text(value, unit)//' in the last cycle)'
   end function cycle_text
 
   !> Text about one pin. The error of a table of the film is told if it is larger than the relative tolerance of the run.
@@ -164,12 +157,12 @@ contains
         text = text//'penetration up to '//quantity_text(-pin%min_film_thickness, 'm')//', '
       else if (allocated(joint%film) .and. pin%min_film_thickness < huge(1.0_dp)) then   ! there was a state in the model
         text = text//'film of at least '//quantity_text(pin%min_film_thickness, 'm')// &
-          cycle_text(report, 'cycle_min_film_thickness', place, pin%min_film_thickness)//', '
+          cycle_text(report, name_prefix(place)//'cycle_min_film_thickness', 'm', pin%min_film_thickness)//', '
         if (joint%film%table_of /= '' .and. joint%film%table_error > tolerance) &
           text = text//'its table good to '//short_text(100*joint%film%table_error, 2)//' %, '
       end if
     end if
     text = text//'pin force up to '//quantity_text(pin%max_force, 'N')// &
-      cycle_text(report, 'cycle_max_force', place, pin%max_force)
+      cycle_text(report, name_prefix(place)//'cycle_max_force', 'N', pin%max_force)
   end function pin_text
 end module run_line

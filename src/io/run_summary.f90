@@ -84,7 +84,7 @@ contains
           call table%add('steps_of_N_stages', s%stage_count(order), for=integer_text(2*order + 1))
         end do
       end if
-      call table%add('max_pin_force', f%pin(in_order(1))%max_force)
+      call add_kept('', in_cycle=.false.)
       if (f%floating%is_present) call add_floating_pin(f)
       call table%add('crank_revolutions', f%crank_travel/two_pi)
       if (f%time > 0) call table%add('mean_crank_speed', f%crank_travel/f%time)
@@ -102,26 +102,26 @@ contains
       call add_notes()
       do i = 1, n_places
         if (.not. case%joints(in_order(i))%has_bearing()) cycle
-        if (i > 1) call table%add('max_pin_force', f%pin(in_order(i))%max_force, name_prefix(in_order(i)))
         call add_joint(name_prefix(in_order(i)), case%joints(in_order(i)), f%pin(in_order(i)))
       end do
       if (case%has_loose_guide()) then
         do corner = 1, n_corners
           associate (c => f%corner(corner), prefix => corner_names(corner)//'_')
+            call add_kept(prefix, in_cycle=.false.)
             call add_contacts(prefix, c)
-            call table%add('max_force', c%max_force, prefix)
           end associate
         end do
       end if
       if (case%is_elastic()) call add_elastic(f%elastic)
       if (allocated(report%train)) call add_train(report%train)
     end associate
-    if (allocated(report%kept)) then
-      do i = 1, size(report%kept)
-        call table%add_with_unit(report%kept(i)%name, report%kept(i)%value, report%kept(i)%unit)
-      end do
-    end if
     if (allocated(report%answers)) call add_answers(report%answers)
+    do i = 1, n_places
+      call add_kept(name_prefix(in_order(i)), in_cycle=.true.)
+    end do
+    do corner = 1, n_corners
+      call add_kept(corner_names(corner)//'_', in_cycle=.true.)
+    end do
     if (allocated(report%histories)) call add_histories(table, report%histories)
     call table%add('version', program_version)
     call table%add('compiler', compiler_version())
@@ -165,7 +165,7 @@ contains
           call table%add('film_table_time', joint%film%table_time, prefix)
         end if
       end if
-      call table%add('min_film_thickness', pin%min_film_thickness, prefix)
+      if (prefix /= '') call add_kept(prefix, in_cycle=.false.)
       if (allocated(joint%film) .and. abs(pin%film_change) > 0) &
         call table%add('film_thickness_change', pin%film_change, prefix)
       call add_contacts(prefix, pin)
@@ -177,14 +177,21 @@ contains
       if (pin%friction_work < huge(pin%friction_work)) call table%add('friction_work', pin%friction_work, prefix)
       if (allocated(joint%wear) .and. allocated(report%wear)) call add_wear(prefix)
       if (pin%heat%is_known) call add_heat(prefix, pin%heat)
-      if (.not. (joint%reports_film .and. allocated(joint%film))) return
-      call table%add('film_energy_lost', pin%film_energy_lost, prefix)
-      if (joint%film%neglects_shear()) &
-        call table%add('neglected_shear_loss', pin%neglected_shear_loss, prefix)
-      if (joint%film%gives_pressure()) call table%add('max_film_pressure', pin%max_film_pressure, prefix)
-      if (joint%film%gives_side_flow() .and. report%figures%time > 0) &
-        call table%add('mean_film_side_flow', pin%film_volume/report%figures%time, prefix)
     end subroutine add_joint
+
+    !> Rows of what is kept of the columns of a place, over the run or over its last cycle.
+    subroutine add_kept(place, in_cycle)
+      character(len=*), intent(in) :: place   !! prefix of the names; empty: of the first pin and of the machine
+      logical, intent(in) :: in_cycle
+      integer :: i
+      if (.not. allocated(report%kept)) return
+      do i = 1, size(report%kept)
+        associate (it => report%kept(i))
+          if (it%place == place .and. (it%is_of_cycle .eqv. in_cycle)) &
+            call table%add_with_unit(place//trim(it%name), it%value, trim(it%unit))
+        end associate
+      end do
+    end subroutine add_kept
 
     !> Rows of the turn of a floating pin.
     subroutine add_floating_pin(f)

@@ -39,7 +39,6 @@ module summary_quantities
     quantity_t('steps_of_N_stages', '1', 'accepted steps of Radau with N stages')]
 
   type(quantity_t), parameter :: of_motion(*) = [ &
-    quantity_t('max_pin_force', 'N', 'largest force at the pin'), &
     quantity_t('pin_turn', 'rad', 'angle by which a floating pin has turned since the start, positive from x to y'), &
     quantity_t('pin_drift_per_revolution', 'rad', 'its mean in the whole revolutions of the crank'), &
     quantity_t('pin_swing', 'rad', 'largest less smallest angle of a floating pin in the last cycle'), &
@@ -73,7 +72,6 @@ module summary_quantities
       'largest relative error of the force in the table of the film against its solver, at gaps from 1e-4 of the clearance on'), &
     quantity_t('film_table_mean_error', '1', 'root mean square of the same'), &
     quantity_t('film_table_time', 's', 'time that computing or reading the table took, not part of `wall_time`'), &
-    quantity_t('min_film_thickness', 'm', 'smallest film thickness; negative: deepest penetration'), &
     quantity_t('film_thickness_change', '1', &
       'smallest film thickness in the last cycle less that in the cycle before, over the latter; large: not settled'), &
     quantity_t('contacts', '1', 'contacts that began'), &
@@ -105,13 +103,6 @@ module summary_quantities
     quantity_t('heat_residual', 'J', &
       'heat that came in less what has left and what was stored otherwise: a measure of the integration error'), &
     quantity_t('heat_residual_relative', '1', 'the same over the largest of the heats that came in, left or were stored'), &
-    quantity_t('film_energy_lost', 'J', &
-      'energy that the film took from the bodies; negative: it gave energy, as an oscillating film may'), &
-    quantity_t('neglected_shear_loss', 'J', &
-      'energy that the shear of the film would have taken; it does not act with `film_moment = .false.`'), &
-    quantity_t('max_film_pressure', 'Pa', 'largest pressure in the film'), &
-    quantity_t('mean_film_side_flow', 'm3/s', 'mean oil flow out of both ends of the bearing, with `report`'), &
-    quantity_t('max_force', 'N', 'largest contact force of this corner of the skirt'), &
     quantity_t('elastic_members', '', 'which bodies are elastic'), &
     quantity_t('rod_bending_frequency', 'Hz', 'lowest natural frequency of the rod in bending'), &
     quantity_t('rod_axial_frequency', 'Hz', &

@@ -4,7 +4,7 @@
 !> n + F_T t and the moment F_T R. If set-valued friction holds the surfaces together, its force follows from the accelerations.
 module dry_contact
   use kinds, only: dp
-  use trace_row, only: trace_row_t
+  use trace_row, only: trace_row_t, largest
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t, most_friction_states
   use contact_arc, only: contact_arc_t
@@ -180,6 +180,7 @@ contains
     type(trace_row_t), intent(inout) :: row
     call row%add('normal_force[N]', joint%normal_force, &
       'contact force along the line of centres, positive where it presses; 0 without contact')
+    call row%keep('max_normal_force', largest, 'largest contact force of this pin', is_of_contact=.true.)
     call add_friction_columns(joint, row)
     call self%contact%geometry%add_columns(merge(joint%penetration, 0.0_dp, joint%touches), joint%normal_force, row)
     if (allocated(self%friction)) call self%friction%add_columns(joint%states, row)

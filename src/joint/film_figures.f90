@@ -2,7 +2,7 @@
 !> need them, and they take additional evaluations; they are computed only on request.
 module film_figures
   use kinds, only: dp
-  use trace_row, only: trace_row_t
+  use trace_row, only: trace_row_t, largest, mean, integral, of_run
   use film_law, only: film_motion_t
   use joint_evaluation, only: joint_evaluation_t
   use load_element, only: load_element_t, power_of
@@ -95,16 +95,27 @@ contains
       end if
       call row%add_on_request('film_power[W]', figures%power, &
         'power that the film takes from the bodies, by pressure and by shear that acts; < 0: it gives')
+      if (element%is_reported) call row%keep('film_energy_lost', integral, &
+        'energy that the film took from the bodies; negative: it gave energy, as an oscillating film may', told=of_run, unit='J', &
+        is_sampled=.true.)
       if (film%neglects_shear()) then
         call row%add_on_request('neglected_shear_moment[N.m]', figures%neglected_moment, &
           'moment of the oil shear on the pin that does not act (film_moment = .false.)')
         call row%add_on_request('neglected_shear_power[W]', figures%neglected_power, &
           'power that this shear would take from the bodies')
+        if (element%is_reported) call row%keep('neglected_shear_loss', integral, 'energy that the shear of the film would have '// &
+          'taken; it does not act with `film_moment = .false.`', told=of_run, unit='J', is_sampled=.true.)
       end if
-      if (film%gives_pressure()) call row%add_on_request('max_film_pressure[Pa]', figures%max_pressure, &
-        'largest pressure in the film')
-      if (film%gives_side_flow()) call row%add_on_request('film_side_flow[m3/s]', figures%side_flow, &
-        'oil flow out of both ends of the bearing')
+      if (film%gives_pressure()) then
+        call row%add_on_request('max_film_pressure[Pa]', figures%max_pressure, 'largest pressure in the film')
+        if (element%is_reported) call row%keep('max_film_pressure', largest, 'largest pressure in the film, with `report`', &
+          is_sampled=.true., has_angle=.true.)
+      end if
+      if (film%gives_side_flow()) then
+        call row%add_on_request('film_side_flow[m3/s]', figures%side_flow, 'oil flow out of both ends of the bearing')
+        if (element%is_reported) call row%keep('mean_film_side_flow', mean, &
+          'mean oil flow out of both ends of the bearing, with `report`', is_sampled=.true.)
+      end if
     end associate
   end subroutine add_film_figures
 end module film_figures

@@ -1,7 +1,8 @@
 !> The columns of a joint with clearance. Columns of the piston pin have plain names, those of other places have a prefix.
 module joint_columns
   use kinds, only: dp
-  use trace_row, only: trace_row_t
+  use trace_row, only: trace_row_t, least, largest, mean, of_run, of_cycle
+  use chain_loads, only: force_size
   use joint_places, only: places, piston_pin
   use joint_evaluation, only: joint_evaluation_t
   use clearance_joint, only: clearance_joint_t
@@ -30,12 +31,20 @@ contains
     end if
     call row%add('eccentricity_ratio[-]', now%distance/joint%bearing%clearance, &
       'eccentricity over radial clearance; above 1 the pin penetrates the bearing')
+    if (joint%has_own_gap) call row%keep('max_eccentricity_ratio', largest, 'largest eccentricity over the clearance')
     call row%add('film_thickness[m]', -now%penetration, &
       'smallest gap between pin and bearing; negative where the pin penetrates')
+    call row%keep('min_film_thickness', least, 'smallest film thickness; negative: deepest penetration', &
+      rate=-now%penetration_rate, is_of_contact=.true., has_angle=.true.)
     call row%add('phase[-]', real(joint%phase, dp), 'what acts in the joint: 0 nothing (free flight), 1 the oil film, 2 contact')
     do k = 1, joint%n_elements
       call joint%slots(k)%element%add_columns(now, row)
     end do
+    call row%add_on_request('pin_force[N]', force_size(now%force), 'size of the force of the joint on the pin')
+    call row%keep('max_pin_force', largest, 'largest force of the joint on the pin', told=of_run)
+    call row%keep('max_force', largest, 'largest force of the joint on the pin', told=of_cycle)
+    if (joint%reports_film) call row%keep('mean_pin_force', mean, 'mean over time of the size of this force, with `report`', &
+      is_sampled=.true.)
     if (allocated(joint%heat)) call row%add('film_temperature[K]', now%temperature, 'temperature of the film')
     if (allocated(joint%heat) .or. joint%thins()) call row%add_on_request('film_viscosity[Pa.s]', joint%viscosity(now), &
       'dynamic viscosity of the film at its temperature and rate of shear')

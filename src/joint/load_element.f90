@@ -41,6 +41,7 @@ module load_element
     logical :: is_unbounded = .false.       !! the film has a force without bound at |e| = c, which the state must not reach
     logical :: has_own_gap = .false.        !! the gap is not that of a round pin in a round bore: see `find_gap`
     logical :: has_slopes = .true.          !! the slopes are in closed form
+    logical :: is_reported = .false.        !! results of its film are kept over a run
     logical :: rubs = .false.               !! surfaces may touch while it acts, and wear
     logical :: has_friction = .false.       !! there is friction where they touch
     integer :: normal_kind = of_contact, friction_kind = of_friction   !! kinds of its normal force and of its friction

@@ -1,7 +1,7 @@
 !> Load element: a film between rough surfaces in parallel with the contact of their asperities, at every eccentricity.
 module rough_film
   use kinds, only: dp
-  use trace_row, only: trace_row_t
+  use trace_row, only: trace_row_t, mean
   use asperities, only: asperities_t
   use film_law, only: film_motion_t
   use mixed_film, only: mixed_forces, mixed_derivatives, mixed_velocity, motion_in_gap
@@ -100,6 +100,8 @@ contains
     call add_film_force(joint, row)
     call row%add('asperity_force[N]', joint%normal_force, &
       'contact force of the asperities along the line of centres, positive where it presses')
+    if (self%is_reported) call row%keep('mean_asperity_force', mean, &
+      'mean over time of the contact force of the asperities, with `report`', is_sampled=.true.)
     call add_friction_columns(joint, row)
     call add_film_figures(self, joint, row)
   end subroutine add_columns

@@ -2,7 +2,7 @@
 module skirt_corners
   use kinds, only: dp
   use bearing_size, only: bearing_t
-  use trace_row, only: trace_row_t
+  use trace_row, only: trace_row_t, least, largest
   use chain_motion, only: motion_t
   use friction_law, only: friction_law_t
   use piston_skirt, only: skirt_t, n_corners, corner_names
@@ -67,8 +67,11 @@ contains
       row%place = corner_names(i)//'_'
       call row%add('gap[m]', -now%corner(i)%depth, &
         'gap between this corner of the skirt and the bore; negative where it penetrates')
+      call row%keep('min_gap', least, 'smallest gap at this corner of the skirt; negative: deepest penetration', &
+        rate=-now%corner(i)%depth_rate, is_of_contact=.true.)
       call row%add('force[N]', now%corner(i)%normal_force, &
         'contact force of this corner, positive where it presses; 0 without contact')
+      call row%keep('max_force', largest, 'largest contact force of this corner of the skirt', is_of_contact=.true.)
       call row%add('friction[N]', now%corner(i)%friction_force, 'friction of the bore on this corner, along x')
     end do
     row%place = ''

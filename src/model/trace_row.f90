@@ -9,21 +9,32 @@ module trace_row
   use kinds, only: dp
   implicit none
   private
-  public :: trace_row_t, column_list_t, kept_t, name_length, most_columns, least, largest, largest_size
+  public :: trace_row_t, column_list_t, kept_t, name_length, most_columns
+  public :: least, largest, largest_size, mean, integral, everywhere, of_run, of_cycle
 
   integer, parameter :: name_length = 40
   integer, parameter :: meaning_length = 160
   integer, parameter :: most_columns = 360
 
-  integer, parameter :: least = 1, largest = 2, largest_size = 3   !! what is kept of a column: an extreme, or that of its size
+  !> What is kept of a column: an extreme, that of its size, or its mean or integral over the time.
+  integer, parameter :: least = 1, largest = 2, largest_size = 3, mean = 4, integral = 5
+
+  integer, parameter :: everywhere = 0, of_run = 1, of_cycle = 2   !! where it is told: over the run and its last cycle, or over one
 
   !> A result that is kept of a column.
   type :: kept_t
+    character(len=13) :: place = ''                !! prefix of its name
     character(len=name_length) :: name = ''        !! that over the run; with `cycle_` before it that over the last cycle
     character(len=meaning_length) :: meaning = ''
-    integer :: what = 0                            !! least, largest or largest_size
+    integer :: what = 0                            !! least, largest, largest_size, mean or integral
     integer :: column = 0                          !! its index among all columns of the scene
+    integer :: told = everywhere
+    character(len=name_length) :: unit = ''        !! that of the column, unless it is an integral
     logical :: has_rate = .false.                  !! the rate of the column is known
+    logical :: is_cubic = .false.                  !! between two steps it is the cubic through values and rates
+    logical :: is_of_contact = .false.             !! it follows from the state alone, and events tell it of each contact
+    logical :: is_sampled = .false.                !! it is found at the points of Gauss's rule of each step
+    logical :: has_angle = .false.                 !! of the last cycle, the crank angle of the extreme is told
   end type kept_t
 
   !> The columns of one trace.
@@ -114,16 +125,30 @@ contains
     if (self%is_naming) self%on_request(self%n) = .true.
   end subroutine add_on_request
 
-  !> Keep an extreme of the column that was just added. With its rate, which must be that of the column at every instant, and 0
-  !> while names are collected, peaks inside a step are searched with fewer evaluations.
-  pure subroutine keep(self, name, what, says, rate)
+  !> Keep a result of the column that was just added. With its rate, which must be that of the column at every instant, and 0
+  !> while names are collected, peaks inside a step are searched with fewer evaluations, and with `is_cubic` with none.
+  pure subroutine keep(self, name, what, says, rate, told, unit, is_cubic, is_of_contact, is_sampled, has_angle)
     class(trace_row_t), intent(inout) :: self
     character(len=*), intent(in) :: name   !! of the result
-    integer, intent(in) :: what            !! least, largest or largest_size
+    integer, intent(in) :: what            !! least, largest, largest_size, mean or integral
     character(len=*), intent(in) :: says   !! its meaning
     real(dp), intent(in), optional :: rate
+    integer, intent(in), optional :: told  !! everywhere, of_run or of_cycle
+    character(len=*), intent(in), optional :: unit   !! of an integral
+    logical, intent(in), optional :: is_cubic, is_of_contact, is_sampled, has_angle   !! see `kept_t`
+    type(kept_t) :: kept
     if (self%is_naming) then
-      self%kept = [self%kept, kept_t(trim(self%place)//name, says, what, self%n, present(rate))]
+      kept = kept_t(self%place, name, says, what, self%n)
+      kept%unit = self%names(self%n)(index(self%names(self%n), '[') + 1:index(self%names(self%n), ']') - 1)
+      if (kept%unit == '-') kept%unit = '1'
+      if (present(unit)) kept%unit = unit
+      if (present(told)) kept%told = told
+      kept%has_rate = present(rate)
+      if (present(is_cubic)) kept%is_cubic = is_cubic
+      if (present(is_of_contact)) kept%is_of_contact = is_of_contact
+      if (present(is_sampled)) kept%is_sampled = is_sampled
+      if (present(has_angle)) kept%has_angle = has_angle
+      self%kept = [self%kept, kept]
     else if (present(rate)) then
       self%rates(self%n) = rate
     end if

@@ -3,7 +3,7 @@ module peak_search
   use kinds, only: dp
   implicit none
   private
-  public :: sample_t, peak_search_t, may_peak, may_exceed
+  public :: sample_t, peak_search_t, may_peak, may_exceed, top_of_cubic
 
   integer, parameter :: most_values = 40
   real(dp), parameter :: resolution = 1e-8_dp   !! of the time, relative to the interval
@@ -65,6 +65,25 @@ contains
     bend = abs(rate - earlier_change/(t_left - t_before))*(t_right - t_left)/(t_right - t_before)
     may_exceed = abs(rate) <= 2*bend
   end function may_exceed
+
+  !> The top of the cubic through two samples, which is inside the interval if the quantity rises at the first one and falls at the
+  !> second one.
+  pure subroutine top_of_cubic(left, right, top, is_inside)
+    type(sample_t), intent(in) :: left, right
+    real(dp), intent(out) :: top
+    logical, intent(out) :: is_inside
+    real(dp) :: h, a, b, c, s
+    top = max(left%value, right%value)
+    is_inside = left%slope > 0 .and. right%slope < 0
+    if (.not. is_inside) return
+    h = right%t - left%t
+    c = h*left%slope
+    b = 3*(right%value - left%value) - h*(2*left%slope + right%slope)
+    a = h*(left%slope + right%slope) - 2*(right%value - left%value)
+    s = c/(sqrt(max(b**2 - 3*a*c, 0.0_dp)) - b)   ! the zero of the slope where it falls; it falls at the end, so the root is larger
+    is_inside = s > 0 .and. s < 1
+    if (is_inside) top = left%value + s*(c + s*(b + s*a))
+  end subroutine top_of_cubic
 
   !> Begin a search between two samples with slopes.
   subroutine begin(self, left, right)

@@ -10,7 +10,7 @@ module column_statistics
   use scene_problem, only: scene_t, evaluation_t
   use inside_step, only: evaluate_inside
   use peak_search, only: sample_t, peak_search_t
-  use trace_columns, only: column_list_t, choose_columns, row_values
+  use trace_columns, only: column_list_t, all_columns, row_values
   use run_length, only: longest_period
   implicit none
   private
@@ -64,8 +64,7 @@ contains
     integer :: blank, i
     allocate (wanted(0))
     if (text == '') return
-    call names_of(case, list, error)
-    if (allocated(error)) return
+    call all_columns(case, .false., list)
     rest = text//','
     do while (rest /= '')
       part = trim(adjustl(rest(:index(rest, ',') - 1)))
@@ -99,17 +98,6 @@ contains
     end do
   end subroutine read_statistics
 
-  !> All columns of the scene of a case.
-  subroutine names_of(case, list, error)
-    type(case_t), intent(in) :: case
-    type(column_list_t), intent(out) :: list
-    type(error_t), allocatable, intent(out) :: error
-    type(case_t) :: plain
-    plain = case
-    plain%output%columns = 'standard'
-    call choose_columns(plain, .false., list, error)
-  end subroutine names_of
-
   !> The name of a column without its unit.
   elemental function bare(name)
     character(len=*), intent(in) :: name
@@ -137,15 +125,13 @@ contains
     if (allocated(self%wanted)) is_on = size(self%wanted) > 0
   end function is_on
 
-  !> Find the columns in the scene of the case that is run next. Error: see `choose_columns`.
-  subroutine prepare(self, case, error)
+  !> Find the columns in the scene of the case that is run next.
+  subroutine prepare(self, case)
     class(column_statistics_t), intent(inout) :: self
     type(case_t), intent(in) :: case
-    type(error_t), allocatable, intent(out) :: error
     integer :: i
     if (.not. self%is_on()) return
-    call names_of(case, self%list, error)
-    if (allocated(error)) return
+    call all_columns(case, .false., self%list)
     self%list%id = pack([(i, i=1, size(self%list%names))], [(any(self%wanted%column == self%list%names(i)), &
       i=1, size(self%list%names))])
     self%at = [(findloc(self%list%names(self%list%id) == self%wanted(i)%column, .true., 1), i=1, size(self%wanted))]

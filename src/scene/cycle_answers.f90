@@ -7,6 +7,7 @@ module cycle_answers
   use constants, only: two_pi, degree
   use load_element, only: of_contact, of_friction, of_film, of_asperities
   use chain_motion, only: body_pin
+  use joint_places, only: name_prefix
   use scene_problem, only: scene_t, by_gas, by_drive, by_damping, by_guide, by_elastic
   use cycle_statistics, only: cycle_t
   use cycle_watch, only: cycle_watch_t
@@ -51,10 +52,7 @@ module cycle_answers
       'largest difference of the state from one cycle earlier, over the range of each component'), &
     quantity_t('cycle_is_settled', '', &
       '`yes`, `no` (that is above `periodic_tolerance`) or `unknown` (the run has only one whole cycle)'), &
-    quantity_t('cycle_min_film_thickness', 'm', 'smallest film thickness in the cycle; negative: deepest penetration'), &
-    quantity_t('cycle_min_film_thickness_angle', 'deg', 'crank angle then, from 0 to the length of the cycle'), &
     quantity_t('cycle_max_eccentricity_ratio', '1', 'largest eccentricity in the cycle over the clearance'), &
-    quantity_t('cycle_max_force', 'N', 'largest force at the pin in the cycle'), &
     quantity_t('cycle_contact_share', '1', 'share of the cycle in contact'), &
     quantity_t('cycle_asperity_load_share', '1', &
       'load of the asperities over the whole force, both integrated over the cycle; with `report`'), &
@@ -64,9 +62,6 @@ module cycle_answers
       'these losses in the cycle over the angle that the pin turns through in its bearing, in either sense'), &
     quantity_t('cycle_turning', 'rad', 'angle that a floating pin turns through in this bearing in the cycle, in either sense'), &
     quantity_t('cycle_joint_fmep', 'Pa', 'these losses in the cycle over the displacement of all cylinders'), &
-    quantity_t('cycle_max_film_pressure', 'Pa', 'largest pressure in the film in the cycle, with `report`'), &
-    quantity_t('cycle_max_film_pressure_angle', 'deg', 'crank angle then'), &
-    quantity_t('cycle_mean_film_side_flow', 'm3/s', 'mean oil flow out of both ends of the bearing in the cycle, with `report`'), &
     quantity_t('cycle_mean_film_temperature', 'K', 'mean temperature of the film in the cycle, with `&heat`'), &
     quantity_t('cycle_heat_to_oil', 'J', 'heat that the oil carries out of the film in the cycle'), &
     quantity_t('cycle_heat_to_housing', 'J', 'heat that flows from the film to the housing in the cycle'), &
@@ -185,16 +180,10 @@ contains
 
     subroutine add_joint(i)
       integer, intent(in) :: i
-      real(dp) :: film, friction, worn(2)
+      real(dp) :: film, friction, load, worn(2)
       associate (joint => scene%joints(i), pin => cycle%pin(scene%joints(i)%place))
-        call add('cycle_min_film_thickness', pin%min_film_thickness, i)
-        call add('cycle_min_film_thickness_angle', degrees(pin%thinnest_angle), i)
-        if (joint%has_own_gap) then
-          call add('cycle_max_eccentricity_ratio', pin%max_eccentricity/joint%bearing%clearance, i)
-        else
+        if (.not. joint%has_own_gap) &
           call add('cycle_max_eccentricity_ratio', 1 - pin%min_film_thickness/joint%bearing%clearance, i)
-        end if
-        call add('cycle_max_force', pin%max_force, i)
         call add('cycle_contact_share', pin%contact_time/cycle%duration, i)
         film = work_of(of_film, i)
         friction = work_of(of_friction, i) + work_of(of_asperities, i)
@@ -212,13 +201,9 @@ contains
           call add('cycle_heat_to_oil', pin%heat(heat_to_oil), i)
           call add('cycle_heat_to_housing', pin%heat(heat_to_housing), i)
         end if
-        if (pin%load_integral > 0) call add('cycle_asperity_load_share', pin%asperity_integral/pin%load_integral, i)
-        if (.not. (joint%reports_film .and. joint%has_kind(of_film))) return
-        if (pin%max_film_pressure > 0) then
-          call add('cycle_max_film_pressure', pin%max_film_pressure, i)
-          call add('cycle_max_film_pressure_angle', degrees(pin%pressure_angle), i)
-        end if
-        if (pin%film_volume > 0) call add('cycle_mean_film_side_flow', pin%film_volume/cycle%duration, i)
+        load = kept(name_prefix(joint%place)//'mean_pin_force')
+        if (joint%reports_film .and. joint%has_kind(of_asperities) .and. load > 0) call add('cycle_asperity_load_share', &
+          kept(name_prefix(joint%place)//'mean_asperity_force')/load, i)
       end associate
     end subroutine add_joint
 
@@ -227,8 +212,7 @@ contains
       mean_speed = two_pi*revolutions/cycle%duration
       call add('cycle_mean_crank_speed', cycles%direction*mean_speed)
       if (allocated(scene%chain%floating)) call add('cycle_pin_turn', cycle%pin_turn)
-      call add('cycle_speed_fluctuation', (ledger%of_cycle('max_crank_speed', cycles%ended, revolutions) &
-        - ledger%of_cycle('min_crank_speed', cycles%ended, revolutions))/mean_speed)
+      call add('cycle_speed_fluctuation', (kept('max_crank_speed') - kept('min_crank_speed'))/mean_speed)
       if (allocated(scene%given_load)) return
       call add('cycle_mean_piston_speed', 4*scene%chain%bodies%crank%length*revolutions/cycle%duration)
       if (.not. allocated(scene%gas)) return
@@ -250,6 +234,12 @@ contains
       if (scene%n_works < size(scene%parts)) &
         call add('cycle_one_way_fmep', one_way/displacement)
     end subroutine add_machine
+
+    !> A result that is kept of a column, over this cycle.
+    pure real(dp) function kept(name)
+      character(len=*), intent(in) :: name
+      kept = ledger%over_cycle(name, cycles%ended, revolutions)
+    end function kept
 
     !> A crank angle [rad] in degrees, from 0 to the length of the cycle.
     pure real(dp) function degrees(angle)

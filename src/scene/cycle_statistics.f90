@@ -20,15 +20,8 @@ module cycle_statistics
     real(dp) :: contact_time = 0                      !! [s]
     integer :: impacts = 0                            !! number of contacts that began
     real(dp) :: max_force = 0                         !! [N]
-    real(dp) :: max_eccentricity = 0                  !! |e| [m], where the gap does not follow from it
     real(dp) :: force_integral = 0                    !! integral of the magnitude of the force over time [N s]
-    real(dp) :: thinnest_angle = 0                    !! crank angle at the smallest film thickness [rad]
-    real(dp) :: max_film_pressure = 0                 !! [Pa] if results of the film are requested
-    real(dp) :: pressure_angle = 0                    !! crank angle at that pressure [rad]
     real(dp) :: turning = 0                           !! angle that the pin turns through in its bearing, in either sense [rad]
-    real(dp) :: asperity_integral = 0, load_integral = 0   !! integrals of the load of the asperities and of the whole force, if
-                                                           !! results of the film are requested [N s]
-    real(dp) :: film_volume = 0                       !! volume of oil that left the film at its ends, if they are requested [m^3]
     real(dp) :: heat(n_sums) = 0                      !! integrals of the heat of its film, see `film_heat`
   end type pin_cycle_t
 
@@ -44,7 +37,6 @@ module cycle_statistics
     real(dp) :: max_pressure = -huge(1.0_dp)          !! of the gas in the cylinder [Pa]
     real(dp) :: max_pressure_angle = 0                !! crank angle then [rad]
     real(dp) :: pin_turn = 0                          !! of a floating pin [rad]
-    real(dp) :: max_pin_angle = -huge(1.0_dp), min_pin_angle = huge(1.0_dp)   !! its angles since the start of the run [rad]
   end type cycle_t
 
   !> Sums and extremes over the revolutions.
@@ -74,23 +66,14 @@ contains
       if (one%max_pressure > total%max_pressure) total%max_pressure_angle = one%max_pressure_angle
       total%max_pressure = max(total%max_pressure, one%max_pressure)
       total%pin_turn = total%pin_turn + one%pin_turn
-      total%max_pin_angle = max(total%max_pin_angle, one%max_pin_angle)
-      total%min_pin_angle = min(total%min_pin_angle, one%min_pin_angle)
     end associate
     associate (total => self%total%pin, one => cycle%pin)
-      where (one%min_film_thickness < total%min_film_thickness) total%thinnest_angle = one%thinnest_angle
-      where (one%max_film_pressure > total%max_film_pressure) total%pressure_angle = one%pressure_angle
-      total%max_film_pressure = max(total%max_film_pressure, one%max_film_pressure)
-      total%film_volume = total%film_volume + one%film_volume
       total%turning = total%turning + one%turning
-      total%asperity_integral = total%asperity_integral + one%asperity_integral
-      total%load_integral = total%load_integral + one%load_integral
       total%min_film_thickness = min(total%min_film_thickness, one%min_film_thickness)
       total%max_penetration = max(total%max_penetration, one%max_penetration)
       total%contact_time = total%contact_time + one%contact_time
       total%impacts = total%impacts + one%impacts
       total%max_force = max(total%max_force, one%max_force)
-      total%max_eccentricity = max(total%max_eccentricity, one%max_eccentricity)
       total%force_integral = total%force_integral + one%force_integral
     end associate
     do i = 1, skirt

@@ -8,7 +8,6 @@ module cycle_watch
   use scene_problem, only: scene_t, evaluation_t, phase_contact
   use crank_passage, only: find_passage
   use revolutions, only: revolutions_t
-  use step_peaks, only: n_peaks, of_pin_force, of_penetration, of_eccentricity
   use trace_columns, only: column_list_t, row_values
   use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt, most_parts
   use run_length, only: longest_period
@@ -56,13 +55,8 @@ module cycle_watch
     procedure :: count_from
     procedure :: end_cycle
     procedure :: record_strobes
-    procedure :: lower_to_peaks
-    procedure :: is_thinner
-    procedure :: record_peaks
-    procedure :: record_film
-    procedure :: film_pressure
+    procedure :: record_pin
     procedure :: record_turn
-    procedure :: record_asperities
     procedure :: search_machine
     procedure :: has_cycle
     procedure :: last_cycle
@@ -142,43 +136,6 @@ contains
     end do
   end subroutine record_strobes
 
-  !> Lower the values above which peaks are searched from those of the run to those of the present revolution, if that is counted.
-  pure subroutine lower_to_peaks(self, pin, has_own_gap, known)
-    class(cycle_watch_t), intent(in) :: self
-    integer, intent(in) :: pin
-    logical, intent(in) :: has_own_gap          !! the gap does not follow from the eccentricity, whose peak is searched too
-    real(dp), intent(inout) :: known(n_peaks)   !! huge: this quantity is not searched
-    if (self%ended < self%uncounted) return
-    associate (c => self%present%pin(pin))
-      known(of_pin_force) = min(known(of_pin_force), c%max_force)
-      if (known(of_penetration) < huge(known)) known(of_penetration) = min(known(of_penetration), -c%min_film_thickness)
-      if (has_own_gap) known(of_eccentricity) = c%max_eccentricity
-    end associate
-  end subroutine lower_to_peaks
-
-  !> Account for the values of one evaluation of a film in the present revolution.
-  pure subroutine record_film(self, pin, pressure, angle, volume)
-    class(cycle_watch_t), intent(inout) :: self
-    integer, intent(in) :: pin
-    real(dp), intent(in) :: pressure   !! largest in the film [Pa]
-    real(dp), intent(in) :: angle      !! of the crank then [rad]
-    real(dp), intent(in) :: volume     !! of oil that has left the film since the last call [m^3]
-    associate (c => self%present%pin(pin))
-      c%film_volume = c%film_volume + volume
-      if (pressure > c%max_film_pressure) then
-        c%max_film_pressure = pressure
-        c%pressure_angle = angle
-      end if
-    end associate
-  end subroutine record_film
-
-  !> Largest pressure in the film of a pin so far in the present revolution [Pa].
-  pure real(dp) function film_pressure(self, pin)
-    class(cycle_watch_t), intent(in) :: self
-    integer, intent(in) :: pin
-    film_pressure = self%present%pin(pin)%max_film_pressure
-  end function film_pressure
-
   !> Account for an angle [rad] that a pin has turned through in its bearing.
   pure subroutine record_turn(self, pin, angle)
     class(cycle_watch_t), intent(inout) :: self
@@ -186,17 +143,6 @@ contains
     real(dp), intent(in) :: angle
     self%present%pin(pin)%turning = self%present%pin(pin)%turning + angle
   end subroutine record_turn
-
-  !> Account for integrals over time of the magnitudes of the load of the asperities and of the whole force at a pin [N s].
-  pure subroutine record_asperities(self, pin, by_asperities, of_force)
-    class(cycle_watch_t), intent(inout) :: self
-    integer, intent(in) :: pin
-    real(dp), intent(in) :: by_asperities, of_force
-    associate (c => self%present%pin(pin))
-      c%asperity_integral = c%asperity_integral + by_asperities
-      c%load_integral = c%load_integral + of_force
-    end associate
-  end subroutine record_asperities
 
   !> Search the last step, up to t, where the scene is evaluated, for the largest pressure of the gas and the extreme angles of a
   !> floating pin in the present revolution.
@@ -255,29 +201,20 @@ contains
     end associate
   end function film_change
 
-  !> Whether the film at a pin is thinner by these values than so far in the present revolution.
-  pure logical function is_thinner(self, pin, values)
-    class(cycle_watch_t), intent(in) :: self
-    integer, intent(in) :: pin
-    real(dp), intent(in) :: values(n_peaks)
-    is_thinner = -values(of_penetration) < self%present%pin(pin)%min_film_thickness
-  end function is_thinner
-
-  !> Account for values of the quantities with peaks, at a pin in the present revolution.
-  pure subroutine record_peaks(self, pin, is_touching, values, thinnest_angle)
+  !> Account for the largest force [N] and the smallest film thickness [m] of a pin in the present revolution.
+  pure subroutine record_pin(self, pin, force, film_thickness, may_touch)
     class(cycle_watch_t), intent(inout) :: self
     integer, intent(in) :: pin
-    logical, intent(in) :: is_touching
-    real(dp), intent(in) :: values(n_peaks)
-    real(dp), intent(in) :: thinnest_angle   !! crank angle of the value of the penetration [rad]
+    real(dp), intent(in) :: force
+    real(dp), intent(in), optional :: film_thickness   !! of a pin with clearance
+    logical, intent(in), optional :: may_touch         !! it may penetrate
     associate (c => self%present%pin(pin))
-      c%max_force = max(c%max_force, values(of_pin_force))
-      c%max_eccentricity = max(c%max_eccentricity, values(of_eccentricity))
-      if (self%is_thinner(pin, values)) c%thinnest_angle = thinnest_angle
-      c%min_film_thickness = min(c%min_film_thickness, -values(of_penetration))
-      if (is_touching) c%max_penetration = max(c%max_penetration, values(of_penetration))
+      c%max_force = force
+      if (.not. present(film_thickness)) return
+      c%min_film_thickness = film_thickness
+      if (may_touch) c%max_penetration = max(0.0_dp, -film_thickness)
     end associate
-  end subroutine record_peaks
+  end subroutine record_pin
 
   !> Account for an accepted point at time t in the present revolution.
   pure subroutine record_point(self, scene, t)

@@ -6,7 +6,7 @@ module inside_step
   use scene_problem, only: scene_t, evaluation_t
   implicit none
   private
-  public :: evaluate_inside, inner_points_t
+  public :: evaluate_inside, look_at_contacts, inner_points_t
 
   integer, parameter :: n_inner = size(gauss_points)
 
@@ -90,4 +90,23 @@ contains
       evaluations = evaluations + 1
     end if
   end subroutine evaluate_inside
+
+  !> Set what contacts do by the state alone, at a time inside the last step: gaps, their rates and normal forces, at pins and at
+  !> the corners of the skirt; and the crank angle.
+  subroutine look_at_contacts(scene, method, t, now)
+    type(scene_t), intent(in) :: scene
+    class(ode_method_t), intent(inout) :: method
+    real(dp), intent(in) :: t
+    type(evaluation_t), intent(inout) :: now
+    real(dp) :: y(scene%n), normal_force
+    integer :: i
+    call method%interpolate(t, y)
+    now%motion%crank_angle = scene%crank_angle(t, y)
+    do i = 1, size(scene%joints)
+      call scene%joints(i)%find_contact_state(y, now%joint(i), normal_force)
+      now%joint(i)%normal_force = normal_force
+    end do
+    if (.not. allocated(scene%guide)) return
+    if (scene%guide%is_loose) call scene%guide%find_contact_state(y, now%guide%corner)
+  end subroutine look_at_contacts
 end module inside_step

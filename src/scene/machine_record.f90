@@ -1,8 +1,8 @@
-!> Follows the pressure of the gas and the angle of a floating pin: their extremes in each revolution, searched inside the steps.
+!> Follows the largest pressure of the gas in each revolution. It is searched inside the steps, over the crank angle, on which it
+!> depends alone.
 module machine_record
   use kinds, only: dp
   use constants, only: degree
-  use chain_motion, only: body_pin
   use scene_problem, only: scene_t, evaluation_t
   use working_gas, only: working_gas_t
   use peak_search, only: sample_t, peak_search_t, may_peak
@@ -18,7 +18,6 @@ module machine_record
     private
     real(dp) :: t = 0                                     !! end of the last interval that was searched [s]
     real(dp) :: angle = 0, speed = 0                      !! of the crank at that time [rad], [rad/s]
-    real(dp) :: pin_angle = 0, pin_speed = 0              !! of a floating pin [rad], [rad/s]
   contains
     procedure, non_overridable :: begin
     procedure, non_overridable :: search
@@ -35,9 +34,6 @@ contains
     self%t = t
     self%angle = now%motion%crank_angle
     self%speed = now%motion%crank_speed
-    if (.not. allocated(scene%chain%floating)) return
-    self%pin_angle = now%motion%pin_angle
-    self%pin_speed = now%motion%turning(body_pin)
   end subroutine begin
 
   !> Search between the end of the last interval and t, where the scene is evaluated. Both must lie inside the last step.
@@ -50,7 +46,6 @@ contains
     type(machine_record_t) :: next
     call next%begin(scene, t, now)
     if (allocated(scene%gas)) call search_pressure(scene%gas, self, next, cycle)
-    if (allocated(scene%chain%floating)) call follow_pin(self, next, cycle)
     call self%begin(scene, t, now)
   end subroutine search
 
@@ -101,16 +96,6 @@ contains
       slope_at = gas%force_slope(angle)/gas%cylinder%area
     end function slope_at
   end subroutine search_turn
-
-  !> Account for the angle of a floating pin between two points: where it turns back, that of the cubic through angles and speeds.
-  pure subroutine follow_pin(left, right, cycle)
-    type(machine_record_t), intent(in) :: left, right
-    type(cycle_t), intent(inout) :: cycle
-    real(dp) :: farthest
-    farthest = left%pin_angle + turning_point(right%t - left%t, right%pin_angle - left%pin_angle, left%pin_speed, right%pin_speed)
-    cycle%max_pin_angle = max(cycle%max_pin_angle, left%pin_angle, right%pin_angle, farthest)
-    cycle%min_pin_angle = min(cycle%min_pin_angle, left%pin_angle, right%pin_angle, farthest)
-  end subroutine follow_pin
 
   !> Angle [rad] from the beginning of a span of time to where a rotation turns back, on the cubic through the angle `rise` at its
   !> end and the speeds at both ends; 0 if these have the same sign. The speed of the cubic is

@@ -1,17 +1,16 @@
-!> Extremes, contacts and totals of a run: at each pin and at the corners of the skirt.
-!>
-!> Peaks are searched also between accepted points, and no peak is below the largest value of a row.
+!> Contacts and totals of a run: at each pin, at the corners of the skirt, and of several cylinders.
 module run_extremes
   use kinds, only: dp
   use run_state, only: run_state_t
   use ode_method, only: ode_method_t
-  use joint_places, only: n_places
+  use joint_places, only: n_places, name_prefix
   use scene_problem, only: scene_t, evaluation_t, event_contact_begins, of_guide, phase_contact
-  use joint_events, only: penetration_and_rate, may_lose_force, find_lost_force
-  use cycle_statistics, only: skirt, cycle_t
+  use joint_events, only: penetration_and_rate, may_lose_force, may_touch, find_lost_force
+  use piston_guide, only: n_corners, corner_names
+  use cycle_statistics, only: skirt
   use run_length, only: longest_period
   use cycle_watch, only: cycle_watch_t
-  use inside_step, only: inner_points_t
+  use result_ledger, only: ledger_t
   use pin_record, only: pin_record_t
   use guide_record, only: guide_record_t
   use train_record, only: train_record_t
@@ -25,23 +24,22 @@ module run_extremes
   type :: run_extremes_t
     type(run_figures_t) :: figures
     integer, private :: n_pins = 0                 !! number of pins that have a record
-    type(pin_record_t), private :: pins(n_places)
-    type(inner_points_t), private :: inner         !! of the last interval, for the results of films
+    type(pin_record_t), allocatable, private :: pins(:)
     type(guide_record_t), private :: guide         !! of a piston with clearance in its bore
     type(train_record_t) :: train                  !! of several cylinders on one crankshaft
   contains
     procedure :: prepare
     procedure :: declare
     procedure :: begin
-    procedure :: begin_revolution
     procedure :: end_revolution
     procedure :: wear_growth
     procedure :: search
-    procedure :: add_row
     procedure :: add_point
     procedure :: add_train
     procedure :: change_phases
     procedure :: record_event
+    procedure :: resume_contacts
+    procedure :: figures_of_run
     procedure :: find_film_changes
     procedure :: find_pin_turns
     procedure :: begin_wear
@@ -58,6 +56,7 @@ contains
     type(scene_t), intent(in) :: scene
     integer :: i
     self%n_pins = size(scene%reported)
+    allocate (self%pins(self%n_pins))
     do i = 1, self%n_pins
       call self%pins(i)%prepare(scene%reported(i), scene)
     end do
@@ -92,41 +91,31 @@ contains
     real(dp) :: turned   ! before the run
     integer :: i
     if (in_domain) call self%train%begin(scene, t, now)
-    if (present(cycles)) call self%guide%begin_revolution()
-    self%inner%to = t
     do i = 1, self%n_pins
-      call self%pins(i)%begin(scene, t, now)
       call self%pins(i)%count_from(t)
       if (present(cycles) .and. allocated(self%pins(i)%wear)) call self%pins(i)%wear%mark_revolution(cycles%ended)
-      if (.not. in_domain) cycle
-      call self%pins(i)%record_values(scene, now, self%figures, cycles)
-      if (self%pins(i)%joint > 0) call self%pins(i)%follow_turn(scene, t, now, turned)
+      if (in_domain .and. self%pins(i)%joint > 0) call self%pins(i)%follow_turn(scene, t, now, turned)
     end do
-    if (.not. (in_domain .and. self%guide%is_present)) return
-    call self%guide%stand_at(t, now)
-    call self%guide%record_values(scene, now, self%figures)
   end subroutine begin
 
-  !> Begin a revolution whose results are wanted, where the scene has been evaluated: its first instant counts.
-  subroutine begin_revolution(self, scene, now, cycles)
+  !> Add the extremes of pins and skirt in a revolution that ends to its results, and mark the wear so far.
+  subroutine end_revolution(self, scene, ledger, cycles)
     class(run_extremes_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    type(evaluation_t), intent(in) :: now
+    type(ledger_t), intent(in) :: ledger
     type(cycle_watch_t), intent(inout) :: cycles
     integer :: i
-    call self%guide%begin_revolution()
-    call self%guide%record_values(scene, now, self%figures)
+    call self%guide%end_revolution(ledger, cycles)
     do i = 1, self%n_pins
-      call self%pins(i)%record_values(scene, now, self%figures, cycles)
+      associate (pin => self%pins(i)%pin, joint => self%pins(i)%joint)
+        if (joint > 0) then
+          call cycles%record_pin(pin, ledger%of_revolution(name_prefix(pin)//'max_force'), &
+            ledger%of_revolution(name_prefix(pin)//'min_film_thickness'), may_touch(scene%joints(joint)))
+        else
+          call cycles%record_pin(pin, ledger%of_revolution(name_prefix(pin)//'max_pin_force'))
+        end if
+      end associate
     end do
-  end subroutine begin_revolution
-
-  !> Add the extremes of the skirt in a revolution that ends to its results, and mark the wear so far.
-  subroutine end_revolution(self, cycles)
-    class(run_extremes_t), intent(inout) :: self
-    type(cycle_watch_t), intent(inout) :: cycles
-    integer :: i
-    call self%guide%end_revolution(cycles)
     call self%train%end_revolution(cycles%ended + 1)
     do i = 1, self%n_pins
       if (allocated(self%pins(i)%wear)) call self%pins(i)%wear%mark_revolution(cycles%ended + 1)
@@ -147,7 +136,7 @@ contains
     end do
   end function wear_growth
 
-  !> Search for peaks between the last point recorded (or the beginning of a step after an event) and t, where the scene is
+  !> Follow pins and train from the last point recorded (or the beginning of a step after an event) to t, where the scene is
   !> evaluated.
   subroutine search(self, method, scene, t, now, is_end, cycles)
     class(run_extremes_t), intent(inout) :: self
@@ -158,26 +147,12 @@ contains
     logical, intent(in) :: is_end   !! t is the end of the step, or of its final part
     type(cycle_watch_t), intent(inout), optional :: cycles
     integer :: i
-    if (any(self%pins(:self%n_pins)%reports_film)) call self%inner%evaluate(scene, method, t, self%figures%evaluations)
     do i = 1, self%n_pins
-      call self%pins(i)%search(method, scene, t, now, self%inner, is_end, self%figures, cycles)
+      call self%pins(i)%follow(method, scene, t, now, is_end, self%figures, cycles)
     end do
-    call self%guide%search(method, scene, t, now, self%figures)
     call self%train%search(scene, t, now, present(cycles))
     if (present(cycles)) call cycles%search_machine(scene, t, now)
   end subroutine search
-
-  !> Account for the values of a row: not for the present revolution, whose results must not depend on whether rows are written.
-  subroutine add_row(self, scene, now)
-    class(run_extremes_t), intent(inout) :: self
-    type(scene_t), intent(in) :: scene
-    type(evaluation_t), intent(in) :: now
-    integer :: i
-    do i = 1, self%n_pins
-      call self%pins(i)%record_values(scene, now, self%figures)
-    end do
-    call self%guide%record_values(scene, now, self%figures)
-  end subroutine add_row
 
   !> Natural frequencies of the elastic members.
   subroutine find_frequencies(scene, figures)
@@ -222,38 +197,79 @@ contains
   !> An event may change the phase of a joint: the next interval begins there.
   subroutine change_phases(self)
     class(run_extremes_t), intent(inout) :: self
-    integer :: i
     call self%train%change_rates()
-    do i = 1, self%n_pins
-      call self%pins(i)%change_phase()
-    end do
   end subroutine change_phases
 
   !> Record that a contact begins or ends at time t, at a joint or at a corner of the skirt; `now` is evaluated before that event. A
   !> joint without a record has no entry in the trace.
-  subroutine record_event(self, joint, corner, kind, t, now, event, is_found, cycles)
+  subroutine record_event(self, joint, corner, kind, t, now, ledger, event, is_found, cycles)
     class(run_extremes_t), intent(inout) :: self
     integer, intent(in) :: joint    !! index in the scene, or `of_guide`
     integer, intent(in) :: corner   !! of the skirt
     integer, intent(in) :: kind     !! event_contact_begins or event_contact_ends
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
+    type(ledger_t), intent(inout) :: ledger
     type(trace_event_t), intent(out) :: event
     logical, intent(out) :: is_found
     type(cycle_watch_t), intent(inout), optional :: cycles
     integer :: i
     is_found = joint == of_guide
     if (is_found) then
-      call self%guide%record_contact(corner, kind, t, now, self%figures, event)
+      call self%guide%record_contact(corner, kind, t, now, ledger, self%figures, event)
       if (present(cycles) .and. kind == event_contact_begins) call cycles%count_impact(skirt)
       return
     end if
     do i = 1, self%n_pins
       if (self%pins(i)%joint /= joint) cycle
-      call self%pins(i)%record_contact(kind, t, now, self%figures, event, cycles)
+      call self%pins(i)%record_contact(kind, t, now, ledger, self%figures, event, cycles)
       is_found = .true.
     end do
   end subroutine record_event
+
+  !> Tell the ledger which contacts of a run that goes on last at its beginning.
+  subroutine resume_contacts(self, scene, ledger)
+    class(run_extremes_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    type(ledger_t), intent(inout) :: ledger
+    integer :: i
+    do i = 1, self%n_pins
+      if (self%pins(i)%is_touching(scene)) call ledger%begin_contact(name_prefix(self%pins(i)%pin), goes_on=.true.)
+    end do
+    if (.not. self%guide%is_present) return
+    do i = 1, n_corners
+      if (scene%guide%touches(i)) call ledger%begin_contact(corner_names(i)//'_', goes_on=.true.)
+    end do
+  end subroutine resume_contacts
+
+  !> The results of the run so far, with the contacts that last.
+  function figures_of_run(self, scene, ledger) result(figures)
+    class(run_extremes_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    type(ledger_t), intent(in) :: ledger
+    type(run_figures_t) :: figures
+    character(len=:), allocatable :: prefix
+    integer :: i
+    figures = self%figures
+    do i = 1, self%n_pins
+      prefix = name_prefix(self%pins(i)%pin)
+      associate (it => figures%pin(self%pins(i)%pin))
+        it%max_force = ledger%of_whole_run(prefix//'max_pin_force')
+        if (self%pins(i)%joint == 0) cycle
+        it%min_film_thickness = ledger%of_whole_run(prefix//'min_film_thickness')
+        it%max_film_pressure = ledger%of_whole_run(prefix//'max_film_pressure')
+        if (.not. may_touch(scene%joints(self%pins(i)%joint))) cycle
+        it%max_penetration = max(0.0_dp, -it%min_film_thickness)
+        if (self%pins(i)%is_touching(scene) .and. self%pins(i)%is_too_deep(ledger)) &
+          it%contacts_beyond_validity = it%contacts_beyond_validity + 1
+      end associate
+    end do
+    if (.not. self%guide%is_present) return
+    do i = 1, n_corners
+      figures%corner(i)%max_penetration = max(0.0_dp, -ledger%of_whole_run(corner_names(i)//'_min_gap'))
+      figures%corner(i)%max_force = ledger%of_whole_run(corner_names(i)//'_max_force')
+    end do
+  end function figures_of_run
 
   !> How much the films of a run have changed from cycle to cycle at its end.
   subroutine find_film_changes(self, scene, cycles)
@@ -270,17 +286,18 @@ contains
   end subroutine find_film_changes
 
   !> Mean turn of a floating pin in a revolution of the crank, and its swing in the last cycle.
-  subroutine find_pin_turns(self, cycles, revolutions)
+  subroutine find_pin_turns(self, cycles, ledger, revolutions)
     class(run_extremes_t), intent(inout) :: self
     type(cycle_watch_t), intent(in) :: cycles
+    type(ledger_t), intent(in) :: ledger
     integer, intent(in) :: revolutions   !! in a cycle
-    type(cycle_t) :: cycle
+    integer :: last
     associate (pin => self%figures%floating)
       pin%revolutions = cycles%followed
       if (.not. pin%is_present .or. pin%revolutions == 0) return
       pin%drift = cycles%pin_turn/pin%revolutions
-      cycle = cycles%last_cycle(min(revolutions, pin%revolutions, longest_period))
-      pin%swing = cycle%max_pin_angle - cycle%min_pin_angle
+      last = min(revolutions, pin%revolutions, longest_period)
+      pin%swing = ledger%over_cycle('max_pin_angle', cycles%ended, last) - ledger%over_cycle('min_pin_angle', cycles%ended, last)
     end associate
   end subroutine find_pin_turns
 

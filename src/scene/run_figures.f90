@@ -22,9 +22,6 @@ module run_figures
     real(dp) :: max_force = 0                 !! magnitude of the force of the joint on the pin [N]
     real(dp) :: min_film_thickness = huge(1.0_dp)  !! c - |e| [m]
     real(dp) :: film_change = 0               !! of the smallest film thickness from cycle to cycle at the end [-]
-    real(dp) :: film_energy_lost = 0  !! energy that the film takes from the bodies, if results of the film are requested [J]
-    real(dp) :: neglected_shear_loss = 0  !! energy that shear which does not act would take [J]
-    real(dp) :: film_volume = 0               !! volume of oil that has left the film at its ends [m^3]
     real(dp) :: max_film_pressure = 0         !! [Pa]
     real(dp) :: friction_work = huge(1.0_dp)  !! work of the friction forces on the bodies so far [J]; huge: not integrated
     type(heat_totals_t) :: heat               !! of its film
@@ -87,27 +84,15 @@ contains
     heat_residual = maxval(self%pin%heat%relative_residual())
   end function heat_residual
 
-  !> Declare the totals of a pin or corner, with a prefix: those of its force, its gap, its contacts and its film, as far as it has
-  !> them.
-  subroutine declare_pin(self, pre, list, has_gap, has_contacts, has_film)
+  !> Declare the totals of the contacts of a pin or corner, with a prefix.
+  subroutine declare_pin(self, pre, list)
     class(pin_figures_t), intent(inout) :: self
     character(len=*), intent(in) :: pre
     type(run_state_t), intent(inout) :: list
-    logical, intent(in) :: has_gap, has_contacts, has_film
-    call list%add(pre//'max_force', self%max_force, 'N', 'largest force')
-    if (has_gap) call list%add(pre//'min_film_thickness', self%min_film_thickness, 'm', 'least film thickness')
-    if (has_contacts) then
-      call list%add(pre//'contacts', self%contacts, 'contacts that began')
-      call list%add(pre//'impacts_beyond_validity', self%impacts_beyond_validity, 'impacts too fast for the contact law')
-      call list%add(pre//'contacts_beyond_validity', self%contacts_beyond_validity, 'contacts too deep for the contact geometry')
-      call list%add(pre//'contact_time', self%contact_time, 's', 'time in contact')
-      call list%add(pre//'max_penetration', self%max_penetration, 'm', 'largest penetration')
-      call list%add(pre//'max_entry_penetration', self%max_entry_penetration, 'm', 'largest penetration at a beginning of contact')
-    end if
-    if (.not. has_film) return
-    call list%add(pre//'film_energy_lost', self%film_energy_lost, 'J', 'energy that the film has taken from the bodies')
-    call list%add(pre//'neglected_shear_loss', self%neglected_shear_loss, 'J', 'energy that neglected shear would have taken')
-    call list%add(pre//'film_volume', self%film_volume, 'm3', 'oil that has left the film')
-    call list%add(pre//'max_film_pressure', self%max_film_pressure, 'Pa', 'largest film pressure')
+    call list%add(pre//'contacts', self%contacts, 'contacts that began')
+    call list%add(pre//'impacts_beyond_validity', self%impacts_beyond_validity, 'impacts too fast for the contact law')
+    call list%add(pre//'contacts_beyond_validity', self%contacts_beyond_validity, 'contacts too deep for the contact geometry')
+    call list%add(pre//'contact_time', self%contact_time, 's', 'time in contact')
+    call list%add(pre//'max_entry_penetration', self%max_entry_penetration, 'm', 'largest penetration at a beginning of contact')
   end subroutine declare_pin
 end module run_figures

@@ -107,6 +107,7 @@ contains
     if (allocated(self%cycles)) call self%cycles%begin(scene, t, y, now, in_domain, self%initial_energy, self%crank)
     if (in_domain .and. .not. self%goes_on) call record_first_contacts(self, scene, t, now)
     call self%extremes%begin(scene, t, now, in_domain, self%cycles)
+    if (self%goes_on) call self%extremes%resume_contacts(scene, self%ledger)
     if (in_domain) call self%ledger%begin(scene, t, now)
     call self%rows%begin(t, scene%crank_angle(t, y), is_due)
     call record_point(self, scene, t, y, now, in_domain, is_due)
@@ -281,10 +282,9 @@ contains
     real(dp), intent(in) :: t, y(scene%n)
     type(evaluation_t), intent(in) :: now
     logical, intent(in) :: in_domain
-    call self%extremes%end_revolution(self%cycles)
+    call self%extremes%end_revolution(scene, self%ledger, self%cycles)
     call self%cycles%end_cycle(scene, t, y, now)
     call self%ledger%end_revolution(self%cycles%ended)
-    if (in_domain) call self%extremes%begin_revolution(scene, now, self%cycles)
   end subroutine end_revolution
 
   !> Evaluate the scene for the trace or the summary. These evaluations are counted.
@@ -379,7 +379,7 @@ contains
     type(evaluation_t), intent(in) :: now
     type(trace_event_t) :: event
     logical :: is_found
-    call self%extremes%record_event(joint, corner, kind, t, now, event, is_found, self%cycles)
+    call self%extremes%record_event(joint, corner, kind, t, now, self%ledger, event, is_found, self%cycles)
     if (.not. is_found .or. (self%periods%keeps_one_more .and. self%periods%window_after < 0)) return
     call self%sink%accept_event(event)
   end subroutine record_event
@@ -416,7 +416,7 @@ contains
       end if
       call self%cycles%finish(scene, t, y)
       call self%extremes%find_film_changes(scene, self%cycles)
-      call self%extremes%find_pin_turns(self%cycles, self%periods%cycle_revolutions())
+      call self%extremes%find_pin_turns(self%cycles, self%ledger, self%periods%cycle_revolutions())
     end if
     if (allocated(scene%wear_cycle)) then
       if (scene%wear_cycle%is_over(crank_angle)) call self%extremes%end_wear_cycle(scene)
@@ -439,7 +439,6 @@ contains
     logical, intent(in) :: in_domain
     if (.not. in_domain) self%has_left = .true.
     if (.not. in_domain) return
-    call self%extremes%add_row(scene, now)
     call hand_over_row(self, scene, t, y, now)
   end subroutine write_row
 
@@ -462,6 +461,7 @@ contains
     associate (f => self%extremes%figures)
       f%row_energy_residual = max(f%row_energy_residual, abs(scene%chain%energy(now%motion) - self%initial_energy - scene%work(y)))
     end associate
+    call self%ledger%add_row(self%values)
     call self%sink%accept_row(self%values)
   end subroutine hand_over_row
 

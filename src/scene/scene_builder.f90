@@ -258,6 +258,7 @@ contains
     logical, intent(in) :: makes_tables
     type(clearance_joint_t), intent(out) :: joint
     type(film_heat_t) :: heat
+    integer :: i
     joint%start_eccentricity = case%initial%eccentricity(:, place)
     joint%start_rate = case%initial%eccentricity_rate(:, place)
     call joint%set_place(place)
@@ -271,6 +272,9 @@ contains
         call joint%heat_up(heat)
       end if
       joint%reports_film = (wanted%reports_film .or. wanted%is_carried() .and. case%output%answers) .and. allocated(wanted%film)
+      do i = 1, joint%n_elements
+        joint%slots(i)%element%is_reported = joint%reports_film
+      end do
     end associate
   end subroutine build_joint
 

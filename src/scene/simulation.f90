@@ -14,7 +14,7 @@ module simulation
   use stop_reason, only: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, crank_creeps
   use scene_builder, only: build_scene, simulated_time, settings_for
   use crank_turns, only: all_made, turned_back
-  use trace_columns, only: column_list_t
+  use trace_columns, only: column_list_t, all_columns
   use cycle_watch, only: cycle_watch_t
   use cycle_answers, only: answer_t, find_answers
   use period_watch, only: period_watch_t
@@ -51,6 +51,8 @@ module simulation
     type(train_result_t), allocatable :: train(:)    !! of several cylinders on one crankshaft
     type(kept_result_t), allocatable :: kept(:)      !! results that are kept of columns
     type(exponent_t) :: exponent                 !! Lyapunov exponent, if it is requested
+  contains
+    procedure :: value_of
   end type run_report_t
 
   !> A run under way. Call `begin`, `advance` until `is_over` or as far as wanted, and `finish`. Copies continue independently of
@@ -86,6 +88,23 @@ module simulation
   end type run_t
 
 contains
+
+  !> A result that is kept of a column; `is_known` is false if the run does not have it.
+  pure subroutine value_of(self, name, value, is_known)
+    class(run_report_t), intent(in) :: self
+    character(len=*), intent(in) :: name   !! with the prefix of its place
+    real(dp), intent(out) :: value
+    logical, intent(out) :: is_known
+    integer :: i
+    value = 0
+    is_known = .false.
+    if (.not. allocated(self%kept)) return
+    do i = 1, size(self%kept)
+      if (trim(self%kept(i)%place)//self%kept(i)%name /= name) cycle
+      value = self%kept(i)%value
+      is_known = .true.
+    end do
+  end subroutine value_of
 
   !> Run a case, or its ideal twin, from its start to its end. `cycles`, the count of the revolutions of the crank, is moved into
   !> the run and returned at the end; if it is present, the impulse and the loss of the joint are integrated too. Errors: the scene
@@ -126,6 +145,7 @@ contains
     if (allocated(error)) return
     associate (recorder => self%recorder, scene => self%scene)
       recorder%list = list
+      if (.not. allocated(list%names)) call all_columns(case, ideal_joint, recorder%list)   ! no rows are wanted
       call recorder%rows%choose(case)
       call recorder%periods%choose(case)
       call recorder%limits%choose(case, two_pi/scene%speed_scale())
@@ -358,7 +378,7 @@ contains
     end if
     report%statistics = self%method%totals()
     if (allocated(self%method%time_with)) report%time_with = self%method%time_with
-    report%figures = self%recorder%extremes%figures
+    report%figures = self%recorder%extremes%figures_of_run(self%scene, self%recorder%ledger)
     call self%recorder%extremes%find_wear(self%scene, report%wear)
     allocate (report%answers(0))
     if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, &

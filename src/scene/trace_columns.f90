@@ -3,11 +3,12 @@ module trace_columns
   use kinds, only: dp
   use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: nearest_word, allowed
-  use trace_row, only: trace_row_t, column_list_t, name_length, least, largest
+  use trace_row, only: trace_row_t, column_list_t, name_length, least, largest, of_run
   use chain_motion, only: motion_t, accelerations_t, piston_pin, small_end, body_pin
   use chain_reactions, only: reactions_t
+  use chain_loads, only: force_size
   use joint_columns, only: add_joint_columns
-  use joint_places, only: places
+  use joint_places, only: places, in_order
   use guide_columns, only: add_guide_columns
   use elastic_columns, only: add_elastic_columns
   use train_columns, only: add_train_columns
@@ -16,7 +17,7 @@ module trace_columns
   use scene_builder, only: assemble_scene
   implicit none
   private
-  public :: column_list_t, choose_columns, row_values, column_name, unit_in
+  public :: column_list_t, all_columns, choose_columns, row_values, column_name, unit_in
 
 contains
 
@@ -27,12 +28,24 @@ contains
                                         !! columns
     type(column_list_t), intent(out) :: list
     type(error_t), allocatable, intent(out) :: error
+    logical, allocatable :: wanted(:)
+    integer :: i
+    call all_columns(case, ideal_joint, list)
+    wanted = .not. list%on_request
+    if (case%output%columns /= 'standard') &
+      call read_names(case%output%columns, list%names, list%on_request, ideal_joint, wanted, error)
+    list%id = pack([(i, i=1, size(wanted))], wanted)
+  end subroutine choose_columns
+
+  !> The columns of the scene of a case, and what is kept of them; none of them is in a row.
+  subroutine all_columns(case, ideal_joint, list)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint  !! see `choose_columns`
+    type(column_list_t), intent(out) :: list
     type(scene_t), allocatable :: scene
     type(trace_row_t) :: row
     type(evaluation_t) :: nothing
-    logical, allocatable :: wanted(:)
     integer :: i
-
     call assemble_scene(case, ideal_joint, .false., scene)
     nothing = transfer([(0.0_dp, i=1, storage_size(nothing)/storage_size(0.0_dp) + 1)], nothing)
     call row%collect_names()
@@ -41,11 +54,8 @@ contains
     list%meanings = row%meanings(:row%n)
     list%on_request = row%on_request(:row%n)
     list%kept = row%kept
-    allocate (wanted(row%n), source=.not. row%on_request(:row%n))
-    if (case%output%columns /= 'standard') &
-      call read_names(case%output%columns, list%names, row%on_request(:row%n), ideal_joint, wanted, error)
-    list%id = pack([(i, i=1, row%n)], wanted)
-  end subroutine choose_columns
+    list%id = [integer ::]
+  end subroutine all_columns
 
   !> Mark the columns named in a text such as 'time, crank_angle' or 'standard, film_power'. Error: each name that the scene does
   !> not have.
@@ -181,6 +191,10 @@ contains
     call row%add('small_end_force_x[N]', force(1), 'force of the joint in the small end on the floating pin, along x')
     call row%add('small_end_force_y[N]', force(2), 'the same along y; the rod takes the opposite force')
     call row%add('pin_angle[rad]', now%motion%pin_angle, 'turn of the floating pin since the start, positive from x to y')
+    call row%keep('max_pin_angle', largest, 'largest turn of the floating pin since the start', &
+      rate=now%motion%turning(body_pin), is_cubic=.true.)
+    call row%keep('min_pin_angle', least, 'smallest turn of the floating pin since the start', &
+      rate=now%motion%turning(body_pin), is_cubic=.true.)
     call row%add('pin_speed[rad/s]', now%motion%turning(body_pin), 'rate of pin_angle')
     call row%add('pin_acceleration[rad/s2]', now%accelerations%pin_turn, 'rate of pin_speed')
     do i = 1, scene%n_joints
@@ -226,6 +240,11 @@ contains
     call row%add('pin_force_x[N]', now%loads%force(1, piston_pin), &
       'force of the joint on the piston pin (on the rod), along x; the piston takes the opposite force')
     call row%add('pin_force_y[N]', now%loads%force(2, piston_pin), 'the same along y')
+    if (all(scene%joints%place /= in_order(1))) then
+      call row%add_on_request('pin_force[N]', force_size(scene%pin_force(now, in_order(1))), &
+        'size of the force of the joint on the pin')
+      call row%keep('max_pin_force', largest, 'largest force of the joint on the pin', told=of_run)
+    end if
     if (row%wants(7) .or. allocated(scene%chain%train) .and. .not. row%is_naming) &
       reaction = scene%chain%reactions(now%motion, now%accelerations, now%loads)
     call row%add('crankpin_force_x[N]', reaction%crankpin(1), 'force of the crank on the rod at the crank pin, along x (F3)')

@@ -43,8 +43,6 @@ contains
     real(dp), intent(in) :: time, crank_angle, normal_speed
     if (begins) then
       self%duration = 0
-      self%max_penetration = 0
-      self%max_normal_force = 0
     else
       self%duration = time - self%time
     end if
@@ -54,15 +52,13 @@ contains
     self%normal_speed = normal_speed
   end subroutine change
 
-  !> Declare what the end of the present contact reports of it.
+  !> Declare when the present contact began.
   subroutine declare(self, list)
     class(trace_event_t), intent(inout) :: self
     type(run_state_t), intent(inout) :: list
     character(len=:), allocatable :: pre
     pre = trim(joint_names(self%pin))//'_'
     call list%add(pre//'contact_since', self%time, 's', 'beginning of the present contact, or end of the last one')
-    call list%add(pre//'contact_max_penetration', self%max_penetration, 'm', 'largest penetration in it')
-    call list%add(pre//'contact_max_normal_force', self%max_normal_force, 'N', 'largest normal force in it')
   end subroutine declare
 
   !> Accept one row of the trace, with values in the order of its columns.

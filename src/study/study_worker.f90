@@ -137,8 +137,7 @@ contains
       self%base%case%initial%state = self%previous
       self%base%case%initial%goes_on = .false.
     end if
-    call self%watch%columns%prepare(self%base%case, error)
-    if (allocated(error)) return
+    call self%watch%columns%prepare(self%base%case)
     call run%begin(self%base%case, .false., list, sink, error, self%watch)
     if (allocated(error)) return
     call go_to_end(run, self%was_interrupted)
