@@ -116,12 +116,6 @@ contains
       if (allocated(report%train)) call add_train(report%train)
     end associate
     if (allocated(report%answers)) call add_answers(report%answers)
-    do i = 1, n_places
-      call add_kept(name_prefix(in_order(i)), in_cycle=.true.)
-    end do
-    do corner = 1, n_corners
-      call add_kept(corner_names(corner)//'_', in_cycle=.true.)
-    end do
     if (allocated(report%histories)) call add_histories(table, report%histories)
     call table%add('version', program_version)
     call table%add('compiler', compiler_version())
@@ -282,11 +276,11 @@ contains
       end do
     end subroutine add_train
 
-    !> Rows of the last whole cycle.
+    !> Rows of the last whole cycle: which it is, what is kept of columns, and what follows from that.
     subroutine add_answers(answers)
       type(answer_t), intent(in) :: answers(:)
       character(len=:), allocatable :: name
-      integer :: i
+      integer :: i, k
       do i = 1, size(answers)
         associate (it => answers(i))
           name = trim(cycle_quantities(it%quantity)%name)
@@ -299,6 +293,13 @@ contains
           else
             call table%add(name, it%value)
           end if
+          if (name /= 'cycle_is_settled') cycle
+          do k = 1, n_places
+            call add_kept(name_prefix(in_order(k)), in_cycle=.true.)
+          end do
+          do k = 1, n_corners
+            call add_kept(corner_names(k)//'_', in_cycle=.true.)
+          end do
         end associate
       end do
     end subroutine add_answers

@@ -540,6 +540,7 @@ contains
     subroutine add(prefix)
       character(len=*), intent(in) :: prefix
       associate (kept => self%kept(i))
+        if (.not. known(self%at(i))%most(1) > -huge(1.0_dp)) return   ! the run had no state in the model
         n = n + 1
         list(n) = kept_result_t(kept%place, prefix//trim(kept%name), kept%unit, prefix /= '', found(kept%what, known(self%at(i))))
         if (prefix == '' .or. .not. kept%has_angle) return

@@ -254,10 +254,10 @@ contains
     do i = 1, self%n_pins
       prefix = name_prefix(self%pins(i)%pin)
       associate (it => figures%pin(self%pins(i)%pin))
-        it%max_force = ledger%of_whole_run(prefix//'max_pin_force')
+        it%max_force = max(0.0_dp, ledger%of_whole_run(prefix//'max_pin_force'))
         if (self%pins(i)%joint == 0) cycle
         it%min_film_thickness = ledger%of_whole_run(prefix//'min_film_thickness')
-        it%max_film_pressure = ledger%of_whole_run(prefix//'max_film_pressure')
+        it%max_film_pressure = max(0.0_dp, ledger%of_whole_run(prefix//'max_film_pressure'))
         if (.not. may_touch(scene%joints(self%pins(i)%joint))) cycle
         it%max_penetration = max(0.0_dp, -it%min_film_thickness)
         if (self%pins(i)%is_touching(scene) .and. self%pins(i)%is_too_deep(ledger)) &
@@ -267,7 +267,7 @@ contains
     if (.not. self%guide%is_present) return
     do i = 1, n_corners
       figures%corner(i)%max_penetration = max(0.0_dp, -ledger%of_whole_run(corner_names(i)//'_min_gap'))
-      figures%corner(i)%max_force = ledger%of_whole_run(corner_names(i)//'_max_force')
+      figures%corner(i)%max_force = max(0.0_dp, ledger%of_whole_run(corner_names(i)//'_max_force'))
     end do
   end function figures_of_run
 
