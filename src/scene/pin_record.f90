@@ -4,7 +4,7 @@ module pin_record
   use ode_method, only: ode_method_t
   use run_state, only: run_state_t
   use chain_motion, only: body_pin
-  use joint_places, only: name_prefix
+  use joint_places, only: places, name_prefix
   use machine_record, only: turning_point
   use scene_problem, only: scene_t, evaluation_t, phase_contact, event_contact_begins
   use result_ledger, only: ledger_t
@@ -131,7 +131,7 @@ contains
     class(pin_record_t), intent(in) :: self
     type(ledger_t), intent(in) :: ledger
     real(dp) :: penetration, force
-    call ledger%find_contact(name_prefix(self%pin), penetration, force)
+    call ledger%find_contact(places(self%pin)%prefix, penetration, force)
     is_too_deep = penetration > self%deepest
   end function is_too_deep
 
@@ -180,11 +180,11 @@ contains
       call self%contact%change(kind, kind == event_contact_begins, t, now%motion%crank_angle, relative%penetration_rate)
       event = self%contact
       if (kind == event_contact_begins) then
-        call ledger%begin_contact(name_prefix(self%pin), goes_on=.false.)
+        call ledger%begin_contact(places(self%pin)%prefix, goes_on=.false.)
       else
         if (self%is_too_deep(ledger)) f%contacts_beyond_validity = f%contacts_beyond_validity + 1
-        call ledger%find_contact(name_prefix(self%pin), event%max_penetration, event%max_normal_force)
-        call ledger%end_contact(name_prefix(self%pin))
+        call ledger%find_contact(places(self%pin)%prefix, event%max_penetration, event%max_normal_force)
+        call ledger%end_contact(places(self%pin)%prefix)
       end if
     end associate
   end subroutine record_contact

@@ -3,7 +3,7 @@ module run_extremes
   use kinds, only: dp
   use run_state, only: run_state_t
   use ode_method, only: ode_method_t
-  use joint_places, only: n_places, name_prefix
+  use joint_places, only: places, n_places, name_prefix
   use scene_problem, only: scene_t, evaluation_t, event_contact_begins, of_guide, phase_contact
   use joint_events, only: penetration_and_rate, may_lose_force, may_touch, find_lost_force
   use piston_guide, only: n_corners, corner_names
@@ -109,10 +109,10 @@ contains
     do i = 1, self%n_pins
       associate (pin => self%pins(i)%pin, joint => self%pins(i)%joint)
         if (joint > 0) then
-          call cycles%record_pin(pin, ledger%of_revolution(name_prefix(pin)//'max_force'), &
-            ledger%of_revolution(name_prefix(pin)//'min_film_thickness'), may_touch(scene%joints(joint)))
+          call cycles%record_pin(pin, ledger%of_revolution(trim(places(pin)%prefix)//'max_force'), &
+            ledger%of_revolution(trim(places(pin)%prefix)//'min_film_thickness'), may_touch(scene%joints(joint)))
         else
-          call cycles%record_pin(pin, ledger%of_revolution(name_prefix(pin)//'max_pin_force'))
+          call cycles%record_pin(pin, ledger%of_revolution(trim(places(pin)%prefix)//'max_pin_force'))
         end if
       end associate
     end do
@@ -234,7 +234,7 @@ contains
     type(ledger_t), intent(inout) :: ledger
     integer :: i
     do i = 1, self%n_pins
-      if (self%pins(i)%is_touching(scene)) call ledger%begin_contact(name_prefix(self%pins(i)%pin), goes_on=.true.)
+      if (self%pins(i)%is_touching(scene)) call ledger%begin_contact(places(self%pins(i)%pin)%prefix, goes_on=.true.)
     end do
     if (.not. self%guide%is_present) return
     do i = 1, n_corners
