@@ -175,7 +175,7 @@ EXTREMES = (
     ("sim_II", ("integrator.revolutions=4",)), ("bearings/small_engine", ("initial.crank_angle_deg=123",)),
     ("sim_VI", ("integrator.revolutions=4",)), ("bearings/elastic_pin", ()), ("film/elastic", ()), ("wear/worn_bore", ("output.samples_per_revolution=36000",)),
     ("bearings/refrigerant_compressor", ()), ("joints/both_pins", ("output.samples_per_revolution=36000",)), ("elastic/engine_rod", ()), ("elastic/engine_crankshaft", ()),
-    ("cylinders/six_mwm", ("run.until=end", "output.window=all", "integrator.end_time=0.12")),
+    ("cylinders/six_mwm", ("run.until=end", "output.window=all", "integrator.end_time=0.12")), ("joints/piston_slap", ("output.samples_per_revolution=36000",)), ("pin/engine", ()),
 )
 #: Answers with their columns: the largest value (1) or the smallest (-1).
 EXTREME_COLUMNS = (("cycle_max_drive_torque", lambda row: row.get("crank_moment"), 1),
@@ -190,6 +190,9 @@ EXTREME_COLUMNS = (("cycle_max_drive_torque", lambda row: row.get("crank_moment"
                    ("cycle_max_eccentricity_ratio", lambda row: row.get("eccentricity_ratio"), 1),
                    ("cycle_max_segment_8_torque", lambda row: abs(row["segment_8_torque"]) if "segment_8_torque" in row else None, 1),
                    ("cycle_max_station_9_twist", lambda row: abs(row["station_9_twist"]) if "station_9_twist" in row else None, 1),
+                   ("cycle_max_normal_force", lambda row: row.get("normal_force"), 1),
+                   ("guide_1_cycle_min_gap", lambda row: row.get("guide_1_gap"), -1), ("guide_4_cycle_max_force", lambda row: row.get("guide_4_force"), 1),
+                   ("cycle_max_pin_angle", lambda row: row.get("pin_angle"), 1), ("cycle_min_pin_angle", lambda row: row.get("pin_angle"), -1),
                    ("cycle_max_force", lambda row: math.hypot(row["pin_force_x"], row["pin_force_y"]) if "pin_force_x" in row else None, 1))
 
 

@@ -9,7 +9,8 @@ module test_notes
   use case_file, only: read_case
   use case_schema, only: key_table_t, case_schema_of
   use simulation, only: run_report_t
-  use result_notes, only: notes_on_results
+  use film_history, only: film_history_t
+  use result_notes, only: notes_on_results, history_remarks
   use run_line, only: lines_for_user
   use text_tools, only: next_line
   use value_reader, only: read_bounds, read_real
@@ -111,7 +112,15 @@ contains
     call units_of_errors(check)
     call implausible_results(check)
     call films_that_have_not_settled(check)
+    call march_that_was_not_begun(check)
   end subroutine run_test_notes
+
+  !> A film with memory is not marched if its run does not reach its end: there is nothing to say of it.
+  subroutine march_that_was_not_begun(check)
+    class(checks_t), intent(inout) :: check
+    type(film_history_t) :: history
+    call check%that(history_remarks(history, .true.) == '', 'a march that was not begun has no remarks')
+  end subroutine march_that_was_not_begun
 
   !> A shipped case with changes.
   subroutine read_changed(file, changes, case, error)

@@ -50,6 +50,7 @@ contains
     call check%equal_text(exact_text(523.5987755982989_dp), '523.5987755982989', 'exact, many digits')
     call check%equal_text(exact_text(0.1_dp + 0.2_dp), '0.30000000000000004', 'exact, 17 digits')
     call check%equal_text(exact_text(zero), '0', 'exact, zero')
+    call check%equal_text(exact_text(-huge(zero)), '-1.7976931348623157e308', 'exact, largest: not rounded up to infinity')
   end subroutine test_texts
 
   subroutine test_random_texts(check)

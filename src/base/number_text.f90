@@ -262,9 +262,10 @@ contains
   pure function exact_text(value) result(text)
     real(dp), intent(in) :: value
     character(len=:), allocatable :: text
+    real(dp), parameter :: may_round_up = 1e308_dp   ! above, fewer digits may be those of a number beyond the largest one
     real(dp) :: back
     integer :: digits
-    do digits = 1, most_digits
+    do digits = merge(most_digits, 1, abs(value) > may_round_up), most_digits
       text = real_text(value, digits)
       if (scan(text, '0123456789') == 0) return   ! not finite
       read (text, *) back

@@ -9,7 +9,7 @@ module joint_columns
   use archard_wear, only: of_pin, of_bore
   implicit none
   private
-  public :: add_joint_columns
+  public :: add_joint_columns, add_pin_force
 
 contains
 
@@ -40,8 +40,7 @@ contains
     do k = 1, joint%n_elements
       call joint%slots(k)%element%add_columns(now, row)
     end do
-    call row%add_on_request('pin_force[N]', force_size(now%force), 'size of the force of the joint on the pin')
-    call row%keep('max_pin_force', largest, 'largest force of the joint on the pin', told=of_run)
+    call add_pin_force(now%force, row)
     call row%keep('max_force', largest, 'largest force of the joint on the pin', told=of_cycle)
     if (joint%reports_film) call row%keep('mean_pin_force', mean, 'mean over time of the size of this force, with `report`', &
       is_sampled=.true.)
@@ -51,6 +50,14 @@ contains
     if (allocated(joint%wear)) call add_wear(joint, now, row)
     row%place = ''
   end subroutine add_joint_columns
+
+  !> Add the column of the size of the force [N] on a pin, which an ideal one may have too.
+  pure subroutine add_pin_force(force, row)
+    real(dp), intent(in) :: force(2)
+    type(trace_row_t), intent(inout) :: row
+    call row%add_on_request('pin_force[N]', force_size(force), 'size of the force of the joint on the pin')
+    call row%keep('max_pin_force', largest, 'largest force of the joint on the pin', told=of_run)
+  end subroutine add_pin_force
 
   !> Add the volumes that wear in a second.
   pure subroutine add_wear(joint, now, row)

@@ -31,7 +31,7 @@ module trace_row
     integer :: told = everywhere
     character(len=name_length) :: unit = ''        !! that of the column, unless it is an integral
     logical :: has_rate = .false.                  !! the rate of the column is known
-    logical :: is_cubic = .false.                  !! between two steps it is the cubic through values and rates
+    logical :: is_cubic = .false.                  !! inside a step it is the cubic through values and rates; no angle
     logical :: is_of_contact = .false.             !! it follows from the state alone, and events tell it of each contact
     logical :: is_sampled = .false.                !! it is found at the points of Gauss's rule of each step
     logical :: has_angle = .false.                 !! of the last cycle, the crank angle of the extreme is told
@@ -136,10 +136,13 @@ contains
     integer, intent(in), optional :: told  !! everywhere, of_run or of_cycle
     character(len=*), intent(in), optional :: unit   !! of an integral
     logical, intent(in), optional :: is_cubic, is_of_contact, is_sampled, has_angle   !! see `kept_t`
-    type(kept_t) :: kept
-    if (self%is_naming) then
-      kept = kept_t(self%place, name, says, what, self%n)
-      kept%unit = self%names(self%n)(index(self%names(self%n), '[') + 1:index(self%names(self%n), ']') - 1)
+    if (.not. self%is_naming) then   ! of a row, which makes no record: there are many
+      if (present(rate)) self%rates(self%n) = rate
+      return
+    end if
+    self%kept = [self%kept, kept_t(self%place, name, says, what, self%n)]
+    associate (kept => self%kept(size(self%kept)), column => self%names(self%n))
+      kept%unit = column(index(column, '[') + 1:index(column, ']') - 1)
       if (kept%unit == '-') kept%unit = '1'
       if (present(unit)) kept%unit = unit
       if (present(told)) kept%told = told
@@ -148,10 +151,7 @@ contains
       if (present(is_of_contact)) kept%is_of_contact = is_of_contact
       if (present(is_sampled)) kept%is_sampled = is_sampled
       if (present(has_angle)) kept%has_angle = has_angle
-      self%kept = [self%kept, kept]
-    else if (present(rate)) then
-      self%rates(self%n) = rate
-    end if
+    end associate
   end subroutine keep
 
   !> Whether no further column is in the trace.

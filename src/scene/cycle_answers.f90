@@ -4,7 +4,7 @@
 !> completed a revolution. Work is that on the bodies, so losses are negative.
 module cycle_answers
   use kinds, only: dp
-  use constants, only: two_pi, degree
+  use constants, only: two_pi
   use load_element, only: of_contact, of_friction, of_film, of_asperities
   use chain_motion, only: body_pin
   use joint_places, only: name_prefix
@@ -13,7 +13,7 @@ module cycle_answers
   use cycle_watch, only: cycle_watch_t
   use period_watch, only: period_watch_t
   use run_extremes, only: run_extremes_t
-  use result_ledger, only: ledger_t
+  use result_ledger, only: ledger_t, degrees_in_cycle
   use archard_wear, only: of_pin, of_bore
   use gas_cycle, only: released_share
   use film_heat, only: temperature_sum, heat_to_oil, heat_to_housing
@@ -218,7 +218,7 @@ contains
       if (.not. allocated(scene%gas)) return
       if (scene%gas%has_force) then
         call add('cycle_max_cylinder_pressure', cycle%max_pressure)
-        call add('cycle_max_cylinder_pressure_angle', degrees(cycle%max_pressure_angle))
+        call add('cycle_max_cylinder_pressure_angle', degrees_in_cycle(cycle%max_pressure_angle, revolutions))
       end if
       shaft = -work_of(by_drive) - work_of(by_damping)
       one_way = -sum(cycle%work(scene%n_works + 1:size(scene%parts)))    ! by bearings that the mechanism does not feel
@@ -240,11 +240,5 @@ contains
       character(len=*), intent(in) :: name
       kept = ledger%over_cycle(name, cycles%ended, revolutions)
     end function kept
-
-    !> A crank angle [rad] in degrees, from 0 to the length of the cycle.
-    pure real(dp) function degrees(angle)
-      real(dp), intent(in) :: angle
-      degrees = modulo(angle, two_pi*revolutions)/degree
-    end function degrees
   end function find_answers
 end module cycle_answers

@@ -16,7 +16,7 @@ module result_ledger
   use run_length, only: longest_period
   implicit none
   private
-  public :: ledger_t, kept_result_t
+  public :: ledger_t, kept_result_t, degrees_in_cycle
 
   !> A result over the run, or over its last cycle.
   type :: kept_result_t
@@ -51,11 +51,14 @@ module result_ledger
     logical, private :: needs_inner = .false.          !! a column is sampled
     logical, private :: is_fresh = .true.              !! since an event: values and rates of the last interval no longer hold
     logical, private :: has_before = .false.           !! the interval before is of the same phases
-    logical, private :: has_slopes(2) = .false.        !! `last_rate` has slopes of columns without rates
+    logical, private :: has_slopes(2) = .false.        !! `last_rate` has the slopes of columns without rates: 1: of those of
+                                                       !! contacts, 2: of the others
     real(dp), private :: t_before = 0, t = 0           !! beginning and end of the last interval [s]
     real(dp), private :: angle = 0                     !! crank angle at its end [rad]
     real(dp), allocatable, private :: before(:), last(:), last_rate(:)   !! values there, and rates at its end
     real(dp), allocatable, dimension(:), private :: values, rates, inside   !! at the end of the interval, and inside
+    real(dp), allocatable, private :: samples(:, :)    !! values at the points of Gauss's rule in the interval
+    real(dp), allocatable, private :: row(:)           !! work space for some of the columns
   contains
     procedure :: prepare
     procedure :: declare
@@ -111,7 +114,7 @@ contains
     self%cheap%id = self%list%id(self%cheap_at)
     allocate (self%present(n), self%whole(n), self%episode(n), self%recent(n, 0:longest_period - 1))
     allocate (self%before(n), self%last(n), self%last_rate(n), source=0.0_dp)
-    allocate (self%values(n), self%rates(n), self%inside(n))
+    allocate (self%values(n), self%rates(n), self%inside(n), self%row(n), self%samples(n, size(self%inner%t)))
   end subroutine prepare
 
   !> Declare the results over the run so far, and what is known of the present contacts.
@@ -287,8 +290,7 @@ contains
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     integer, intent(inout) :: evaluations    !! of the scene so far
-    real(dp) :: samples(size(self%last), size(self%inner%t))   !! at the points inside
-    logical :: has_slopes(2), has_samples   ! slopes of the columns of contacts, of the others, over this interval
+    logical :: has_slopes(2), has_samples   ! has_slopes: as above, at both ends of this interval
     integer :: k
     if (size(self%last) == 0 .or. .not. t > self%t) return
     if (self%is_fresh) call begin_anew(self, method, scene, evaluations)
@@ -296,7 +298,7 @@ contains
     self%angle = now%motion%crank_angle
     call add_values(self, self%values, self%angle)
     has_samples = .false.
-    if (self%needs_inner) call take_samples(self, method, scene, t, samples, has_samples, evaluations)
+    if (self%needs_inner) call take_samples(self, method, scene, t, has_samples, evaluations)
     has_slopes = .false.
     do k = 1, size(self%values)
       if (self%is_searched(1, k)) call search(1, 1.0_dp)
@@ -322,21 +324,19 @@ contains
       integer :: group
       known = self%present(k)%most(i)
       if (self%touches(k)) known = min(known, self%episode(k)%most(i))
-      left = sample_t(self%t, sense*self%last(k))
-      right = sample_t(t, sense*self%values(k))
       if (.not. self%has_rate(k)) then
         if (has_samples) then
           call search_samples(k, sense, known)
           return
         end if
-        if (.not. may_exceed(left%t, left%value, right%t, right%value, known, self%has_before, self%t_before, &
+        if (.not. may_exceed(self%t, sense*self%last(k), t, sense*self%values(k), known, self%has_before, self%t_before, &
           sense*self%before(k))) return
         group = merge(1, 2, self%is_of_contact(k))
         if (.not. has_slopes(group)) call find_slopes(self, method, scene, t, k, now, self%has_slopes(group), evaluations)
         has_slopes(group) = .true.
       end if
-      left%slope = sense*self%last_rate(k)
-      right%slope = sense*self%rates(k)
+      left = sample_t(self%t, sense*self%last(k), sense*self%last_rate(k))
+      right = sample_t(t, sense*self%values(k), sense*self%rates(k))
       if (self%is_cubic(k)) then
         call top_of_cubic(left, right, top, is_bounded)
         if (is_bounded) call add_value(self, k, sense*top, self%angle)
@@ -376,7 +376,7 @@ contains
       type(sample_t) :: inside
       integer :: best, before, after, way   ! way: into the interval
       times = [self%t, self%inner%t, t]
-      v = sense*[self%last(k), samples(k, :), self%values(k)]
+      v = sense*[self%last(k), self%samples(k, :), self%values(k)]
       best = maxloc(v, 1)
       before = max(best - 1, 1)
       after = min(best + 1, size(v))
@@ -387,7 +387,7 @@ contains
         chord = (v(best + way) - v(best))/(times(best + way) - times(best))
         bend = (v(best + 2*way) - v(best + way))/(times(best + 2*way) - times(best + way)) - chord
         if (way*(chord - bend*(times(best + way) - times(best))/(times(best + 2*way) - times(best))) < -abs(bend)) return
-        time = times(best) + short*(times(after + before - best) - times(best))
+        time = times(best) + short*(times(best + way) - times(best))
         call look(self, method, scene, time, k, now, evaluations)
         inside = sample_t(time, sense*self%inside(k), 0.0_dp)
         if (.not. inside%value > v(best)) return
@@ -397,25 +397,23 @@ contains
   end subroutine follow
 
   !> Evaluate the scene at the points of Gauss's rule, for means; `is_whole` is false if it is not defined in one.
-  subroutine take_samples(self, method, scene, t, samples, is_whole, evaluations)
+  subroutine take_samples(self, method, scene, t, is_whole, evaluations)
     class(ledger_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
-    real(dp), intent(out) :: samples(:, :)
     logical, intent(out) :: is_whole
     integer, intent(inout) :: evaluations
     integer :: i
     call self%inner%evaluate(scene, method, t, evaluations)
     is_whole = self%inner%n > 0
-    samples = 0
     do i = 1, self%inner%n
       is_whole = is_whole .and. self%inner%in_domain(i)
       if (.not. self%inner%in_domain(i)) cycle
-      call row_values(self%list, scene, self%inner%t(i), self%inner%now(i), 0.0_dp, 0.0_dp, samples(:, i))
-      call add_values(self, samples(:, i), self%inner%now(i)%motion%crank_angle)
+      call row_values(self%list, scene, self%inner%t(i), self%inner%now(i), 0.0_dp, 0.0_dp, self%samples(:, i))
+      call add_values(self, self%samples(:, i), self%inner%now(i)%motion%crank_angle)
       where (self%is_sampled)
-        self%present%sum = self%present%sum + self%inner%weight(i)*samples(:, i)
+        self%present%sum = self%present%sum + self%inner%weight(i)*self%samples(:, i)
         self%present%duration = self%present%duration + self%inner%weight(i)
       end where
     end do
@@ -475,7 +473,7 @@ contains
     type(evaluation_t), intent(in) :: at_end     !! of the interval
     integer, intent(inout) :: evaluations
     type(evaluation_t) :: there
-    real(dp) :: y(scene%n), row(size(self%list%id))
+    real(dp) :: y(scene%n)
     logical :: in_domain
     integer :: i
     self%inside = self%values
@@ -487,7 +485,7 @@ contains
       call evaluate_inside(scene, method, time, y, there, in_domain, evaluations)
       if (.not. in_domain) return
       if (self%is_sampled(k)) then
-        call take(self%list, [(i, i=1, size(row))])
+        call take(self%list, [(i, i=1, size(self%row))])
       else
         call take(self%cheap, self%cheap_at)
       end if
@@ -498,10 +496,10 @@ contains
     subroutine take(list, at)
       type(column_list_t), intent(in) :: list
       integer, intent(in) :: at(:)
-      call row_values(list, scene, time, there, 0.0_dp, 0.0_dp, row(:size(at)))
+      call row_values(list, scene, time, there, 0.0_dp, 0.0_dp, self%row(:size(at)))
       do i = 1, size(at)
-        self%inside(at(i)) = row(i)
-        call add_value(self, at(i), row(i), there%motion%crank_angle)
+        self%inside(at(i)) = self%row(i)
+        call add_value(self, at(i), self%row(i), there%motion%crank_angle)
       end do
     end subroutine take
   end subroutine look
@@ -546,17 +544,17 @@ contains
         if (prefix == '' .or. .not. kept%has_angle) return
         n = n + 1
         list(n) = kept_result_t(kept%place, prefix//trim(kept%name)//'_angle', 'deg', .true., &
-          degrees(known(self%at(i))%angle(merge(2, 1, kept%what == least)), revolutions))
+          degrees_in_cycle(known(self%at(i))%angle(merge(2, 1, kept%what == least)), revolutions))
       end associate
     end subroutine add
   end function results
 
   !> A crank angle [rad] in degrees, from 0 to the length of a cycle of some revolutions.
-  pure real(dp) function degrees(angle, revolutions)
+  pure real(dp) function degrees_in_cycle(angle, revolutions)
     real(dp), intent(in) :: angle
     integer, intent(in) :: revolutions
-    degrees = modulo(angle, two_pi*revolutions)/degree
-  end function degrees
+    degrees_in_cycle = modulo(angle, two_pi*revolutions)/degree
+  end function degrees_in_cycle
 
   !> Index of a result; 0 if the scene does not have it.
   pure integer function index_of(self, name)

@@ -3,11 +3,10 @@ module trace_columns
   use kinds, only: dp
   use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: nearest_word, allowed
-  use trace_row, only: trace_row_t, column_list_t, name_length, least, largest, of_run
+  use trace_row, only: trace_row_t, column_list_t, name_length, least, largest
   use chain_motion, only: motion_t, accelerations_t, piston_pin, small_end, body_pin
   use chain_reactions, only: reactions_t
-  use chain_loads, only: force_size
-  use joint_columns, only: add_joint_columns
+  use joint_columns, only: add_joint_columns, add_pin_force
   use joint_places, only: places, in_order
   use guide_columns, only: add_guide_columns
   use elastic_columns, only: add_elastic_columns
@@ -240,11 +239,7 @@ contains
     call row%add('pin_force_x[N]', now%loads%force(1, piston_pin), &
       'force of the joint on the piston pin (on the rod), along x; the piston takes the opposite force')
     call row%add('pin_force_y[N]', now%loads%force(2, piston_pin), 'the same along y')
-    if (all(scene%joints%place /= in_order(1))) then
-      call row%add_on_request('pin_force[N]', force_size(scene%pin_force(now, in_order(1))), &
-        'size of the force of the joint on the pin')
-      call row%keep('max_pin_force', largest, 'largest force of the joint on the pin', told=of_run)
-    end if
+    if (all(scene%joints%place /= in_order(1))) call add_pin_force(scene%pin_force(now, in_order(1)), row)
     if (row%wants(7) .or. allocated(scene%chain%train) .and. .not. row%is_naming) &
       reaction = scene%chain%reactions(now%motion, now%accelerations, now%loads)
     call row%add('crankpin_force_x[N]', reaction%crankpin(1), 'force of the crank on the rod at the crank pin, along x (F3)')

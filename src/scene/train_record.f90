@@ -13,6 +13,7 @@ module train_record
   use train_motion, only: most_stations, most_rings
   use crank_train, only: crank_train_t
   use torsional_modes, only: find_modes
+  use peak_search, only: sample_t, top_of_cubic
   use scene_problem, only: scene_t, evaluation_t
   use train_case, only: order_cylinders
   use train_builder, only: mean_inertias
@@ -232,15 +233,10 @@ contains
   pure subroutine climb(h, left, left_rate, right, right_rate, largest)
     real(dp), intent(in) :: h, left, left_rate, right, right_rate
     real(dp), intent(inout) :: largest
-    real(dp) :: a, b, c, s, root
-    largest = max(largest, left, right)
-    if (.not. (left_rate > 0 .and. right_rate < 0)) return
-    c = h*left_rate
-    b = 3*(right - left) - h*(2*left_rate + right_rate)
-    a = h*(left_rate + right_rate) - 2*(right - left)
-    root = sqrt(max(b**2 - 3*a*c, 0.0_dp))
-    s = c/(root - b)   ! the zero of the slope where it falls; root > b, since the slope at the end is negative
-    if (s > 0 .and. s < 1) largest = max(largest, left + s*(c + s*(b + s*a)))
+    real(dp) :: top
+    logical :: is_inside
+    call top_of_cubic(sample_t(0.0_dp, left, left_rate), sample_t(h, right, right_rate), top, is_inside)
+    largest = max(largest, left, right, top)
   end subroutine climb
 
   !> Add the integrals over the angle of the driven station in an interval, by three points of Gauss and Legendre.
