@@ -28,6 +28,7 @@ from measured import use_virtual_environment
 use_virtual_environment()
 
 import elastic_pictures
+import gudgeon
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
@@ -255,6 +256,103 @@ class Comparison(unittest.TestCase):
     def test_names_tell_equal_files_apart(self) -> None:
         self.assertEqual(compare.different_names(Path("/x/a.csv"), Path("/y/a.csv")), ("x/a.csv", "y/a.csv"))
         self.assertEqual(compare.different_names(Path("/x/a.csv"), Path("/x/b.csv")), ("a.csv", "b.csv"))
+
+
+class Tables(unittest.TestCase):
+    """Answers of runs side by side. Units and per cents by hand."""
+
+    def setUp(self) -> None:
+        work = tempfile.TemporaryDirectory()
+        self.addCleanup(work.cleanup)
+        self.work = Path(work.name)
+        self.base, self.hot, self.cold = (self.made(*values) for values in (
+            ("a/base", "4.22E-06", "3.61E+03", "7.1E+02", "3.7315E+02", "0", 7),
+            ("a/hot", "3.165E-06", "3.61E+03", "1.0E+01", "3.9315E+02", "2.5E-01", 14),
+            ("b/base", "8.44E-06", "-7.22E+03", "3.5E+02", "3.7315E+02", "0", 7)))
+
+    def made(self, name: str, film: str, force: str, angle: str, heat: str, share: str, contacts: int) -> Path:
+        path = self.work / f"{name}.csv"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("time[s]\n0\n1\n")
+        path.with_suffix(".summary.csv").write_text(
+            "quantity,value,unit\nstatus,done,\ncycle_start,0,s\ncycle_revolutions,2,1\n"
+            f"cycle_min_film_thickness,{film},m\ncycle_min_film_thickness_angle,{angle},deg\ncycle_max_force,{force},N\n"
+            f"cycle_mean_film_temperature,{heat},K\ncycle_contact_share,{share},1\ncontacts,{contacts},1\n"
+            "crank_pin_cycle_max_film_pressure,8.5035E+07,Pa\npin_swing,1.570796327E+00,rad\ncycle_mean_crank_speed,3.769911184E+02,rad/s\n"
+            "cycle_mean_film_side_flow,1E-06,m3/s\ncycle_wear_depth_rate_bore,2.25E-09,m/h\ncycle_mean_film_temperature_difference,2.5E-02,K\n"
+            + ("cycle_brake_power,4.9E+03,W\n" if name == "a/hot" else ""))
+        return path
+
+    def rows(self, *arguments: object, **options: object) -> dict[str, list[str]]:
+        cells = gudgeon.table(*arguments, **options).cells
+        return {row[0]: row[1:] for row in cells.values.tolist()}
+
+    def test_one_run_in_readable_units(self) -> None:
+        found = self.rows(self.base)
+        wanted = {
+            "cycle_min_film_thickness": "4.22 um", "cycle_min_film_thickness_angle": "710 deg", "cycle_max_force": "3.61 kN",
+            "cycle_mean_film_temperature": "100 degC", "crank_pin_cycle_max_film_pressure": "85.0 MPa", "pin_swing": "90.0 deg",
+            "cycle_mean_crank_speed": "3600 rpm", "cycle_mean_film_side_flow": "60.0 cm3/min", "cycle_wear_depth_rate_bore": "2.25 nm/h"}
+        self.assertEqual(found, {name: [text] for name, text in wanted.items()})  # neither what is done nor what is 0
+
+    def test_runs_side_by_side(self) -> None:
+        found = self.rows([self.base, self.hot])
+        self.assertEqual(found["cycle_min_film_thickness"], ["4.22 um", "3.17 um (-25.0 %)"])
+        self.assertEqual(found["cycle_min_film_thickness_angle"], ["710 deg", "10.0 deg (+20.0 deg)"])  # over the end of the cycle
+        self.assertEqual(found["cycle_mean_film_temperature"], ["100 degC", "120 degC (+20.0 K)"])
+        self.assertEqual(found["cycle_contact_share"], ["0", "0.250"])  # of nothing there is no share
+        self.assertEqual(found["cycle_brake_power"], ["-", "4.90 kW"])
+        self.assertEqual(found["cycle_max_force"], ["3.61 kN", "3.61 kN (0.0 %)"])
+        turned = self.rows([self.base, self.cold], "cycle_max_force")
+        self.assertEqual(turned, {"cycle_max_force": ["3.61 kN", "-7.22 kN (-300 %)"]})
+        data = gudgeon.table([self.base, self.hot], "contacts").data
+        self.assertEqual(data.iloc[0].tolist(), ["contacts", "", 7, 14, 100.0, "%"])
+
+    def test_rows_are_chosen(self) -> None:
+        found = self.rows([self.base, self.cold], ["*_force", "cycle_mean_film*"], digits=4)
+        self.assertEqual(list(found), ["cycle_max_force", "cycle_mean_film_temperature", "cycle_mean_film_side_flow",
+                                       "cycle_mean_film_temperature_difference"])
+        self.assertEqual(found["cycle_mean_film_temperature_difference"][0], "0.02500 K")
+        with self.assertRaisesRegex(KeyError, "no row cycle_max_forc; did you mean cycle_max_force"):
+            gudgeon.table(self.base, "cycle_max_forc")
+
+    def test_equal_names_are_told_apart(self) -> None:
+        self.assertEqual(list(gudgeon.table([self.base, self.cold]).cells), ["row", "a/base", "b/base"])
+        self.assertEqual(list(gudgeon.table([self.base, self.hot]).cells), ["row", "base", "hot"])
+        self.assertEqual(list(gudgeon.table([self.base, self.base, self.base]).cells), ["row", "base", "base 2", "base 3"])
+
+    def test_files_and_what_is_printed(self) -> None:
+        found = gudgeon.table([self.base, self.hot], ["cycle_max_force", "status"])
+        self.assertEqual(str(found), "| row             |    base |              hot |\n| --------------- | ------: | ---------------: |\n"
+                                     "| cycle_max_force | 3.61 kN | 3.61 kN (0.0 %) |\n".replace("---------------: |", "--------------: |").replace("             hot", "            hot")
+                                     + "| status          |    done |            done |")
+        self.assertEqual(found.save(self.work / "x.csv").read_text(), "row,unit,base,hot,hot: change,unit of change\n"
+                                                                      "cycle_max_force,kN,3.61,3.61,0,%\nstatus,,done,done,,\n")
+        page = found.save(self.work / "x.html").read_text()
+        self.assertIn('<td style="text-align: right">3.61 kN (0.0 %)</td>', page)
+        self.assertNotIn("http", page)
+        self.assertIn("| status ", found.save(self.work / "x.md").read_text())
+        with self.assertRaisesRegex(ValueError, "x.txt: must end in .md, .csv, .html"):
+            found.save(self.work / "x.txt")
+        for words, status, said in (
+            (["a/base.csv", "a/hot", "--results", "a", "--rows", "pin_swing"], 0, "| pin_swing | 90.0 deg | 90.0 deg (0.0 %) |"),
+            (["base", "--results", "a", "--format", "csv", "--rows", "pin_swing"], 0, "row,unit,base\npin_swing,deg,90\n"),
+            (["base", "--results", "a", "--rows", "nothing"], 1, "gudgeon-plot table: no row nothing"),
+            (["base", "--results", "a", "-o", "x.txt"], 1, "x.txt: must end in"),
+            (["base", "x.runs.csv"], 2, "stand alone"),
+        ):
+            done = subprocess.run([sys.executable, "-m", "gudgeon", "table", *words], cwd=self.work, capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, status, done.stderr)
+            self.assertIn(said, done.stdout if status == 0 else done.stderr)
+
+    def test_rows_of_a_study(self) -> None:
+        path = self.work / "x.runs.csv"
+        path.write_text("run,contact.law,joint.clearance,status,impacts[-],max_pin_force[N]\n"
+                        "1,hertz,1e-5,done,2,4.5E+04\n2,flores,2e-5,too deep,,\n")
+        found = gudgeon.table(path, ["max_pin_force", "impacts"])
+        self.assertEqual(list(found.cells), ["run", "contact.law", "joint.clearance [um]", "status", "max_pin_force [kN]", "impacts"])
+        self.assertEqual(found.cells.values.tolist(), [["1", "hertz", "10.0", "done", "45.0", "2.00"], ["2", "flores", "20.0", "too deep", "-", "-"]])
+        self.assertEqual(list(gudgeon.table(path).cells)[-1], "max_pin_force [kN]")
 
 
 class Poincare(unittest.TestCase):

@@ -4,7 +4,7 @@
     scripts/manual/tutorial.py PAGE [--program PROGRAM] [--write]     --write: puts what they print into the page
 
 A block after a line that ends with "`NAME`:" is a file. In a block that begins with "$ " each such line is a command, run in the folder of the files, and the lines behind it are its output; `...` stands for anything, and numbers may be off by
-2e-3 of their value, with ~ before them by a third.
+2e-3 of their value, with ~ before them by a third. The widths of the columns of a table do not matter.
 """
 from __future__ import annotations
 
@@ -36,7 +36,8 @@ def commands(text: str) -> list[str]:
 
 def alike(shown: str, printed: str) -> bool:
     """Whether a printed line is the shown one."""
-    parts = [re.escape(NUMBER.sub("#", part)) for part in shown.split("...")]
+    shown, printed = (re.sub(r"--+", "--", re.sub(" +", " ", line)) if line.startswith("|") else line for line in (shown, printed))
+    parts = [re.escape(NUMBER.sub("#", part.replace("~", ""))) for part in shown.split("...")]
     if not re.fullmatch(".*".join(parts), NUMBER.sub("#", printed)):
         return False
     if "..." in shown:

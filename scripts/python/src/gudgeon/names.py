@@ -59,7 +59,7 @@ COLUMNS = {
 }
 
 #: Units that take a prefix.
-PREFIXED = ("m", "s", "N", "Pa", "J", "W", "Pa s", "N m", "m/s", "m^3/s", "kg")
+PREFIXED = ("m", "s", "N", "Pa", "J", "W", "Pa s", "N m", "m/s", "m/h", "m^3/s", "kg")
 PREFIXES = ((1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"), (1e6, "M"), (1e9, "G"))
 
 
