@@ -116,10 +116,10 @@ def table(runs: Any, rows: str | Iterable[str] | None = None, *, digits: int = 3
 
     >>> case = gudgeon.template("engine")
     >>> print(table([case.run(), case.set({"combustion.heat": 420}).run()], ["cycle_max_force", "cycle_max_cylinder_pressure"]))
-    | row                         |   engine |        engine 2 |
-    | --------------------------- | -------: | --------------: |
-    | cycle_max_force             |  14.7 kN |   18 kN (+22 %) |
-    | cycle_max_cylinder_pressure | 4.34 MPa | 5 MPa (+15.1 %) |
+    | row                         |   engine |           engine 2 |
+    | --------------------------- | -------: | -----------------: |
+    | cycle_max_force             |  14.7 kN |  17.0 kN (+15.3 %) |
+    | cycle_max_cylinder_pressure | 4.34 MPa | 4.96 MPa (+14.2 %) |
     """
     given = [runs] if isinstance(runs, (str, Path, Run, Summary)) else list(runs)
     wanted = [rows] if isinstance(rows, str) else None if rows is None else list(rows)
