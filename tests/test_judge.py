@@ -216,7 +216,7 @@ PHASES = {"carried": {0}, "engine": {0, 2}, **dict.fromkeys(("still", "unexcited
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
           "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2}, "elastic": {1},
           "inertia": {1, 2}, "compressor": {1}, "two_stroke": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1},
-          "worn": {0, 2}, "slap": {0, 2}, "jammed": {0}, "guide": {0}, "ideal": {0}, "rod": {0, 2}, "rods": {0, 2}, "shaft": {1}, "bent": {0}}   # 0 free flight, 1 film, 2 contact
+          "worn": {0, 2}, "slap": {0, 2}, "jammed": {0, 2}, "guide": {0}, "ideal": {0}, "rod": {0, 2}, "rods": {0, 2}, "shaft": {1}, "bent": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (fault, scene, column, change of (value, row), text that the verdict must contain)
 CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [

@@ -91,6 +91,9 @@ class Guide:
             checks.take("gap of a corner", abs(get[f"guide_{k}_gap"] + depth), 1e-15 * (self.radius + abs(row.offset_y)) * 4, t)
             depth = -get[f"guide_{k}_gap"]
             normal, friction = get[f"guide_{k}_force"], get[f"guide_{k}_friction"]
+            if t <= checks.run.times[0] and depth > 0:
+                self.contacts[k - 1].pressed = True
+            known = self.contacts[k - 1].learn(depth, rate, t, normal)
             low, high = (self.contacts[k - 1].force(depth, rate + d, t) for d in (-give, give))
             low, high = min(low, high), max(low, high)
             size_of_law = self.contacts[k - 1].size(depth, rate, t)
@@ -102,7 +105,8 @@ class Guide:
                 near += 1e-15 * self.reach + LANDING * self.tolerance * (abs(row.offset_y) + abs(self.height[(k - 1) % 2] * row.tilt) + self.clearance)
             # a row where the contact begins or ends, written before or after this event
             at_wall = abs(self.contacts[k - 1].force(2 * near, rate, t)) if abs(depth) <= near else 0.0
-            checks.take("contact law of a corner", max(low - normal, normal - high, 0.0), (LAW + blur) * max(abs(normal), size_of_law) + at_wall, t)
+            if known:
+                checks.take("contact law of a corner", max(low - normal, normal - high, 0.0), (LAW + blur) * max(abs(normal), size_of_law) + at_wall, t)
             low, high = (one * normal for one in self.friction.range(along, give))
             checks.take("friction law of a corner", max(low - friction, friction - high, 0.0), LAW * (abs(low) + abs(high)) / 2 + 1e-300, t)
             total += friction
