@@ -83,6 +83,7 @@ def against_program(program: str, names: list[str]) -> None:
                 continue
             want = gudgeon.load(base)
             case = case_of(name).set({"output.digits": 17})
+            began = base.with_suffix(".state.nml").read_text().splitlines()[1:]
             try:
                 run = case.run()
             except gudgeon.RunError as error:
@@ -99,7 +100,9 @@ def against_program(program: str, names: list[str]) -> None:
             while not stepper.advance(1e300):
                 pass
             check(same_bits(stepper.finish()._rows, want._rows), f"{name}: 313 pauses change nothing")
-            run.save(Path(folder) / "saved")
+            check(run.state and run.state == want.state, f"{name}: the state is that of the command line, bit for bit")
+            saved = run.save(Path(folder) / "saved").with_suffix(".state.nml").read_text().splitlines()[1:]
+            check(saved == began, f"{name}: so is its file, with what the run has counted")
             for suffix in (".csv", ".events.csv", ".wear.csv", ".resolved.nml"):
                 if Path(f"{base}{suffix}").is_file():
                     both = [Path(part, base.name + suffix).read_bytes() for part in (folder, f"{folder}/saved")]
@@ -224,6 +227,43 @@ def copies() -> None:
         refuses(ValueError, "finite number", lambda time_=time_: stepper.advance(time_))
         refuses(ValueError, "finite number", lambda time_=time_: case.run(until=time_))
         refuses(ValueError, "finite number", lambda time_=time_: case.run(end=time_))
+
+
+def starts(program: str) -> None:
+    """Runs that start from the motion of another one."""
+    for name in ("friction/lugre", "gas/compressor", "joints/piston_slap", "elastic/engine_rod"):
+        case = case_of(name).set({"output.digits": 17, "output.ideal_twin": False, "integrator.end_time": 0.02})
+        first = case.run()
+        with tempfile.TemporaryDirectory() as folder:
+            base = first.save(folder)
+            file = TOP / "cases" / f"{name}.nml"
+            sets = ["output.digits=17", "output.ideal_twin=F", "integrator.end_time=0.02", "initial.goes_on=F"]
+            words = [word for one in sets for word in ("-s", one)]
+            done = subprocess.run([program, "-q", "-o", f"{folder}/on", *words, "--from", f"{base}.state.nml", str(file)], capture_output=True, text=True)
+            want = gudgeon.load(f"{folder}/on/{base.name}")
+            loaded = gudgeon.load(base)
+            check(loaded.state == first.state, f"{name}: the state is read with the files")
+        on = case.start_from(first)
+        check(same_bits(on.run()._rows, want._rows), f"{name}: a run goes on as that of the command line, bit for bit {done.stderr}")
+        for start in (first.state, loaded, pickle.loads(pickle.dumps(first))):
+            check(case.start_from(start) == on and same_bits(case.start_from(start).run()._rows, want._rows), f"{name}: from numbers too")
+        check(pickle.loads(pickle.dumps(on)) == on and on.copy().start == first.state and on != case, f"{name}: copies keep their start")
+        check(on.start_from(None) == case and same_bits(on.start_from(None).run()._rows, first._rows), f"{name}: a start is taken back")
+    case = case_of("friction/coulomb_static")
+    stepper = case.begin(end=0.01)
+    stepper.advance(0.0071)  # inside a step
+    values, on = stepper.values, case.start_from(stepper).run(end=1e-4)
+    for column in ("eccentricity_x", "eccentricity_y", "piston_velocity", "pin_force_x"):
+        check(abs(on[column][0] - values[column]) < 1e-9 * np.abs(on[column]).max(), f"a start inside a step: {column} {on[column][0]} {values[column]}")
+    stepper.advance(0.01)
+    check(same_bits(stepper.finish()._rows, case.run(end=0.01)._rows), "to ask for the state changes nothing")
+    changed = case.start_from(stepper).start_from({"crank_angle": 1.5})
+    check(changed.start["crank_angle"] == 1.5 and changed.run(end=1e-4)["crank_angle"][0] == 1.5, "one number of a start is changed")
+    refuses(ValueError, "did you mean eccentricity?", lambda: case.start_from({"ecentricity": 0.0}))
+    refuses(ValueError, "1 numbers, but the case has 2", lambda: case.start_from({"eccentricity": 0.0}))
+    refuses(gudgeon.CaseError, "finite", lambda: case.start_from({"crank_angle": math.nan}))
+    refuses(gudgeon.CaseError, "the start of the case: &initial", lambda: case_of("sim_IV").start_from(stepper).run())
+    refuses(ValueError, "only a whole run", lambda: case.start_from(case.run(end=0.05).cycle()))
 
 
 def damaged() -> None:
@@ -568,7 +608,7 @@ def main() -> int:
     if "--all" in sys.argv:
         found = sorted((TOP / "cases").rglob("*.nml"))
         names = [str(p.relative_to(TOP / "cases").with_suffix("")) for p in found if "studies" not in p.parts]
-    for part in (lambda: against_program(program, names), cases, round_trips, links, copies, damaged, runs, steps, sweeps, threads, tables_beside, static_lengths, texts_of_the_package, pages, tables, memory, lambda: writes_nowhere(program)):
+    for part in (lambda: against_program(program, names), cases, round_trips, links, copies, lambda: starts(program), damaged, runs, steps, sweeps, threads, tables_beside, static_lengths, texts_of_the_package, pages, tables, memory, lambda: writes_nowhere(program)):
         try:
             part()
         except Exception:

@@ -10,6 +10,7 @@ module case_handle
   use case_definition, only: case_t
   use case_schema, only: find_group, real_kind, integer_kind
   use case_values, only: case_values_t
+  use run_state, only: run_state_t
   use value_reader, only: set_to_default
   use own_groups, only: enter_group
   use case_file, only: parse_values, apply_override, complete_case
@@ -32,6 +33,7 @@ module case_handle
     type(case_t) :: case                           !! complete, once `check` has found no error
     type(column_list_t) :: list                    !! its columns
     character(len=:), allocatable :: cache         !! see case_t
+    type(run_state_t), allocatable :: start        !! motion with which runs begin; not allocated: as the case says
     logical, private :: is_checked = .false.
     integer, private :: status = 0                 !! of the last check
     character(len=:), allocatable, private :: reason   !! message of the last check
@@ -49,6 +51,7 @@ module case_handle
     procedure :: is_given
     procedure :: text
     procedure :: set_cache
+    procedure :: find_state
     procedure :: fingerprint
   end type case_handle_t
 
@@ -379,6 +382,22 @@ contains
     end do
     fingerprint = sum%sum
   end function fingerprint
+
+  !> The number of the start, and its element, that has an index from 0 on. Error: there is none.
+  subroutine find_state(self, i, number, element, status)
+    class(case_handle_t), intent(inout) :: self
+    integer, intent(in) :: i
+    integer, intent(out) :: number, element, status
+    element = i + 1
+    if (allocated(self%start) .and. i >= 0) then
+      status = 0
+      do number = 1, size(self%start%numbers)
+        if (element <= size(self%start%numbers(number)%values)) return
+        element = element - size(self%start%numbers(number)%values)
+      end do
+    end if
+    call self%refuse('there is no state '//integer_text(i)//', counted from 0', status)
+  end subroutine find_state
 
   !> Keep film tables in a folder; with an empty name nowhere.
   subroutine set_cache(self, folder)

@@ -50,6 +50,14 @@ int gudgeon_case_column(const gudgeon_case *, int i, char *name, size_t name_siz
  * its motion repeats; a run cannot go beyond its end. Tables of films are computed here. without_rows: values are asked for at
  * pauses, and no rows are kept. NULL: the case has the message. */
 gudgeon_run *gudgeon_run_new(gudgeon_case *, int ideal_twin, double end, int without_rows);
+/* Runs of the case begin at t = 0 with the motion that a run has reached (as with initial.goes_on = .false.); NULL: as the case says.
+ * The numbers of that state may be read and changed; several with one name follow each other. kind: 0 number, 1 whole number, 2 what
+ * the run has counted, which has no effect here. What does not fit the case is told by gudgeon_run_new. */
+int gudgeon_case_start(gudgeon_case *, gudgeon_run *from);
+int gudgeon_states(const gudgeon_case *);
+int gudgeon_state(gudgeon_case *, int i, double *value, char *name, size_t name_size, char *unit, size_t unit_size, char *meaning,
+                  size_t meaning_size, int *kind);
+int gudgeon_state_set(gudgeon_case *, int i, double value);
 /* Go on to a time, or through so many steps (0: no limit; one that is rejected counts too), or to the end. The results do not depend on
  * the pauses. -1: paused. */
 int gudgeon_run_advance(gudgeon_run *, double to, int64_t most_steps);
@@ -57,7 +65,7 @@ int gudgeon_run_advance(gudgeon_run *, double to, int64_t most_steps);
 int gudgeon_run_finish(gudgeon_run *);
 /* Estimate the accuracy of a finished run; the summary then has the rows of --certify. */
 int gudgeon_run_certify(gudgeon_run *);
-/* Write PATH.csv, PATH.events.csv, PATH.summary.csv, ... of a finished run. */
+/* Write PATH.csv, PATH.events.csv, PATH.summary.csv, PATH.state.nml, ... of a finished run. */
 int gudgeon_run_save(gudgeon_run *, const char *path);
 void gudgeon_run_free(gudgeon_run *);
 /* Saved states: a copy goes on independently; assign puts it back. That of a run of another case is refused. */

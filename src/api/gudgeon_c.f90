@@ -275,6 +275,77 @@ contains
     if (associated(new)) run = c_loc(new)
   end function run_new
 
+  integer(c_int) function case_start(handle, from) bind(c, name='gudgeon_case_start') result(status)
+    type(c_ptr), value :: handle, from
+    type(case_handle_t), pointer :: it
+    type(run_handle_t), pointer :: run
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
+    call c_f_pointer(handle, it)
+    status = 0
+    if (allocated(it%start)) deallocate (it%start)
+    if (.not. c_associated(from)) return
+    call c_f_pointer(from, run)
+    allocate (it%start)
+    call lock_texts()
+    call run%state(it%start)
+    it%start%file = 'the start of the case'
+    call unlock_texts()
+  end function case_start
+
+  integer(c_int) function states(handle) bind(c, name='gudgeon_states') result(n)
+    type(c_ptr), value :: handle
+    type(case_handle_t), pointer :: it
+    integer :: i
+    n = 0
+    if (.not. c_associated(handle)) return
+    call c_f_pointer(handle, it)
+    if (allocated(it%start)) n = sum([(size(it%start%numbers(i)%values), i=1, size(it%start%numbers))])
+  end function states
+
+  integer(c_int) function state(handle, i, value, name, name_size, unit, unit_size, meaning, meaning_size, kind) &
+    bind(c, name='gudgeon_state') result(status)
+    type(c_ptr), value :: handle, name, unit, meaning
+    integer(c_int), value :: i
+    real(c_double), intent(out) :: value
+    integer(c_size_t), value :: name_size, unit_size, meaning_size
+    integer(c_int), intent(out) :: kind
+    type(case_handle_t), pointer :: it
+    integer :: number, element
+    value = 0
+    kind = 0
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
+    call c_f_pointer(handle, it)
+    call it%find_state(i, number, element, status)
+    if (status /= 0) return
+    associate (its => it%start%numbers(number))
+      value = its%values(element)
+      kind = merge(2, merge(1, 0, its%is_whole), its%is_total)
+      call put_text(its%name(:len_trim(its%name)), name, name_size)
+      call put_text(its%unit(:len_trim(its%unit)), unit, unit_size)
+      call put_text(its%says, meaning, meaning_size)
+    end associate
+  end function state
+
+  integer(c_int) function state_set(handle, i, value) bind(c, name='gudgeon_state_set') result(status)
+    type(c_ptr), value :: handle
+    integer(c_int), value :: i
+    real(c_double), value :: value
+    type(case_handle_t), pointer :: it
+    integer :: number, element
+    status = out_of_turn
+    if (.not. c_associated(handle)) return
+    call c_f_pointer(handle, it)
+    call it%find_state(i, number, element, status)
+    if (status /= 0) return
+    if (abs(value) <= huge(value)) then
+      it%start%numbers(number)%values(element) = value
+    else
+      call it%refuse('a state must be a finite number', status)
+    end if
+  end function state_set
+
   integer(c_int) function run_advance(handle, to, most_steps) bind(c, name='gudgeon_run_advance') result(status)
     type(c_ptr), value :: handle
     real(c_double), value :: to

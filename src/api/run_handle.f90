@@ -18,6 +18,8 @@ module run_handle
   use certificate, only: certificate_t, make_certificate, certificate_summary, certificate_table
   use run_progress, only: clock
   use row_store, only: row_store_t
+  use run_state, only: run_state_t
+  use state_file, only: write_state
   use case_handle, only: case_handle_t
   use c_texts, only: handle_t
   implicit none
@@ -48,6 +50,7 @@ module run_handle
     procedure :: read_summary
     procedure :: certify
     procedure :: save
+    procedure :: state
     procedure :: has_events
   end type run_handle_t
 
@@ -91,6 +94,10 @@ contains
     new%began = clock()
     new%is_twin = is_twin
     new%case = of%case
+    if (allocated(of%start)) then
+      new%case%initial%state = of%start
+      new%case%initial%goes_on = .false.
+    end if
     new%list = of%list
     new%origin = of%fingerprint()
     if (is_twin) new%origin = not(new%origin)
@@ -119,6 +126,21 @@ contains
     to = from
     to%run%recorder%sink => to%rows
   end subroutine copy_run
+
+  !> The state that the run has reached, also inside a step, from which others may start.
+  subroutine state(self, list)
+    class(run_handle_t), intent(inout) :: self
+    type(run_state_t), intent(out) :: list
+    type(run_handle_t), allocatable, target :: ended
+    if (self%run%is_over) then
+      call self%run%state(list)
+    else
+      allocate (ended)
+      call copy_run(self, ended)
+      call ended%run%stop()
+      call ended%run%state(list)
+    end if
+  end subroutine state
 
   !> Go on to a time [s], or through a number of steps (0: no limit). `status` is -1 at a pause, 0 at the end of the run, 4 if it
   !> cannot go on. No function with a result of deferred length is called.
@@ -219,14 +241,15 @@ contains
     has_events = self%case%has_contact() .and. .not. self%is_twin
   end function has_events
 
-  !> Write the files of the command line for a finished run, except those of its case and its state: PATH.csv, PATH.summary.csv,
-  !> ... Error: a file cannot be written.
+  !> Write the files of the command line for a finished run, except those of its case: PATH.csv, PATH.state.nml, ...
+  !> Error: a file cannot be written.
   subroutine save(self, path, status)
     class(run_handle_t), intent(inout) :: self
     character(len=*), intent(in) :: path   !! folder and name
     integer, intent(out) :: status
     type(trace_files_t) :: files
     type(error_t), allocatable :: error
+    type(run_state_t) :: state
     integer :: i
     if (.not. allocated(self%table)) then
       call self%refuse('only a finished run can be saved', status)
@@ -248,6 +271,10 @@ contains
       call files%close(error)
     end if
     if (.not. allocated(error)) call write_report_files(path, self%case, self%report, error)
+    if (.not. (allocated(error) .or. self%is_twin)) then
+      call self%run%state(state)
+      call write_state(state, self%case%file, path, error)
+    end if
     if (.not. allocated(error) .and. allocated(self%certificate_table)) then
       if (self%certificate_table /= '') call write_text(path//'.certificate.csv', self%certificate_table, error)
     end if

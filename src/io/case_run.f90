@@ -9,7 +9,7 @@ module case_run
   use report_files, only: result_suffixes, write_report_files
   use simulation, only: run_t, run_report_t
   use run_state, only: run_state_t
-  use state_file, only: state_text, state_suffix, reached
+  use state_file, only: write_state, state_suffix, reached
   use whole_run, only: go_on
   use trace_files, only: trace_files_t
   use result_file, only: result_file_t, remove_result, write_text
@@ -160,10 +160,10 @@ contains
         if (any(files%file%has_failed())) call run%stop()
         now = clock()
         if (now - last < between_states) cycle
-        call write_state(self, run, state_error)
+        call keep_state(self, run, state_error)
         last = now
       end do
-      call write_state(self, run, state_error)
+      call keep_state(self, run, state_error)
       call run%finish(self%report, self%error)
       if (.not. allocated(self%error)) call march_histories(self%case, self%shows_progress, self%report, self%error)
       if (allocated(state_error)) call move_alloc(state_error, self%error)
@@ -173,16 +173,15 @@ contains
   end subroutine carry_out
 
   !> Write the state that the run has reached. The ideal twin has none: it starts as its case says.
-  subroutine write_state(self, run, error)
+  subroutine keep_state(self, run, error)
     class(case_run_t), intent(in) :: self
     type(run_t), intent(inout) :: run
     type(error_t), allocatable, intent(out) :: error
     type(run_state_t) :: state
     if (self%is_twin) return
     call run%state(state)
-    call write_text(self%base//state_suffix, state_text(state, 'State of '//printable(self%case%file, 200)// &
-      ': gudgeon '//printable(self%case%file, 200)//' --from '//printable(self%base, 200)//state_suffix//' goes on from it'), error)
-  end subroutine write_state
+    call write_state(state, self%case%file, self%base, error)
+  end subroutine keep_state
 
   !> Close the files of a run that has ended. If the run is done, the trace gets its final name before the summary, which reports it
   !> as done. Otherwise the summary is written first; if that fails, the trace keeps its temporary name.

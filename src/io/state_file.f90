@@ -11,10 +11,11 @@ module state_file
   use namelist_reader, only: namelist_t, read_namelist
   use number_text, only: exact_text
   use text_file, only: read_text_file
+  use result_file, only: write_text
   use text_tools, only: printable, integer_text, path_beside
   implicit none
   private
-  public :: state_text, provide_state, reached, state_suffix
+  public :: write_state, provide_state, reached, state_suffix
 
   character(len=*), parameter :: state_suffix = '.state.nml'
   character(len=*), parameter :: groups(2) = [character(len=7) :: 'initial', 'so_far']
@@ -23,6 +24,15 @@ module state_file
   integer, parameter :: in_a_line = 4       !! numbers
 
 contains
+
+  !> Write BASE.state.nml with a state that a run of the case in a file has reached. Error: it cannot be written.
+  subroutine write_state(state, file, base, error)
+    type(run_state_t), intent(in) :: state
+    character(len=*), intent(in) :: file, base
+    type(error_t), allocatable, intent(out) :: error
+    call write_text(base//state_suffix, state_text(state, 'State of '//printable(file, 200)//': gudgeon '//printable(file, 200)// &
+      ' --from '//printable(base, 200)//state_suffix//' goes on from it'), error)
+  end subroutine write_state
 
   !> A state as text, with a heading.
   function state_text(state, heading) result(text)

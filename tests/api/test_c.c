@@ -173,6 +173,49 @@ static void misuse(void) {
   gudgeon_run_free(run), gudgeon_run_free(another), gudgeon_case_free(it), gudgeon_case_free(other);
 }
 
+static int column_of(gudgeon_run *run, const char *wanted) {
+  char name[60], unit[20], meaning[200];
+  for (int i = 0; gudgeon_column(run, i, name, 60, unit, 20, meaning, 200) == 0; i++)
+    if (!strcmp(name, wanted)) return i;
+  return 0;
+}
+
+/* A run that starts from another one begins with its motion; a number of it is changed. */
+static void starts(void) {
+  gudgeon_case *it = read_case("sim_I");
+  gudgeon_run *first = gudgeon_run_new(it, 0, 0.01, 1);
+  char name[60], unit[20], meaning[200];
+  double value, *now = calloc(gudgeon_columns(first), sizeof *now), *on = calloc(gudgeon_columns(first), sizeof *now);
+  int kind, i, angle = -1, totals = 0, at = column_of(first, "crank_angle"), speed = column_of(first, "crank_speed");
+  check(gudgeon_states(it) == 0 && gudgeon_state(it, 0, &value, name, 60, unit, 20, meaning, 200, &kind) == 2 && says(it, "no state 0"),
+        "a case has no states of its own");
+  gudgeon_run_advance(first, 0.0033, 0);
+  check(gudgeon_case_start(it, first) == 0 && gudgeon_states(it) > 6, "a case takes the state of a run, also inside a step");
+  gudgeon_values(first, now);
+  gudgeon_run *second = gudgeon_run_new(it, 0, 0.01, 1);
+  gudgeon_values(second, on);
+  check(gudgeon_run_time(second) == 0 && fabs(on[speed] - now[speed]) < 1e-7 * now[speed], "a run begins with its speed at t = 0");
+  for (i = 0; gudgeon_state(it, i, &value, name, 60, unit, 20, meaning, 200, &kind) == 0; i++) {
+    if (!strcmp(name, "crank_angle")) angle = i;
+    totals += kind == 2;
+  }
+  check(i == gudgeon_states(it) && totals > 0 && angle >= 0, "states have names and kinds");
+  check(gudgeon_state_set(it, angle, 0.5) == 0, "a number is changed");
+  check(gudgeon_state_set(it, i, 0) == 2 && gudgeon_state_set(it, -1, 0) == 2 && says(it, "no state -1"), "a wrong index is refused");
+  check(gudgeon_state_set(it, angle, NAN) == 2 && says(it, "finite"), "so is what is no number");
+  gudgeon_run *third = gudgeon_run_new(it, 0, 0.01, 1);
+  gudgeon_values(third, on);
+  check(fabs(on[at] - 0.5) < 1e-15, "a run begins there");
+  gudgeon_case *wrong = read_case("friction/coulomb_static");
+  gudgeon_case_start(wrong, first);
+  check(!gudgeon_run_new(wrong, 0, 0, 0) && says(wrong, "the start of the case"), "the state of another case is refused");
+  check(gudgeon_case_start(it, NULL) == 0 && gudgeon_states(it) == 0, "a start is taken back");
+  check(gudgeon_case_start(NULL, first) == 2 && !gudgeon_states(NULL) && gudgeon_state_set(NULL, 0, 1) == 2 &&
+        gudgeon_state(NULL, 0, &value, name, 60, unit, 20, meaning, 200, &kind) == 2, "no case has no start");
+  gudgeon_run_free(first), gudgeon_run_free(second), gudgeon_run_free(third), gudgeon_case_free(it), gudgeon_case_free(wrong);
+  free(now), free(on);
+}
+
 /* Numbers set without texts give the bits of those set as texts. */
 static void numbers(void) {
   int n = gudgeon_keys(), clearance = -1;
@@ -249,6 +292,7 @@ int main(int count, char **arguments) {
   refusals();
   misuse();
   numbers();
+  starts();
   if (count < 3) threads();   /* a second argument: without, for valgrind */
   printf("%d passed, %d failed\n", passed, failed);
   return failed > 0;

@@ -19,6 +19,16 @@ class Column(NamedTuple):
     meaning: str
 
 
+class State(NamedTuple):
+    """A number of a state; of several with one name each has its own."""
+
+    name: str
+    value: float
+    unit: str
+    meaning: str
+    kind: int  # 0: number, 1: whole number, 2: what the run has counted
+
+
 _handle, _text, _size, _int = c.c_void_p, c.c_char_p, c.c_size_t, c.c_int
 
 
@@ -58,6 +68,10 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "case_cache": (_int, [_handle, _text]),
     "case_columns": (_int, [_handle]),
     "case_column": (_int, [_handle, _int, *_naming * 3]),
+    "case_start": (_int, [_handle, _handle]),
+    "states": (_int, [_handle]),
+    "state": (_int, [_handle, _int, c.POINTER(c.c_double), *_naming * 3, c.POINTER(_int)]),
+    "state_set": (_int, [_handle, _int, c.c_double]),
     "run_new": (_handle, [_handle, _int, c.c_double, _int]),
     "run_advance": (_int, [_handle, c.c_double, c.c_int64]),
     "run_finish": (_int, [_handle]),
@@ -137,6 +151,17 @@ def described_columns(count: int, describe: Callable[..., int], handle: int) -> 
     for i in range(count):
         describe(handle, i, name, 200, unit, 200, meaning, 200)
         found.append(Column(name.value.decode(), unit.value.decode(), meaning.value.decode()))
+    return found
+
+
+def states_of_case(handle: int) -> list[State]:
+    """The motion with which runs of a case begin, and what its run had counted; empty: they begin as the case says."""
+    value, kind = c.c_double(), c.c_int()
+    name, unit, meaning = (c.create_string_buffer(200) for _ in range(3))
+    found = []
+    for i in range(library().states(handle)):
+        library().state(handle, i, value, name, 200, unit, 200, meaning, 200, kind)
+        found.append(State(name.value.decode(), value.value, unit.value.decode(), meaning.value.decode(), kind.value))
     return found
 
 

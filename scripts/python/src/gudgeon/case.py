@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from . import _library
 from ._keys import GroupInfo, Key, groups, keys
-from ._library import Column, described_columns, library, meant, text_from
-from .run import Certificate, Run, carry_out
+from ._library import Column, described_columns, library, meant, states_of_case, text_from
+from .run import Certificate, Run, _Owner, carry_out
 from .stepper import Stepper
 
 if TYPE_CHECKING:
@@ -181,6 +181,48 @@ class Case(Groups):
         new._ask(library().case_accuracy(new._handle, level.encode()))
         return new
 
+    def start_from(self, start: Run | Stepper | Mapping[str, float | Sequence[float]] | None) -> Case:
+        """A copy whose runs begin at t = 0 with the motion that a run has reached, and count from 0, as with `initial.goes_on = False`.
+        A dict, such as `run.state`, changes the numbers that it has, and leaves the others of the start; None: as the case says. A start
+        that does not fit the case is refused when a run begins.
+
+        >>> case = gudgeon.template("dry")
+        >>> settled = case.run(end=0.1)
+        >>> again = case.start_from(settled).run(end=0.01)
+        >>> bool(again["crank_speed"][0] == settled["crank_speed"][-1])
+        True
+        """
+        new = self.copy()
+        owner = getattr(start, "_owner", None)
+        if isinstance(start, Run) and owner is None:  # it was read or copied
+            start = start.state
+            if not start:
+                raise ValueError("only a whole run has a state to start from")
+        if isinstance(start, Mapping):
+            if not library().states(new._handle):
+                begun = _Owner(new._begin(False, None, True))
+                library().case_start(new._handle, begun.number)
+            names = [state.name if state.kind < 2 else "" for state in states_of_case(new._handle)]
+            for name, values in start.items():
+                numbers = list(values) if isinstance(values, Iterable) else [values]
+                places = [i for i, its in enumerate(names) if its == name]
+                if len(places) != len(numbers):
+                    raise ValueError(f"state {name}: {len(numbers)} numbers, but the case has {len(places)}{meant(name, names)}")
+                for i, value in zip(places, numbers):
+                    new._ask(library().state_set(new._handle, i, value))
+        else:
+            library().case_start(new._handle, owner.number if owner else None)
+        return new
+
+    @property
+    def start(self) -> dict[str, float | tuple[float, ...]]:
+        """The motion with which runs begin, as `run.state`; empty: as the case says."""
+        found: dict[str, Any] = {}
+        for state in states_of_case(self._handle):
+            if state.kind < 2:
+                found.setdefault(state.name, []).append(int(state.value) if state.kind else state.value)
+        return {name: tuple(values) if len(values) > 1 else values[0] for name, values in found.items()}
+
     def copy(self) -> Case:
         return Case(library().case_copy(self._handle), self.name, self._folder, self._cache)
 
@@ -223,10 +265,10 @@ class Case(Groups):
         return {name: pair for name, pair in both.items() if pair[0] != pair[1]}
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Case) and self.to_nml() == other.to_nml()
+        return isinstance(other, Case) and self.to_nml() == other.to_nml() and self.start == other.start
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (self.to_nml(), self.name, self._folder, self._cache)
+        return _restored, (self.to_nml(), self.name, self._folder, self._cache, self.start)
 
     def __repr__(self) -> str:
         return f"<Case {self.name}: {', '.join(name for name in groups() if name in self)}>"
@@ -285,11 +327,11 @@ class Case(Groups):
         return handle
 
 
-def _restored(text: str, name: str, folder: str, cache: str | None) -> Case:
+def _restored(text: str, name: str, folder: str, cache: str | None, start: dict[str, Any]) -> Case:
     case = Case.from_text(text, name, folder or None)
     if cache is not None:
         case.cache(cache or None)
-    return case
+    return case.start_from(start) if start else case
 
 
 def _find(name: str) -> Key:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import ctypes
 import math
+import re
 import time
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from functools import cached_property
@@ -101,7 +102,8 @@ class Run:
 
     def __getstate__(self) -> dict[str, Any]:
         """What a pickle and a deep copy have: everything but the memory of the library and the files."""
-        tables = {"tables": self.tables} if "_owner" in self.__dict__ or self._files else {}
+        whole = self.__dict__.get("_owner") or self._files
+        tables = {"tables": self.tables, "state": self.state} if whole else {}
         return {**self.__dict__, **tables, "_rows": self._rows.copy(), "_files": None, "_owner": None}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -243,8 +245,17 @@ class Run:
             others = ("events", "summary", "certificate", "ideal")
             return {name: pd.read_csv(path) for path, name in names.items() if name.split(".")[0] not in others}
 
+    @cached_property
+    def state(self) -> dict[str, float | tuple[float, ...]]:
+        """The motion that a whole run has reached, as the group &initial of NAME.state.nml has it; empty if it is not known. Others may
+        start from it, see `Case.start_from`."""
+        if self.__dict__.get("_owner") is not None and self.case is not None:
+            return self.case.start_from(self).start
+        path = Path(f"{self._files}.state.nml")
+        return _motion_of_file(path.read_text()) if self._files and path.is_file() else {}
+
     def save(self, folder: str | Path, name: str | None = None) -> Path:
-        """Write the files of the command line: NAME.csv, NAME.events.csv, NAME.summary.csv, NAME.resolved.nml, ..."""
+        """Write the files of the command line: NAME.csv, NAME.events.csv, NAME.summary.csv, NAME.state.nml, NAME.resolved.nml, ..."""
         handle = self.__dict__.get("_owner")
         if handle is None or self.case is None:
             raise ValueError("only a whole run that this process has made can be saved")
@@ -496,6 +507,14 @@ def orders(run: Run, name: str, settle: float | None = None) -> pd.DataFrame:
     from .results import drawable
 
     return orders(whole_cycles(drawable(run), settle), name)
+
+
+def _motion_of_file(text: str) -> dict[str, float | tuple[float, ...]]:
+    """The group &initial of a file of a state."""
+    group = re.sub("!.*", "", text).partition("&initial")[2].partition("/")[0]
+    parts = re.split(r"(\w+) *=", group)[1:]
+    numbers = {name: [_number(value) for value in values.split(",")] for name, values in zip(parts[::2], parts[1::2])}
+    return {name: tuple(values) if len(values) > 1 else values[0] for name, values in numbers.items()}
 
 
 def _number(text: str) -> Any:
