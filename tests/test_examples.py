@@ -31,12 +31,14 @@ matplotlib.use("Agg")
 #: those of the films are orders of magnitude and signs that mechanics demands.
 HOLDS: dict[str, Callable[[dict[str, float]], bool]] = {
     "pin_offset": lambda found: found["slap"] < 0.8 * found["centred"] and 0 < found["offset"] < 1e-3,
-    "tolerances": lambda found: found["done"] == 1 and found["low"] < 0.8 * found["median"] and abs(found["median"] / found["nominal"] - 1) < 0.1,
+    "tolerances": lambda found: found["done"] == 1 and found["low"] < 0.8 * found["median"] and abs(found["median"] / found["nominal"] - 1) < 0.1
+    and 0.01 < found["chance"] < 0.1,
     "sobol_indices": lambda found: abs(found["sum"] - 1) < 0.25 and found["lubrication.viscosity"] > found["joint.clearance"] > found["combustion.heat"],
     "speed_controller": lambda found: abs(found["rpm"] - 1800) < 20 and found["torque"] > 5 and found["residual"] < 1e-4,
     "poincare": lambda found: found["dry_0500um"] > 1 and found["friction_100"] < 1e-3,
     "fmu_in_master": lambda found: found["apart"] == 0 and 1500 < found["speed"] * 30 / 3.14159 < 1600 and found["steps"] == 2000,
     "fit_clearance": lambda found: abs(found["clearance"] / 2.5e-4 - 1) < 0.02 and abs(found["friction"] / 0.15 - 1) < 0.1
+    and 0 < found["clearance_error"] < 0.05 * 2.5e-4 and 0 < found["friction_error"] < 0.2 * 0.15
     and found["chaos"] > 1000 and found["calm"] < 10,
 }
 LONG = {"fit_clearance"}

@@ -34,6 +34,8 @@ import gudgeon
 import matplotlib
 import numpy as np
 import pandas as pd
+from gudgeon import _fit
+from scipy import stats
 
 matplotlib.use("Agg")
 
@@ -574,6 +576,114 @@ def memory() -> None:
     check(sizes[2] - sizes[1] < 1e6, f"memory grows: {sizes}")
 
 
+def fits() -> None:
+    """Known keys are found again, with the standard errors and directions of closed forms; what the data do not fix is said."""
+    random = np.random.default_rng(3)
+    matrix, at = random.standard_normal((40, 3)), np.array([0.4, 0.7, 0.2])
+    data = matrix @ at + 0.01 * random.standard_normal(40)
+    place, residuals, jacobian = _fit.search(lambda points: points @ matrix.T, data, np.ones(40), np.ones(3), np.full(3, 0.5), 4, 1e-3, 1)
+    best = np.linalg.lstsq(matrix, data, rcond=None)[0]
+    check(abs(place - best).max() < 1e-9 and abs(jacobian - matrix).max() < 1e-9 and np.allclose(residuals, matrix @ best - data), "a linear model is solved")
+    keys = [_fit.Key(name, 0.0, 1.0) for name in "abc"]
+    observed = _fit.Answers(dict.fromkeys(map(str, range(40)), 0.0), None)
+    linear = _fit.Fit(gudgeon.template("dry"), keys, place, observed, data, residuals, jacobian, False, 0, None)
+    want = np.sqrt(np.diag(np.linalg.inv(matrix.T @ matrix)) * (residuals @ residuals) / 37)
+    check(np.allclose(list(linear.standard_errors.values()), want, rtol=1e-6), "its standard errors are those of the normal equations")
+    check(abs(linear.condition / np.linalg.cond(matrix) - 1) < 1e-6 and linear.free == [], "its condition number")
+
+    crank = gudgeon.template("dry").set({"mechanism.gravity": 0, "joint.kind": "ideal"})
+    for group in ("contact", "friction"):
+        crank.remove(group)
+    for key in ("clearance", "bearing_radius", "bearing_length"):
+        crank[f"joint.{key}"] = None
+    run = crank.run()
+    acceleration = run["piston_acceleration"]
+    table = pd.DataFrame({"crank_angle": run["crank_angle"], "pin_force_x": run["pin_force_x"] + 2 * random.standard_normal(len(run))})
+    found = gudgeon.fit(crank.set({"mechanism.piston_mass": 0.1}), table, {"mechanism.piston_mass": ("50 g", "500 g")}, starts=2)
+    mass = -(table.pin_force_x @ acceleration) / (acceleration @ acceleration)  # the force of the pin is mass times acceleration
+    apart = table.pin_force_x + mass * acceleration
+    error = math.sqrt(apart @ apart / (len(apart) - 1) / (acceleration @ acceleration))
+    check(abs(found.values["mechanism.piston_mass"] / mass - 1) < 1e-6, f"the mass in closed form: {found.values}, {mass}")
+    check(abs(found.standard_errors["mechanism.piston_mass"] / error - 1) < 1e-4 and found.case.mechanism.piston_mass == found.values["mechanism.piston_mass"], "its error")
+    check("0.14" in repr(found) and "kg" in repr(found) and "<img" in found.report().text and "http" not in found.report().text, "a page of the fit")
+
+    loose = crank.set({"mechanism.rod_mass": 1e-9, "mechanism.rod_inertia": 1e-12}, drive={"kind": "free"})
+    run = loose.run()
+    table = pd.DataFrame({"time": run["time"], "crank_speed": run["crank_speed"]})
+    found = gudgeon.fit(loose, table, {"mechanism.piston_mass": (0.05, 0.5), "mechanism.crank_inertia": (2e-5, 1e-3)}, starts=2)
+    (direction,) = found.free  # without other forces only the ratio of the masses acts
+    check(all(abs(part - 1) < 1e-3 for part in direction.values()) and len(direction) == 2, f"masses that only scale: {found.free}")
+    check(all(math.isinf(error) for error in found.standard_errors.values()) and "not fixed" in repr(found), "which are not fixed")
+
+    dry = gudgeon.template("dry").set({"integrator.revolutions": 0.25})
+    run = dry.set({"joint.clearance": "21 um"}).run()
+    table = pd.DataFrame({"time": run["time"], "piston_acceleration": run["piston_acceleration"]}).drop_duplicates("time")
+    found = gudgeon.fit(dry, table, {"joint.clearance": ("15 um", "30 um")}, starts=1)
+    ends = dry.certify().until
+    check(ends < 0.5 * run["time"][-1] and found.until <= ends and len(found.residuals) < len(table) / 2, f"traces end where certificates end: {found.until}, {ends}")
+    refuses(ValueError, "give bands or answers", lambda: gudgeon.fit(dry, table, {"joint.clearance": ("15 um", "30 um")}, until=1e-9))
+
+    oiled = gudgeon.template("film").set({"lubrication.viscosity": 0.02, "lubrication.oil": None, "lubrication.temperature": None,
+                                          "lubrication.law": "pinkus_sternlicht", "lubrication.variant": "half_film"})
+    twin = oiled.set({"lubrication.viscosity": 0.027, "joint.clearance": oiled.joint.clearance * 1.2}).accuracy("reference").run()
+    table = pd.DataFrame({"time": twin["time"], "eccentricity_x": twin["eccentricity_x"], "eccentricity_y": twin["eccentricity_y"]})
+    keys = {"lubrication.viscosity": (0.01, 0.06), "joint.clearance": (0.7 * oiled.joint.clearance, 2 * oiled.joint.clearance)}
+    found = gudgeon.fit(oiled, table, keys, until=0.5 * twin["time"][-1])
+    want = {"lubrication.viscosity": 0.027, "joint.clearance": 1.2 * oiled.joint.clearance}
+    check(all(abs(found.values[key] / want[key] - 1) < 1e-3 for key in keys) and found.free == [], f"a twin of a film: {found}")
+    check(found.until <= 0.5 * twin["time"][-1] and len(found.residuals) < 2 * len(table), "traces are compared until the given time")
+
+    engine = gudgeon.template("engine").set({"integrator.revolutions": 4, "joint.kind": "ideal", "joint.clearance": None})
+    engine.remove("lubrication")
+    for key in ("bearing_radius", "bearing_length"):
+        engine[f"joint.{key}"] = None
+    want = {"combustion.heat": 395.0, "combustion.compression_ratio": 9.1}
+    names = ["cycle_imep", "cycle_max_cylinder_pressure", "cycle_max_drive_torque"]
+    summary = engine.set(want).run().summary
+    found = gudgeon.fit(engine, {name: summary[name] for name in names}, {"combustion.heat": (250, 600), "combustion.compression_ratio": (6, 14)})
+    check(all(abs(found.values[key] / want[key] - 1) < 1e-4 for key in want) and found.at_limits == [], f"a twin of an engine: {found}")
+    check("cycle_imep" in str(found.compared) and "MPa" in str(found.compared) and "<img" in found.report().text, "a page of a fit to answers")
+    spread = {name: 0.01 * summary[name] for name in names}
+    known = gudgeon.fit(engine, {name: summary[name] for name in names}, {"combustion.heat": (250, 380), "combustion.compression_ratio": (6, 14)}, errors=spread)
+    check(known.at_limits == ["combustion.heat"] and "At a limit" in repr(known), f"a key at its limit: {known}")
+    refuses(ValueError, "smaller than the second", lambda: gudgeon.fit(engine, {"cycle_imep": 1e6}, {"combustion.heat": (300, 300)}))
+    refuses(ValueError, "give bands", lambda: gudgeon.fit(oiled, table, keys, designs=[8]))
+    refuses(RuntimeError, "an answer is missing", lambda: gudgeon.fit(engine, {"cycle_nothing": 1.0}, {"combustion.heat": (300, 400)}))
+    refuses(RuntimeError, "compression_ratio", lambda: gudgeon.fit(engine, {"cycle_imep": 1e6}, {"combustion.compression_ratio": (0.5, 0.9)}))
+
+
+def tolerances() -> None:
+    """Percentiles and probabilities of a force that is proportional to a mass are those of the mass; runs that fail are counted."""
+    crank = gudgeon.template("dry").set({"mechanism.gravity": 0, "joint.kind": "ideal", "integrator.revolutions": 1})
+    for group in ("contact", "friction"):
+        crank.remove(group)
+    for key in ("clearance", "bearing_radius", "bearing_length"):
+        crank[f"joint.{key}"] = None
+    mass = stats.lognorm(0.1, scale=0.14)
+    found = gudgeon.tolerances(crank, {"mechanism.piston_mass": mass}, ["max_pin_force"], runs=256, below={"max_pin_force": 4.0})
+    unit = found.nominal["max_pin_force"] / 0.14
+    for share in (10, 50, 90):
+        value, low, high = found.percentile("max_pin_force", share)
+        check(low < value < high and abs(value / (unit * mass.ppf(share / 100)) - 1) < 2e-3, f"the {share} % percentile of a product: {value}")
+    chance = found.probability("max_pin_force", below=4.0)
+    check(abs(chance.value - mass.cdf(4.0 / unit)) < 2 / 256 and chance.low < mass.cdf(4.0 / unit) < chance.high, f"a probability: {chance}")
+    check(found.failures == {} and abs(found.rank_correlation.iloc[0, 0] - 1) < 1e-9, "what matters")
+    page = found.report().text
+    check("<img" in page and "max_pin_force &lt; 4.00 N" in page and "http" not in page, "a page of tolerances")
+    samples = [0.1, 0.12, 0.13, -0.1]
+    found = gudgeon.tolerances(crank, {"mechanism.piston_mass": samples, "mechanism.rod_mass": lambda share: 0.2 + 0.01 * share}, ["max_pin_force"], runs=64)
+    drawn = found.table["mechanism.piston_mass"]
+    check(drawn.between(-0.1, 0.13).all() and found.table["mechanism.rod_mass"].between(0.2, 0.21).all(), "measured samples, and a function of the share")
+    lost = int((drawn <= 0).sum())
+    check(0 < lost < 32 and list(found.failures.values()) == [lost] and len(found.done) == 64 - lost, f"runs that failed are counted: {found.failures}")
+    chance = found.probability("max_pin_force", above=0.0)
+    check(chance.value == 1 and chance.high == 1 and chance.low < 1 - lost / 64, f"they widen the interval: {chance}")
+    check("Runs that failed" in repr(found) and "piston_mass" in repr(found), "and are said")
+    refuses(ValueError, "power of 2", lambda: gudgeon.tolerances(crank, {"mechanism.piston_mass": mass}, ["max_pin_force"], runs=100))
+    refuses(ValueError, "no run has nothing", lambda: gudgeon.tolerances(crank, {"mechanism.piston_mass": mass}, ["nothing"], runs=2))
+    refuses(TypeError, "below or above", lambda: found.probability("max_pin_force"))
+
+
 def writes_nowhere(program: str) -> None:
     """A run in Python writes no file."""
     with tempfile.TemporaryDirectory() as folder:
@@ -587,7 +697,7 @@ def writes_nowhere(program: str) -> None:
 
 def texts_of_the_package() -> None:
     """The examples in docstrings hold, and the declarations for editors have every key."""
-    for name in ("gudgeon", *(f"gudgeon.{part}" for part in ("case", "run", "stepper", "_sweep", "_fmu", "_keys", "_library"))):
+    for name in ("gudgeon", *(f"gudgeon.{part}" for part in ("case", "run", "stepper", "_sweep", "_table", "_fit", "_tolerances", "_fmu", "_keys", "_library"))):
         module = importlib.import_module(name)
         counts = doctest.testmod(module, extraglobs={"gudgeon": gudgeon, **vars(gudgeon)})
         check(counts.failed == 0, f"examples in {name}: {counts}")
@@ -608,7 +718,7 @@ def main() -> int:
     if "--all" in sys.argv:
         found = sorted((TOP / "cases").rglob("*.nml"))
         names = [str(p.relative_to(TOP / "cases").with_suffix("")) for p in found if "studies" not in p.parts]
-    for part in (lambda: against_program(program, names), cases, round_trips, links, copies, lambda: starts(program), damaged, runs, steps, sweeps, threads, tables_beside, static_lengths, texts_of_the_package, pages, tables, memory, lambda: writes_nowhere(program)):
+    for part in (lambda: against_program(program, names), cases, round_trips, links, copies, lambda: starts(program), damaged, runs, steps, sweeps, threads, tables_beside, static_lengths, texts_of_the_package, pages, tables, fits, tolerances, memory, lambda: writes_nowhere(program)):
         try:
             part()
         except Exception:

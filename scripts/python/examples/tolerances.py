@@ -3,16 +3,13 @@
 
     tolerances.py [PICTURE]
 
-Each parameter has a distribution of scipy.stats; one from OpenTURNS serves as well: computeQuantile(share)[0] in place of ppf(share).
+Each parameter has a distribution of scipy.stats; one from OpenTURNS serves as well: lambda share: of.computeQuantile(share)[0].
 """
 
 import sys
 
 import gudgeon
-import matplotlib.pyplot as plt
-import numpy as np
 from scipy import stats
-from scipy.stats import qmc
 
 PARAMETERS = {
     "joint.clearance": stats.norm(8e-6, 0.8e-6),  # m: a fit with a tolerance of 5 um, three standard deviations on both sides
@@ -20,8 +17,7 @@ PARAMETERS = {
     "lubrication.viscosity": stats.lognorm(0.15, scale=0.0065),  # Pa s: of the oil's temperature
     "combustion.heat": stats.norm(350, 10),  # J: from engine to engine
 }
-RUNS = 256
-KEPT = ["cycle_min_film_thickness", "cycle_max_force", "cycle_mean_film_power"]
+FILM, LIMIT = "cycle_min_film_thickness", 0.9e-6  # m
 #: The long bearing, whose force is a formula: a film of finite length needs a table of seconds for each length and clearance. Its film
 #: is too thick: this example is about the method.
 QUICK = {"lubrication.law": "pinkus_sternlicht", "lubrication.variant": "half_film"}
@@ -30,25 +26,13 @@ engine = gudgeon.template("engine").set({"lubrication.temperature": None, "lubri
 
 
 def main(picture: str | None = None) -> dict[str, float]:
-    shares = qmc.Sobol(len(PARAMETERS), rng=1).random(RUNS)
-    design = np.column_stack([of.ppf(share) for of, share in zip(PARAMETERS.values(), shares.T)])
-    table = gudgeon.sweep(engine, design, names=list(PARAMETERS), keep=KEPT)
-    film = 1e6 * table.cycle_min_film_thickness
-    nominal = 1e6 * engine.run(columns="none").summary["cycle_min_film_thickness"]
-    low, median, high = np.quantile(film, [0.01, 0.5, 0.99])
-    print(f"{RUNS} engines: thinnest film {low:.2f} to {high:.2f} um (1 % to 99 %), median {median:.2f}, nominal {nominal:.2f}")
+    found = gudgeon.tolerances(engine, PARAMETERS, [FILM, "cycle_max_force"], below={FILM: LIMIT})
+    print(found)
     if picture:
-        drawing, (left, right) = plt.subplots(1, 2, figsize=(9, 3.4), layout="constrained")
-        left.hist(film, 24)
-        left.axvline(nominal, color="black", label="nominal")
-        left.axvline(low, color="tab:red", label="1 %")
-        left.set(xlabel="thinnest film of the last cycle [um]", ylabel="engines")
-        left.legend()
-        shown = right.scatter(1e6 * table["joint.clearance"], film, c=1e3 * table["lubrication.viscosity"], s=12)
-        drawing.colorbar(shown, label="viscosity [mPa s]")
-        right.set(xlabel="clearance [um]", ylabel="thinnest film [um]")
-        drawing.savefig(picture, dpi=110)
-    return {"low": low, "median": median, "high": high, "nominal": nominal, "done": float((table.status == "done").mean())}
+        found.draw().savefig(picture, dpi=110)
+    low, median, high = (1e6 * found.percentile(FILM, share)[0] for share in (1, 50, 99))
+    nominal, chance = 1e6 * float(found.nominal[FILM]), found.probability(FILM, below=LIMIT).value
+    return {"low": low, "median": median, "high": high, "nominal": nominal, "chance": chance, "done": len(found.done) / len(found.table)}
 
 
 if __name__ == "__main__":

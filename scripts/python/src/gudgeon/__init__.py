@@ -17,7 +17,9 @@ _HOMES = {
     "Run": "run", "RunError": "run", "Summary": "run", "Certificate": "run", "load": "files", "compare": "run",
     "orders": "run", "Page": "run",
     "Stepper": "stepper", "Snapshot": "stepper", "Inputs": "stepper",
-    "sweep": "_sweep", "schema": "_schema", "fmu": "_fmu", "table": "_table", "Table": "_table", "Key": "_keys", "keys": "_keys", "groups": "_keys",
+    "sweep": "_sweep", "schema": "_schema", "fmu": "_fmu", "table": "_table", "Table": "_table",
+    "fit": "_fit", "Fit": "_fit", "levels": "_fit", "tolerances": "_tolerances", "Tolerances": "_tolerances",
+    "Key": "_keys", "keys": "_keys", "groups": "_keys",
 }  # fmt: skip
 
 __all__ = [*_HOMES, "certify", "version"]  # pyright: ignore

@@ -44,7 +44,7 @@ class Unit(NamedTuple):
     offset: float = 0.0
 
     @classmethod
-    def of(cls, row: str, unit: str, values: Sequence[float]) -> Unit:
+    def of(cls, row: str, unit: str, values: Any) -> Unit:
         """The readable unit of a row with these values in the unit of its file."""
         import numpy as np
 
@@ -59,7 +59,7 @@ class Unit(NamedTuple):
         name, factor = prefixed(unit.replace(".", " "), np.array(values, dtype=float))
         return cls(name.replace("µ", "u"), factor)
 
-    def __call__(self, value: float) -> float:
+    def __call__(self, value: Any) -> Any:
         return value if self.factor == 1 and self.offset == 0 else (value + self.offset) * self.factor
 
 
@@ -72,7 +72,7 @@ class Table:
 
     def _right(self) -> list[bool]:
         """Whether each column stands on the right: those of numbers."""
-        return [any(cell[:1].isdigit() or cell[:1] == "-" and len(cell) > 1 for cell in self.cells[name]) for name in self.cells]
+        return [any(cell.lstrip("+-")[:1].isdigit() for cell in self.cells[name]) for name in self.cells]
 
     def markdown(self) -> str:
         rows = [[cell.replace("|", "\\|") for cell in row] for row in [list(self.cells.columns), *self.cells.values.tolist()]]
@@ -124,7 +124,7 @@ def table(runs: Any, rows: str | Iterable[str] | None = None, *, digits: int = 3
     given = [runs] if isinstance(runs, (str, Path, Run, Summary)) else list(runs)
     wanted = [rows] if isinstance(rows, str) else None if rows is None else list(rows)
     if len(given) == 1 and str(given[0]).endswith(".runs.csv"):
-        return _of_study(Path(given[0]), wanted, digits)
+        return _of_study(Path(str(given[0])), wanted, digits)
     places, summaries = zip(*map(_place_and_summary, given))
     return _side_by_side(_labels(places), summaries, wanted, digits)
 
@@ -210,7 +210,8 @@ def _row(name: str, summaries: Sequence[Summary]) -> Row:
     own = next(summary.units[name] for summary in summaries if name in summary)
     unit = Unit.of(name, own, [value for value in values if value is not None])
     values = [None if value is None else unit(value) for value in values]
-    first, changes = values[0], [None] * len(values)
+    first = values[0]
+    changes: list[float | None] = [None] * len(values)
     if first is not None and is_place(name, own):
         turn = 360 * summaries[0].get("cycle_revolutions", 1) if name.endswith("_angle") else math.inf
         changes[1:] = [None if value is None else math.remainder(value - first, turn) for value in values[1:]]
