@@ -584,6 +584,13 @@ def fits() -> None:
     place, residuals, jacobian = _fit.search(lambda points: points @ matrix.T, data, np.ones(40), np.ones(3), np.full(3, 0.5), 4, 1e-3, 1)
     best = np.linalg.lstsq(matrix, data, rcond=None)[0]
     check(abs(place - best).max() < 1e-9 and abs(jacobian - matrix).max() < 1e-9 and np.allclose(residuals, matrix @ best - data), "a linear model is solved")
+
+    def with_failures(points: np.ndarray) -> np.ndarray:
+        return np.where(points[:, :1] > 0.9, np.nan, points @ matrix.T)
+
+    found = _fit.search_on_designs(with_failures, data, np.ones(40), np.ones(3), [64, 32], 1)
+    check(abs(found[0] - best).max() < 1e-6 and abs(found[2] - matrix).max() < 1e-5, "also on designs, whose surfaces of a linear model are planes")
+    refuses(RuntimeError, "runs of a design have failed", lambda: _fit.search_on_designs(lambda p: p @ matrix.T + np.nan, data, np.ones(40), np.ones(3), [8], 1))
     keys = [_fit.Key(name, 0.0, 1.0) for name in "abc"]
     observed = _fit.Answers(dict.fromkeys(map(str, range(40)), 0.0), None)
     linear = _fit.Fit(gudgeon.template("dry"), keys, place, observed, data, residuals, jacobian, False, 0, None)
