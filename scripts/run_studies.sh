@@ -27,7 +27,7 @@ program=$(scripts/build.sh) || exit 1
 
 status=0
 for study in map_I map_IV map_I_oscillating map_IV_oscillating bifurcation_clearance bifurcation_speed restitution contact_laws \
-  pin_ticking pin_sliding; do
+  pin_ticking pin_sliding offset_crank; do
   more=
   case $study in bifurcation_*) more='-s run.lyapunov_revolutions=20' ;; esac   # for the colours of the picture
   # shellcheck disable=SC2086  # options are words
@@ -36,6 +36,8 @@ done
 gudgeon-plot study --results "$out" --format png --format svg || status=1
 gudgeon-plot study "$out/pin_ticking.runs.csv" --columns small_end_eccentricity_rate_x_max_abs small_end_min_film_thickness || status=1
 gudgeon-plot study "$out/pin_sliding.runs.csv" --columns pin_speed_rms small_end_asperity_force_max || status=1
+
+gudgeon-plot study "$out/offset_crank.runs.csv" --columns guide_force_max_abs guide_friction_power_mean || status=1
 
 sensitivity() {   # sensitivity STUDY OUTPUT...
   study=$1

@@ -223,7 +223,7 @@ contains
         chord = chord - sum(eta*matmul(cmplx(f%drawn_back(nodes + 2, :f%n, :f%n), 0.0_qp, qp), eta))
         p(1) = r*cos(now(1)) - now(2)
         p(2) = r*sin(now(1)) - now(3)
-        sine = (p(2) - now(5))/chord
+        sine = (p(2) - bodies%piston%axis_offset - now(5))/chord
         p(3) = atan(sine/sqrt(1 - sine**2))
         p(4) = p(1) + chord*sqrt(1 - sine**2) - now(4)
         p(5) = com(1)*cos(now(1)) - com(2)*sin(now(1))

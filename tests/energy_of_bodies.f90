@@ -13,7 +13,8 @@ contains
 
   !> dE/dt [W] of kinetic and potential energy, for coordinates (q, c_x, c_y, e_x, e_y) with these values, rates and accelerations;
   !> for a piston with clearance in its bore also y of its centre of mass and its tilt. The crank pin is at R (cos q, sin q), the
-  !> rod's big end at this position minus c, its small end at the distance e_y from the axis of the guide.
+  !> rod's big end at this position minus c, its small end at the distance e_y from the axis of the guide. What the offset of that axis adds to
+  !> the potential energy is constant.
   real(dp) function energy_slope(bodies, z, z_rate, z_acceleration)
     type(bodies_t), intent(in) :: bodies
     real(dp), intent(in) :: z(:), z_rate(:), z_acceleration(:)
@@ -55,7 +56,7 @@ contains
         p(8:9) = z(6:7)
         centre = bodies%piston%com(1)*[cos(z(7)), sin(z(7))] + bodies%piston%com(2)*[-sin(z(7)), cos(z(7))]
       end if
-      sine = (p(8) - centre(2) + z(5) - big_end(2))/l   ! of the angle from the big end to the small end
+      sine = (bodies%piston%axis_offset + p(8) - centre(2) + z(5) - big_end(2))/l   ! of the angle from the big end to the small end
       along = [sqrt(1 - sine**2), sine]
       across = [-along(2), along(1)]
       p(4:5) = big_end + rod(1)*along + rod(2)*across

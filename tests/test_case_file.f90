@@ -329,14 +329,14 @@ contains
     call refused_with(check, 'combustion.duration_deg=0', &
                       'x.nml: &combustion duration_deg = 0: must be > 0 and <= 360 (degrees)', fire)
     call refused_with(check, 'combustion.duration_deg=201', 'x.nml: &combustion duration_deg = 201: '// &
-                      'must be <= 540 - start_deg = 200: the cylinder opens at 540 (degrees)', fire)
+                      'must be <= 200: the cylinder opens at 540 (degrees)', fire)
     call refused_with(check, 'combustion.cycle=two_stroke', 'x.nml: &combustion port_opens_deg: required with cycle = '// &
                       '''two_stroke'' (degrees)', fire)
     call refused_on(check, whole//fire, [character(len=40) :: 'combustion.cycle=two_stroke', 'combustion.port_opens_deg=19'], &
-      'x.nml: &combustion start_deg = 340: must be >= 360 - port_opens_deg = 341, where the ports close (degrees)')
+      'x.nml: &combustion start_deg = 340: must be >= 341, where the cylinder closes (degrees)')
     call refused_on(check, whole//fire, [character(len=40) :: 'combustion.cycle=two_stroke', 'combustion.port_opens_deg=20', &
-      'combustion.duration_deg=41'], 'x.nml: &combustion duration_deg = 41: must be <= 360 + port_opens_deg - start_deg = 40, '// &
-      'where the ports open (degrees)')
+      'combustion.duration_deg=41'], 'x.nml: &combustion duration_deg = 41: must be <= 40: '// &
+      'the cylinder opens at 380 (degrees)')
     call refused_on(check, whole//fire, [character(len=40) :: 'combustion.cycle=compressor', 'combustion.dead_space=0.1', &
       'combustion.discharge_pressure=101325', 'combustion.polytropic_exponent=1.2'], &
       'x.nml: &combustion discharge_pressure = 101325: must be > suction_pressure = 101325 (Pa)')

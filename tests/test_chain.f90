@@ -57,7 +57,8 @@ contains
       [between(random, -0.5_dp, 1.0_dp), between(random, -0.5_dp, 0.5_dp)]*r), &
       rod_t(l, between(random, 0.2_dp, 2.0_dp), between(random, 1e-4_dp, 1e-2_dp), &
       [between(random, 0.2_dp, 0.7_dp), between(random, -0.2_dp, 0.2_dp)]*l), &
-      piston_t(between(random, 0.1_dp, 1.0_dp)), 9.80665_dp*[-cos(tilt), -sin(tilt)])
+      piston_t(between(random, 0.1_dp, 1.0_dp), axis_offset=merge(-0.2_dp*r, 0.0_dp, tilt > 0)), &
+      9.80665_dp*[-cos(tilt), -sin(tilt)])
     chain%drive = drive_t(between(random, 0.0_dp, 1.0_dp) < 0.5_dp, between(random, -20.0_dp, 20.0_dp), &
       between(random, 0.0_dp, 0.1_dp), 0.0_dp, 0.0_dp)
     chain%is_loose = [modulo(piece, 2) == 1, piece > 1]
@@ -96,7 +97,7 @@ contains
       motion%crank_pin_rate = z_rate(2:3)
       motion%offset = z(2:3) + z(4:5)
       motion%offset_rate = z_rate(2:3) + z_rate(4:5)
-      call follow_rod(r, 1/l, motion, reachable)
+      call follow_rod(r, 1/l, chain%bodies%piston%axis_offset, motion, reachable)
       if (reachable) call follow_piston(r, l, motion)
     end associate
   end subroutine move
@@ -349,7 +350,7 @@ contains
       call draw(random, 3, chain, motion, loads, z, z_rate)
       rod = asin(motion%sin_rod)
       associate (r => chain%bodies%crank%length, l => chain%bodies%rod%length, x => motion%piston_position)
-        big_end = [x + z(4) - l*cos(rod), z(5) + l*sin(rod)]
+        big_end = [x + z(4) - l*cos(rod), chain%bodies%piston%axis_offset + z(5) + l*sin(rod)]
         worst(1) = max(worst(1), maxval(abs(r*[cos(z(1)), sin(z(1))] - big_end - z(2:3))))
         rate = [motion%piston_velocity + z_rate(4) + l*sin(rod)*motion%rod_speed, z_rate(5) + l*cos(rod)*motion%rod_speed]
         worst(2) = max(worst(2), maxval(abs(r*z_rate(1)*[-sin(z(1)), cos(z(1))] - rate - z_rate(2:3))))

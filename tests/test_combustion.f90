@@ -4,6 +4,7 @@ module test_combustion
   use constants, only: pi, degree
   use error_handling, only: error_t
   use checks, only: checks_t
+  use ideal_linkage, only: linkage_t
   use cylinder, only: cylinder_t, new_cylinder
   use hermite_table, only: hermite_table_t, new_hermite_table
   use working_gas, only: working_gas_t
@@ -38,19 +39,25 @@ contains
   subroutine volume_is_consistent(check)
     class(checks_t), intent(inout) :: check
     type(cylinder_t) :: c
-    real(dp) :: q, h, x
-    integer :: i
-    c = new_cylinder(0.07_dp, 0.0508_dp, 0.2032_dp, 9.0_dp)
-    call check%relative(c%volume(pi)/c%volume(2*pi), 9.0_dp, 1e-14_dp, 'compression ratio')
+    real(dp) :: q, h, x, d, across, top, stroke
+    integer :: i, k
     h = 1e-4_dp
-    do i = 1, 10
-      q = 0.6_dp*i
-      call check%close_to(c%volume_slope(q), (c%volume(q + h) - c%volume(q - h))/(2*h), 1e-11_dp, 'dV/dq')
-      call check%close_to(c%volume_curvature(q), (c%volume_slope(q + h) - c%volume_slope(q - h))/(2*h), 1e-11_dp, 'd2V/dq2')
-      ! the dead volume has the height 1.016e-1 m/8; the pin is at x
-      x = 0.0508_dp*cos(q) + sqrt((0.2032_dp + 0.0508_dp*sin(q))*(0.2032_dp - 0.0508_dp*sin(q)))
-      call check%relative(c%volume(q), pi*0.035_dp**2*(0.0127_dp + (0.254_dp - x)), 1e-13_dp, &
-        'V(q) from the position of the piston')
+    do k = -1, 1
+      d = 0.013_dp*k
+      c = new_cylinder(0.07_dp, linkage_t(0.0508_dp, 0.2032_dp, d), 9.0_dp)
+      top = sqrt(0.254_dp**2 - d**2)
+      stroke = top - sqrt(0.1524_dp**2 - d**2)
+      call check%relative(c%volume(c%bottom)/c%volume(2*pi), 9.0_dp, 1e-14_dp, 'compression ratio')
+      call check%relative(c%displacement, pi*0.035_dp**2*stroke, 1e-14_dp, 'displacement')
+      do i = 1, 10
+        q = 0.6_dp*i
+        call check%close_to(c%volume_slope(q), (c%volume(q + h) - c%volume(q - h))/(2*h), 1e-11_dp, 'dV/dq')
+        call check%close_to(c%volume_curvature(q), (c%volume_slope(q + h) - c%volume_slope(q - h))/(2*h), 1e-11_dp, 'd2V/dq2')
+        ! the dead volume is an eighth of the stroke high; the pin is at x
+        across = 0.0508_dp*sin(q + asin(d/0.254_dp)) - d
+        x = 0.0508_dp*cos(q + asin(d/0.254_dp)) + sqrt((0.2032_dp + across)*(0.2032_dp - across))
+        call check%relative(c%volume(q), pi*0.035_dp**2*(stroke/8 + (top - x)), 1e-13_dp, 'V(q) from the position of the piston')
+      end do
     end do
   end subroutine volume_is_consistent
 
@@ -106,7 +113,7 @@ contains
     type(error_t), allocatable :: error
     real(dp) :: got_peak, got_angle, got_work, unit
 
-    gas%cylinder = new_cylinder(0.1_dp, 0.05_dp, 0.05e9_dp, 10.0_dp)
+    gas%cylinder = new_cylinder(0.1_dp, linkage_t(0.05_dp, 0.05e9_dp), 10.0_dp)
     unit = gas%intake_pressure*gas%cylinder%volume(pi)
     gas%release = heat_release_t(20*unit, 5.0_dp, 3.0_dp, (360 + start)*degree, 40*degree)
     call new_gas_cycle(gas, 1e-12_dp, error)
@@ -120,7 +127,7 @@ contains
   pure function engine(heat, form) result(gas)
     real(dp), intent(in) :: heat, form
     type(gas_cycle_t) :: gas
-    gas%cylinder = new_cylinder(0.07_dp, 0.0508_dp, 0.2032_dp, 9.0_dp)
+    gas%cylinder = new_cylinder(0.07_dp, linkage_t(0.0508_dp, 0.2032_dp), 9.0_dp)
     gas%release = heat_release_t(heat, 5.0_dp, form, 340*degree, 40*degree)
   end function engine
 

@@ -70,7 +70,8 @@ contains
     real(dp) :: q, inertia, torque, still, unused, slope, off(4), lagrange
     integer :: i
     call cylinder%set_bodies(new_bodies(crank_t(0.04_dp, 1.2_dp, 0.0018_dp, [-0.004_dp, 0.003_dp]), &
-      rod_t(0.135_dp, 0.55_dp, 0.0019_dp, [0.04_dp, 0.002_dp]), piston_t(0.42_dp), [-9.2_dp, 3.1_dp]))
+      rod_t(0.135_dp, 0.55_dp, 0.0019_dp, [0.04_dp, 0.002_dp]), piston_t(0.42_dp, axis_offset=0.012_dp), &
+      [-9.2_dp, 3.1_dp]))
     call bare%set_bodies(new_bodies(crank_t(0.04_dp, 0.0_dp, 0.0_dp, [0.0_dp, 0.0_dp]), cylinder%bodies%rod, &
       cylinder%bodies%piston, cylinder%bodies%gravity))
     off = 0

@@ -47,7 +47,8 @@ def compare(run: Runner, name: str, interval: float, states: float, others: floa
     """All columns of a reference, relative to their largest value; rows at jumps of the gas are left out."""
     reference = pd.read_csv(DATA / f"{name}.csv")
     wanted = ", ".join(column.partition("[")[0] for column in reference.columns)
-    found, summary = run(CASES / f"{name}.nml", *FINE, f"output.interval={interval!r}", f"output.columns=standard, {wanted}",
+    case = next(folder / f"{name}.nml" for folder in (CASES, DATA) if (folder / f"{name}.nml").exists())
+    found, summary = run(case, *FINE, f"output.interval={interval!r}", f"output.columns=standard, {wanted}",
                          "output.window=all", "output.sampling=time", "run.until=end", *changes)
     check(float(summary["max_energy_residual_relative"]) < 1e-11, f"{name}: no energy is lost", summary["max_energy_residual_relative"])
     rows = min(len(found), len(reference))
@@ -65,6 +66,12 @@ def references(run: Runner) -> None:
     compare(run, "inline_four", 6 * 5.8177641733144315e-05, 1e-9, 1e-9, "integrator.revolutions=0", "integrator.end_time=0.041887902047863905")
     compare(run, "six_mwm", 6 * 8.333333333333333e-05, 1e-7, 1e-7, "integrator.end_time=0.06")
     compare(run, "four_dry", 4 * 2e-5, 1e-7, 1e-6, "integrator.revolutions=0", "integrator.end_time=0.012")
+    compare(run, "offset_four", 6 * 0.00011635528346628863, 1e-9, 1e-9)
+    compare(run, "offset_dry", 1.6e-4, 1e-8, 1e-5)
+    found = pd.read_csv(run.result(DATA / "offset_dry.nml", "events.csv"))
+    wanted = pd.read_csv(DATA / "offset_dry.events.csv")
+    off = (found["time[s]"] - wanted["time[s]"]).abs().max() if len(found) == len(wanted) else np.inf
+    check(off < 1e-10 and list(found["event"]) == list(wanted["event"]), "offset_dry: contacts begin and end when they do in the reference", f"{off!r}")
 
 
 def facts(run: Runner) -> None:
@@ -156,6 +163,19 @@ DISCS = """&mechanism crank_length = 0.01, crank_mass = 0.0, crank_inertia = 0.0
 &crankshaft {shaft} /
 &integrator revolutions = 1.0 /
 """
+
+
+LOOSE = ("joint.kind=clearance", "joint.clearance=2e-5", "joint.bearing_radius=0.009", "contact.law=hertz")
+CRANK_PIN = ("crank_pin.joint.kind=clearance", "crank_pin.joint.clearance=4e-5", "crank_pin.joint.bearing_radius=0.014", "crank_pin.contact.law=hertz")
+FLOATING = ("pin.kind=floating", "pin.mass=0.05", "pin.inertia=2e-6", "small_end.joint.kind=clearance", "small_end.joint.clearance=1e-5", "small_end.joint.bearing_radius=0.009",
+            "small_end.contact.law=hertz")
+BORE = ("guide.kind=clearance", "guide.coefficient=0.05", "guide.bore_clearance=1e-4", "guide.skirt_top=0.02", "guide.skirt_bottom=0.02", "guide.piston_radius=0.034",
+        "guide.piston_inertia=1e-4", "guide.stiffness=1e8", "guide.piston_com=0.005,-0.001")
+ROD = ("guide=none", "elastic_rod.youngs_modulus=2.07e11", "elastic_rod.section_area=1.5e-4", "elastic_rod.section_inertia=3e-9")
+FOUR_STROKE = ("combustion.cycle=four_stroke",)
+TWO_STROKE = ("combustion.cycle=two_stroke", "combustion.port_opens_deg=110")
+COMPRESSOR = ("combustion.cycle=compressor", "combustion.dead_space=0.05", "combustion.suction_pressure=1e5", "combustion.discharge_pressure=4e5",
+              "combustion.polytropic_exponent=1.3")
 
 
 def programs_of_others(run: Runner) -> None:
@@ -292,6 +312,64 @@ def energies(run: Runner) -> None:
     check(np.ptp(bare(rows)["crank_speed"]) < 1e-12, "a held station of the full cylinder has a constant speed")
 
 
+# a cylinder axis beside the crank axis
+
+#: The engine of cases/drive/offset_crank.nml with an ideal guide.
+SMALL = TOP / "cases" / "drive" / "offset_crank.nml"
+OFFSET = "mechanism.axis_offset=0.006"
+
+
+def offset_linkage(run: Runner) -> None:
+    """Stroke, dead centres, ratio of the times down and up, and places of the piston in closed form."""
+    for row in pd.read_csv(DATA / "offset_slider_crank.csv").itertuples():
+        rows, summary = run(engine(""), "output.sampling=crank_angle", "output.samples_per_revolution=36", f"mechanism.crank_length={row.crank_m!r}",
+                            f"mechanism.rod_length={row.rod_m!r}", f"mechanism.axis_offset={row.offset_m!r}")
+        place = bare(rows)["piston_position"]
+        off = max(abs(place[i] - wanted) for i, wanted in ((3, row.x_30deg_m), (9, row.x_90deg_m), (20, row.x_200deg_m)))
+        check(off < 1e-12, "an offset axis: the piston is where the closed form puts it", f"{off:.2g} m with {row.offset_m} m")
+        if not row.offset_m:
+            check("stroke" not in summary, "without an offset the summary has no dead centres")
+            continue
+        top, bottom = float(summary["top_dead_centre_angle"]), float(summary["bottom_dead_centre_angle"])
+        check(abs(float(summary["stroke"]) - row.stroke_m) < 1e-12, "an offset axis: stroke", summary["stroke"])
+        check(max(abs(top - row.angle_tdc_deg), abs(bottom - row.angle_bdc_deg)) < 1e-8, "an offset axis: dead centres", f"{top!r} {bottom!r}")
+        check(abs((bottom - top) / (360 - bottom + top) - row.down_over_up) < 1e-10, "an offset axis: time down over time up")
+
+
+def offset_of_the_pin(run: Runner) -> None:
+    """A pin offset in a tight, stiff bore is the same linkage, by equations without an offset of the axis: the piston's centre of mass
+    runs on y = 0 and its pin on y = d. What is left is the play of the bore and the stiffness of its walls."""
+    same = ("drive.kind=constant_speed", "integrator.revolutions=2", "output.samples_per_revolution=360", "integrator.relative_tolerance=1e-8", "output.digits=15")
+    bore = ("guide.kind=clearance", "guide.coefficient=0", "guide.bore_clearance=1e-7", "guide.skirt_top=0.02", "guide.skirt_bottom=0.02", "guide.piston_radius=0.034",
+            "guide.piston_inertia=1e-4", "guide.stiffness=1e8", "guide.restitution=0.5", "guide.piston_com=0,-0.008", "combustion=none")
+    tight = bare(run(SMALL, *same, *bore, "mechanism.axis_offset=0")[0]).iloc[360:]
+    ideal = bare(run(SMALL, *same, "guide=none", "combustion=none", "mechanism.axis_offset=0.008")[0]).iloc[360:]
+    for column, allowed in (("piston_position", 5e-7), ("pin_force_x", 1.0), ("pin_force_y", 1.0), ("crank_moment", 0.05)):
+        off = float(np.sqrt(((tight[column] - ideal[column]) ** 2).mean()))
+        check(off < allowed, f"a pin offset in a tight bore moves as an offset axis: {column}", f"{off:.2g} of {ideal[column].abs().max():.4g}")
+
+
+def offset_chains(run: Runner) -> None:
+    """Every chain keeps its energy, with gas and gravity across; the mirror image of a machine, turning backwards, is the same machine."""
+    base = ("integrator.relative_tolerance=1e-9", "integrator.revolutions=1", OFFSET, "mechanism.gravity_angle_deg=70", "drive.kind=free", "drive.torque=-3")
+    for what, changes in {"ideal pins": ("guide=none",), "a piston pin": LOOSE, "a crank pin": CRANK_PIN, "both pins": (*LOOSE, *CRANK_PIN), "a floating pin": (*LOOSE, *FLOATING),
+                          "slap": BORE, "slap with a floating pin": (*BORE, *LOOSE, *FLOATING), "slap with a crank pin": (*BORE, *CRANK_PIN), "an elastic rod": ROD,
+                          "an elastic rod with both pins and slap": (*ROD, *LOOSE, *CRANK_PIN, *BORE)}.items():
+        lost = float(run(SMALL, *base, *changes)[1]["max_energy_residual_relative"])
+        check(lost < 1e-7, f"an offset axis with {what}: no energy is lost", f"{lost:.2g}")
+    for gas in (FOUR_STROKE, TWO_STROKE, COMPRESSOR):
+        both = []
+        for sign in (1, -1):
+            rows, summary = run(SMALL, *FINE, *gas, "guide=none", "integrator.revolutions=2.2", "drive.kind=free", f"initial.crank_angle_deg={sign * 100}",
+                                f"initial.crank_speed={sign * 377}", f"mechanism.axis_offset={sign * 0.006}", f"mechanism.gravity_angle_deg={sign * 30}",
+                                f"mechanism.rod_com=0.025,{sign * 5e-4}", f"mechanism.crank_com=0.002,{sign * 1e-3}", "output.samples_per_revolution=90")
+            both.append(bare(rows))
+        for column, way in (("piston_position", 1), ("cylinder_pressure", 1), ("guide_force", -1), ("crank_speed", -1)):
+            a, b = (one[column].to_numpy() for one in both)
+            off = np.abs(a - way * b).max() / np.abs(a).max()
+            check(off < 1e-9, f"the mirror image of an offset axis: {column}", f"{off:.2g} with {gas[0]}")
+
+
 def refusals(run: Runner) -> None:
     six, dry, four = CASES / "six_mwm.nml", CASES / "four_dry.nml", CASES / "inline_four.nml"
     for case, changes, says in [
@@ -317,6 +395,12 @@ def refusals(run: Runner) -> None:
         (four, ["cylinder_7.phase_deg=10"], "there is no cylinder_5 before it"),
         (four, ["crankshaft.flywheel_inertia=1", "crankshaft.torsional_stiffness=1e5"], "needs one cylinder"),
         (engine("&cylinder /\n" * 17), [], "at most 16 of these groups"),
+        (SMALL, ["mechanism.axis_offset=0.07"], "axis_offset = 0.07: must be shorter than rod_length - crank_length, less clearances, = 0.0615: the crank could not turn"),
+        (SMALL, ["mechanism.axis_offset=-0.0615"], "axis_offset = -0.0615: must be shorter than"),
+        (SMALL, [*LOOSE, "guide=none", "mechanism.axis_offset=0.06149"], "less clearances, = 0.06148"),
+        (SMALL, ["combustion.start_deg=183"], "start_deg = 183: must be >= 183.7"),
+        (SMALL, ["mechanism.axis_offset=-0.004", "combustion.duration_deg=194"], "duration_deg = 194: must be <= 193.4"),
+        (SMALL, [*TWO_STROKE, "combustion.port_opens_deg=179", "mechanism.axis_offset=-0.02"], "port_opens_deg = 179: must be below the angle of the bottom dead centre"),
     ]:
         message = run.refused(case, *changes)
         check(says in message and message.count("\n") == 1, f"refused with one line: {' '.join(changes)[:60]}", message[:300])
@@ -355,7 +439,8 @@ def main() -> int:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         run = Runner(options.program or str(release_program()), Path(folder))
-        for part in (references, facts, programs_of_others, another_cylinder, equalities, limits, energies, refusals, resumes):
+        for part in (references, facts, programs_of_others, another_cylinder, equalities, limits, energies, offset_linkage, offset_of_the_pin,
+                     offset_chains, refusals, resumes):
             part(run)
     return assertions.report()
 

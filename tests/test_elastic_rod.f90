@@ -63,7 +63,8 @@ contains
     tilt = between(random, -pi, pi)
     chain%bodies = new_bodies(crank_t(r, between(random, 0.3_dp, 2.0_dp), between(random, 1e-4_dp, 1e-2_dp), &
       [between(random, -0.5_dp, 1.0_dp), between(random, -0.5_dp, 0.5_dp)]*r), rod, &
-      piston_t(between(random, 0.1_dp, 1.0_dp)), 9.80665_dp*[-cos(tilt), -sin(tilt)])
+      piston_t(between(random, 0.1_dp, 1.0_dp), axis_offset=merge(-0.2_dp*r, 0.0_dp, tilt > 0)), &
+      9.80665_dp*[-cos(tilt), -sin(tilt)])
     chain%drive = drive_t(between(random, 0.0_dp, 1.0_dp) < 0.5_dp, between(random, -20.0_dp, 20.0_dp), &
       between(random, 0.0_dp, 0.1_dp), 0.0_dp, 0.0_dp)
     chain%is_loose = [modulo(piece, 2) == 1, piece > 1]

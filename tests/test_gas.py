@@ -58,15 +58,33 @@ class Run:
     def area(self) -> float:
         return np.pi / 4 * self.gas["bore"] ** 2
 
-    def lift(self, q: np.ndarray | float) -> np.ndarray | float:
-        """Distance of the piston from its top position [m]: the pins of an ideal rod are one rod's length apart."""
+    @property
+    def axis(self) -> float:
+        """y of the cylinder axis in the frame in which the engine turns forwards [m]."""
+        return np.copysign(self.case["mechanism"]["axis_offset"], self.case["mechanism"]["axis_offset"] * self.case["initial"]["crank_speed"])
+
+    @property
+    def top(self) -> float:
+        """Crank angle at which the piston is highest, by search [rad]."""
+        return float(brentq(lambda q: self.swept(q), -0.5, 0.5, xtol=1e-15)) if self.axis else 0.0
+
+    @property
+    def bottom(self) -> float:
+        return float(brentq(lambda q: self.swept(q), np.pi - 0.5, np.pi + 0.5, xtol=1e-15)) if self.axis else np.pi
+
+    def height(self, q: np.ndarray | float) -> np.ndarray | float:
+        """Height of the piston pin above the shaft [m]: the pins of an ideal rod are one rod's length apart."""
         crank, rod = self.case["mechanism"]["crank_length"], self.case["mechanism"]["rod_length"]
-        return crank + rod - crank * np.cos(q) - np.sqrt(rod**2 - (crank * np.sin(q)) ** 2)
+        return crank * np.cos(q) + np.sqrt(rod**2 - (crank * np.sin(q) - self.axis) ** 2)
+
+    def lift(self, q: np.ndarray | float) -> np.ndarray | float:
+        """Distance of the piston from its top position [m]."""
+        return self.height(self.top) - self.height(q)
 
     @property
     def dead(self) -> float:
         """Smallest volume [m^3]."""
-        swept = self.area * 2 * self.case["mechanism"]["crank_length"]
+        swept = self.area * self.lift(self.bottom)
         return swept * self.gas["dead_space"] if self.gas.get("cycle") == "compressor" else swept / (self.gas["compression_ratio"] - 1)
 
     def volume(self, q: np.ndarray | float) -> np.ndarray | float:
@@ -75,7 +93,8 @@ class Run:
     def swept(self, q: np.ndarray) -> np.ndarray:
         """Change of the volume with the crank angle [m^3/rad]."""
         crank, rod = self.case["mechanism"]["crank_length"], self.case["mechanism"]["rod_length"]
-        return self.area * crank * np.sin(q) * (1 + crank * np.cos(q) / np.sqrt(rod**2 - (crank * np.sin(q)) ** 2))
+        across = crank * np.sin(q) - self.axis
+        return self.area * crank * (np.sin(q) + across * np.cos(q) / np.sqrt(rod**2 - across**2))
 
     def column(self, name: str) -> np.ndarray:
         return self.rows[name].to_numpy()
@@ -207,6 +226,42 @@ def valves(program: Path, name: str, *settings: str) -> None:
              + quad(lambda x: high * (want["least"] / x) ** n, want["least"], want["suction"], epsabs=0, epsrel=1e-12)[0]
              - quad(lambda x: low * (want["largest"] / x) ** n, want["discharge"], want["largest"], epsabs=0, epsrel=1e-12)[0])
     check(abs(work / exact - 1) < 1e-7, f"{name}: work of the gas in a revolution", f"{work} instead of {exact} J")
+
+
+def offset_axis(program: Path) -> None:
+    """A cylinder axis beside the crank axis: what is compressed was closed in at the true bottom dead centre, or at the height at which the
+    ports open, and what is left expands from the true top dead centre. The angle of combustion counts from there."""
+    for case in (TOP / "cases" / "drive" / "offset_crank.nml", GAS / "two_stroke.nml", GAS / "compressor.nml"):
+        for axis, speed in ((0.006, 100), (-0.006, 100), (0.006, -100)):
+            name = f"{case.stem}, axis {axis} m, {speed} rad/s"
+            r = run(program, case, *CLOSE, *HELD, "guide=none", f"mechanism.axis_offset={axis}", f"initial.crank_speed={speed}", "integrator.revolutions=4",
+                    "output.samples_per_revolution=720", name=name)
+            gas, q, p, v = r.gas, np.sign(speed) * r.column("crank_angle[rad]"), r.column("cylinder_pressure[Pa]"), r.column("cylinder_volume[m3]")
+            check(worst(v / r.volume(q) - 1) < 1e-12, "an offset axis: volume of the cylinder", name)
+            check(abs(r.volume(r.bottom) / r.volume(r.top) - (1 + 1 / gas["dead_space"] if "dead_space" in gas else gas["compression_ratio"])) < 1e-11,
+                  "an offset axis: the ratio of the volumes at the dead centres", name)
+            at = np.rad2deg(q - r.top)
+            bottom = np.rad2deg(r.bottom - r.top)
+            if "dead_space" in gas:
+                low, high, n = gas["suction_pressure"], gas["discharge_pressure"], gas["polytropic_exponent"]
+                closed = (p != low) & (p != high) & (np.abs(q - q[0]) > 2 * np.pi)
+                rising = np.mod(at, 360) > bottom
+                for rows, pressure, volume in ((closed & rising, low, r.volume(r.bottom)), (closed & ~rising, high, r.dead)):
+                    off = worst(p[rows] / pressure * (v[rows] / volume) ** n - 1)
+                    check(rows.sum() > 100 and off < 1e-10, "an offset axis: the gas of a compressor is closed in at its dead centres", f"{off:.2g}, {name}")
+                continue
+            period = 360 if gas["cycle"] == "two_stroke" else 720
+            opens, closes = 360 + bottom, bottom
+            if period == 360:
+                port = np.deg2rad(gas["port_opens_deg"])
+                opens = 360 + gas["port_opens_deg"]
+                closes = np.rad2deg(brentq(lambda a: r.height(r.top + a) - r.height(r.top + port), r.bottom - r.top, 2 * np.pi, xtol=1e-14))
+            at = closes + np.mod(at - closes, period)
+            rows = (at > closes + 1e-6) & (at < gas["start_deg"])
+            off = worst(p[rows] / gas["intake_pressure"] * (v[rows] / r.volume(r.top + np.deg2rad(closes))) ** gas["heat_capacity_ratio"] - 1)
+            check(rows.sum() > 100 and off < 1e-9, "an offset axis: the gas of an engine is closed in where it should be", f"{off:.2g}, {name}")
+            check(np.all(p[at > opens + 1e-6] == gas["intake_pressure"]), "an offset axis: intake pressure in the open cylinder", name)
+            check(np.all(p[(at > gas["start_deg"] + 1) & (at < opens)] > 1.01 * gas["intake_pressure"]), "an offset axis: closed until it opens", name)
 
 
 def work_of_turn(r: Run, q: np.ndarray, p: np.ndarray, openings: dict[float, float]) -> float:
@@ -366,6 +421,7 @@ def main() -> int:
     crank_receives_the_work(program, GAS / "compressor.nml", "compressor with a free crank", "integrator.crank_revolutions=2")
     pressure_of_the_angle(program)
     measured_pressure(program)
+    offset_axis(program)
     what_check_says(program)
     return assertions.report()
 

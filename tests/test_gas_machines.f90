@@ -3,6 +3,7 @@ module test_gas_machines
   use kinds, only: dp
   use constants, only: pi, two_pi, degree
   use error_handling, only: error_t
+  use ideal_linkage, only: linkage_t
   use two_stroke, only: two_stroke_t
   use compressor, only: compressor_t
   use working_gas, only: working_gas_t
@@ -72,7 +73,7 @@ contains
     engine%start_deg = 360 - 0.5_dp*burn
     engine%duration_deg = burn
     engine%port_opens_deg = 105
-    call engine%prepare(crank, rod, 1e-12_dp, gas, error)
+    call engine%prepare(linkage_t(crank, rod), 1.0_dp, 1e-12_dp, gas, error)
     dead = displacement/8
     bounds = [255.0_dp, engine%start_deg, engine%start_deg + burn, 465.0_dp, 615.0_dp]*degree
     work = 0
@@ -155,7 +156,7 @@ contains
     machine%suction_pressure = 1e5_dp
     machine%discharge_pressure = discharge
     machine%polytropic_exponent = n
-    call machine%prepare(crank, rod, 1e-10_dp, gas, error)
+    call machine%prepare(linkage_t(crank, rod), 1.0_dp, 1e-10_dp, gas, error)
   end function compressor_of
 
   !> If the piston turns back during discharge, the gas in the cylinder expands from there; the valves do not depend on the crank

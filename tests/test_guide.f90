@@ -607,7 +607,7 @@ contains
     call refused(ideal, 'guide.v1=0 guide.coefficient=0.1 guide.v0=0', 'ideal.nml: &guide v1 = 0: must be > 0: friction on the '// &
       'guide is a function of the speed (m/s)')
     call refused(ideal, 'guide.coefficient=2.2', 'ideal.nml: &guide coefficient = 2.2: friction over normal force must stay < '// &
-      '2.18174, the least of rod_length cos A/(crank_length sin q): more would jam the piston: per cent?')
+      '2.18174, the least cotangent of the rod angle: more would jam the piston: per cent?')
     call refused(ideal, 'initial.piston_tilt=0.1', 'ideal.nml: &initial piston_tilt = 0.1: must be 0 without clearance in the '// &
       'bore (&guide kind = ''clearance'') (rad)')
     call refused(slap, 'initial.piston_tilt=2', 'slider_clearance.nml: &initial piston_tilt = 2: must be > -1 and < 1 (rad): '// &

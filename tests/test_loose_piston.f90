@@ -44,7 +44,7 @@ contains
     integer :: pin, i
     chain%bodies = new_bodies(crank_t(0.05_dp*(1 + u()), 0.5_dp + u(), 1e-3_dp*(1 + u()), 0.02_dp*[u(), u()]), &
       rod_t(0.2_dp*(1 + u()), 0.5_dp + u(), 1e-3_dp*(1 + u()), [0.1_dp*u(), 0.02_dp*u()]), &
-      piston_t(0.5_dp + u(), .true., 1e-3_dp*(1 + u()), [0.03_dp*u() - 0.01_dp, 0.01_dp*u() - 0.005_dp]), &
+      piston_t(0.5_dp + u(), .true., 1e-3_dp*(1 + u()), [0.03_dp*u() - 0.01_dp, 0.01_dp*u() - 0.005_dp], 0.01_dp), &
       9.80665_dp*[-cos(6*u()), -sin(6*u())])
     chain%drive = drive_t(u() < 0.5_dp, 40*u() - 20, 0.1_dp*u(), 0.0_dp, 0.0_dp)
     chain%is_loose = [modulo(piece, 2) == 1, piece > 1]

@@ -4,6 +4,7 @@ module test_measured_curves
   use constants, only: pi, two_pi, degree
   use error_handling, only: error_t
   use monotone_cubic, only: monotone_cubic_t, new_monotone_cubic, new_periodic_cubic
+  use ideal_linkage, only: linkage_t
   use measured_pressure, only: measured_pressure_t
   use working_gas, only: working_gas_t
   use checks, only: checks_t
@@ -96,7 +97,7 @@ contains
     law%offset_deg = 30
     law%curve%x = [(0.5_dp*i, i=0, 719)]
     law%curve%y = 5e5_dp + 4e5_dp*sin((law%curve%x + 30)*degree)
-    call law%prepare(0.05_dp, 0.2_dp, 1e-6_dp, gas, error)
+    call law%prepare(linkage_t(0.05_dp, 0.2_dp), 1.0_dp, 1e-6_dp, gas, error)
     work = 0
     do i = 1, steps
       q = two_pi*(i - 0.5_dp)/steps

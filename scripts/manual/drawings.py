@@ -317,6 +317,48 @@ def skirt() -> str:
     return d.svg("Corners of the skirt, pin offset and tilt")
 
 
+def offset_axis() -> str:
+    """The offset is drawn larger, the same crank and rod at both dead centres."""
+    keys = keys_of("drive/offset_crank.nml")
+    crank, rod = (keys[f"mechanism.{name}"][0] for name in ("crank_length", "rod_length"))
+    axis = 3.5 * keys["mechanism.axis_offset"][0]
+    d = Drawing(560, 640, (240, 480), 3.6)
+    half = 17.0
+    for side in (-1, 1):
+        d.hatch((40, axis + side * half), (126, axis + side * half), -side)
+    d.lines((-34, axis), (128, axis), stroke=GREY, dash="7 4", width=1)
+    d.lines((-34, 0), (128, 0), stroke=GREY, dash="2 4", width=1)
+    d.turn((0, 0), crank, -pi, pi, GREY, 0.7, head=False)
+    top, bottom = asin(axis / (rod + crank)), pi + asin(axis / (rod - crank))
+    for q, name, beside in ((top, "$q_t$", 10), (bottom, "$q_b$", -14)):
+        pin, _, piston = rod_end(crank, rod, q, (0, axis))
+        piston = (piston[0], axis)
+        d.lines((0, 0), pin, piston, stroke=BLUE, width=1, dash="7 4")
+        d.circle(piston, 1.4, "#ffffff", BLUE)
+        d.text(pin, name, BLUE, dx=beside, dy=-8 if q < 1 else 16)
+    q = radians(62)
+    pin, _, piston = rod_end(crank, rod, q, (0, axis))
+    piston = (piston[0], axis)
+    d.lines((piston[0] - 11, axis - half + 1), (piston[0] + 15, axis - half + 1), (piston[0] + 15, axis + half - 1), (piston[0] - 11, axis + half - 1),
+            close=True, fill=LIGHT)
+    d.bar((0, 0), pin, 5)
+    d.bar(pin, piston, 3.2)
+    for centre in ((0, 0), pin, piston):
+        d.circle(centre, 3.8, "#ffffff")
+    d.turn((0, 0), 12.5, 0, q, BLUE)
+    d.text((12.5 * cos(q / 2), 12.5 * sin(q / 2)), "$q$", BLUE, dx=9, dy=-6)
+    d.arrow((-30, 0), (-30, axis), RED, both=True)
+    d.text((-30, axis), "axis_offset $d$", RED, anchor="start", dx=10)
+    d.arrow((rod_height(crank, rod, axis, bottom), axis - half - 9), (rod_height(crank, rod, axis, top), axis - half - 9), BLUE, both=True)
+    d.text((84, axis - half - 9), "stroke", BLUE, anchor="end", dx=-8)
+    d.axes((-24, -50), 15)
+    return d.svg("A cylinder axis beside the crank axis, and its dead centres")
+
+
+def rod_height(crank: float, rod: float, axis: float, q: float) -> float:
+    return rod_end(crank, rod, q, (0, axis))[2][0]
+
+
 def floating_pin() -> str:
     radius = 60.0
     piston_radius, rod_radius = radius + 16, radius + 30
@@ -443,7 +485,7 @@ def film() -> str:
     return d.svg("Gap and pressure of a film, unrolled from its thickest place")
 
 
-DRAWINGS = (mechanism, joint, forces, skirt, floating_pin, crank_train, supply, film)
+DRAWINGS = (mechanism, joint, forces, skirt, offset_axis, floating_pin, crank_train, supply, film)
 
 
 def main() -> None:

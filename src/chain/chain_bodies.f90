@@ -31,6 +31,7 @@ module chain_bodies
     logical :: is_loose = .false. !! it has clearance in its bore; the following components are used only then
     real(dp) :: inertia = 0       !! about its centre of mass [kg m^2], > 0
     real(dp) :: com(2) = 0        !! position of its centre of mass (U_p, V_p) [m]
+    real(dp) :: axis_offset = 0   !! d, of the cylinder axis from the crank axis, along y [m]
   end type piston_t
 
   !> The drive of the crank. (No default values, since one is made in every evaluation.)

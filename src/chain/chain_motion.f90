@@ -6,14 +6,17 @@
 !> coordinate. With a piston pin that floats, e = e_b - e_s: its eccentricity in the piston minus that in the rod. With o = c + e
 !> everything else follows in closed form:
 !>
-!>     sin A = (R sin q - o_y)/L,    A' = (R cos q q' - o_y')/(L cos A)
+!>     sin A = (R sin q - d - o_y)/L,  A' = (R cos q q' - o_y')/(L cos A)
 !>     x = R cos q + L cos A - o_x,  x' = -R sin q q' - L sin A A' - o_x'
+!>
+!> d is the offset of the cylinder axis, the line y = d, from the crank axis. It enters here alone, and where a closed form
+!> expresses L sin A by the crank angle (`ideal_chain`, `ideal_cylinders`).
 !>
 !> In the coordinates (q, A, x) an eccentricity is the difference of numbers that are 10^4 times larger; here it has full precision.
 !>
 !> A piston with clearance in its bore has two more coordinates: y of its centre of mass and its tilt b. With p = Rot(b) (U_p, V_p),
 !> the position of the centre of mass relative to the pin's bearing, that bearing has the offset y - p_y, and o = c + e + (0, y -
-!> p_y).
+!> p_y). Both y are counted from the cylinder axis.
 module chain_motion
   use kinds, only: dp
   use train_motion, only: train_motion_t, most_stations, most_rings
@@ -125,13 +128,15 @@ contains
     motion%turning(body_piston) = 0
   end subroutine turn_crank
 
-  !> Set the rod of a motion whose crank and offset are known. `reachable` is false if there is no rod angle, |R sin q - o_y| >= L.
-  pure subroutine follow_rod(crank_length, per_rod_length, motion, reachable)
+  !> Set the rod of a motion whose crank and offset are known. `reachable` is false if there is no rod angle, where |R sin q - d -
+  !> o_y| >= L.
+  pure subroutine follow_rod(crank_length, per_rod_length, axis_offset, motion, reachable)
     real(dp), intent(in) :: crank_length, per_rod_length   !! R [m], 1/L [1/m]
+    real(dp), intent(in) :: axis_offset                    !! d [m]
     type(motion_t), intent(inout) :: motion
     logical, intent(out) :: reachable
     real(dp) :: gap
-    motion%sin_rod = (crank_length*motion%sin_crank - motion%offset(2))*per_rod_length
+    motion%sin_rod = (crank_length*motion%sin_crank - axis_offset - motion%offset(2))*per_rod_length
     gap = (1 - motion%sin_rod)*(1 + motion%sin_rod)
     reachable = gap > 0
     if (.not. reachable) return

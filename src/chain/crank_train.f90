@@ -39,6 +39,7 @@ module crank_train
     logical :: is_chain = .false.    !! the case gives stations; else the shaft is rigid and has no results of its own
     integer :: full_number = 1, full_throw = 1   !! cylinder of the mechanism in the case, and its throw
     real(dp) :: full_axial_position = 0          !! [m]
+    real(dp) :: axis_offset = 0                  !! of all cylinder axes, each along its own y [m]
     integer :: n_throws = 1
     real(dp) :: inertia(most_stations) = 0       !! J_j [kg m^2]
     real(dp) :: stiffness(most_stations) = 0     !! k_j [N m/rad]

@@ -200,11 +200,11 @@ contains
     end do
   end subroutine find_axial
 
-  !> Set the rod of a motion whose crank, offset and shapes are known: sin A = (R sin q - o_y)/l. `reachable` is false if there is
-  !> no rod angle, or if the chord differs from the length of the rod by more than `largest_change` of it.
-  pure subroutine follow(self, crank_length, motion, reachable)
+  !> Set the rod of a motion whose crank, offset and shapes are known: sin A = (R sin q - d - o_y)/l. `reachable` is false if there
+  !> is no rod angle, or if the chord differs from the length of the rod by more than `largest_change` of it.
+  pure subroutine follow(self, crank_length, axis_offset, motion, reachable)
     class(elastic_rod_t), intent(in) :: self
-    real(dp), intent(in) :: crank_length   !! R [m]
+    real(dp), intent(in) :: crank_length, axis_offset   !! R, d [m]
     type(motion_t), intent(inout) :: motion
     logical, intent(out) :: reachable
     associate (n => self%n_bending)
@@ -217,7 +217,7 @@ contains
     end associate
     reachable = abs(motion%chord - self%length) < largest_change*self%length
     if (.not. reachable) return
-    motion%sin_rod = (crank_length*motion%sin_crank - motion%offset(2))/motion%chord
+    motion%sin_rod = (crank_length*motion%sin_crank - axis_offset - motion%offset(2))/motion%chord
     reachable = abs(motion%sin_rod) < 1
     if (.not. reachable) return
     motion%cos_rod = sqrt((1 - motion%sin_rod)*(1 + motion%sin_rod))

@@ -20,7 +20,7 @@ contains
     motion%crank_pin_rate = 0
     motion%offset = 0
     motion%offset_rate = 0
-    call follow_rod(bodies%crank%length, bodies%per_rod_length, motion, reachable)
+    call follow_rod(bodies%crank%length, bodies%per_rod_length, bodies%piston%axis_offset, motion, reachable)
     call follow_piston(bodies%crank%length, bodies%rod%length, motion)
   end function ideal_motion
 
@@ -38,12 +38,12 @@ contains
     type(motion_t), intent(in) :: motion
     real(dp), intent(out) :: speed, acceleration
     real(dp) :: sine, gap, per_arm, ratio
-    sine = bodies%crank%length*motion%sin_crank*bodies%per_rod_length
+    sine = (bodies%crank%length*motion%sin_crank - bodies%piston%axis_offset)*bodies%per_rod_length
     gap = (1 - sine)*(1 + sine)
     per_arm = bodies%per_rod_length/gap*sqrt(gap)
     ratio = bodies%crank%length*motion%cos_crank*per_arm
     speed = ratio*motion%crank_speed
-    acceleration = bodies%rod%length*sine*per_arm*((ratio - 1)*(ratio + 1))*motion%crank_speed**2
+    acceleration = slope_of_ratio(bodies, sine, per_arm, ratio)*motion%crank_speed**2
   end subroutine ideal_rod
 
   !> Accelerations from the single equation for q (virtual work of the three bodies; ideal pins do none), the force of the piston
@@ -59,9 +59,9 @@ contains
       speed_square
 
     call bodies%coupling(motion, m12, slope)
-    associate (b => bodies, across => bodies%crank%length*motion%sin_crank, m22 => bodies%rod_term)
+    associate (b => bodies, across => bodies%crank%length*motion%sin_crank - bodies%piston%axis_offset, m22 => bodies%rod_term)
       call find_ratios(b, drive, motion, m12, per_arm, ratio, rate, inertia)
-      ratio_slope = b%rod%length*motion%sin_rod*per_arm*((ratio - 1)*(ratio + 1))
+      ratio_slope = slope_of_ratio(b, motion%sin_rod, per_arm, ratio)
       rate_slope = -(across*ratio_slope + b%crank%length*motion%cos_crank*(1 + ratio))
       speed_square = motion%crank_speed**2
       on_crank = drive%torque - drive%damping*motion%crank_speed &
@@ -111,7 +111,9 @@ contains
   end subroutine respond_ideal_chain
 
   !> k = dA/dq = R cos q/(L cos A), p = dx/dq, and the generalised inertia for q. With them A'' = k q'' + k' q'^2, x'' = p q'' + p'
-  !> q'^2, and k' = tan A (k^2 - 1).
+  !> q'^2. With the offset d of the cylinder axis
+  !>
+  !>     p = -R sin q (1 + k) + d k,    p' = -(R sin q - d) k' - R cos q (1 + k)
   pure subroutine find_ratios(bodies, drive, motion, m12, per_arm, ratio, rate, inertia)
     type(bodies_t), intent(in) :: bodies
     type(drive_t), intent(in) :: drive
@@ -122,7 +124,14 @@ contains
     real(dp), intent(out) :: inertia           !! [kg m^2]
     per_arm = bodies%per_rod_length/((1 - motion%sin_rod)*(1 + motion%sin_rod))*motion%cos_rod
     ratio = bodies%crank%length*motion%cos_crank*per_arm
-    rate = -bodies%crank%length*motion%sin_crank*(1 + ratio)
+    rate = -bodies%crank%length*motion%sin_crank*(1 + ratio) + bodies%piston%axis_offset*ratio
     inertia = drive%inertia + (bodies%crank_term + ratio*(2*m12 + ratio*bodies%rod_term) + bodies%piston%mass*rate**2)
   end subroutine find_ratios
+
+  !> k' = tan A (k^2 - 1) - d/(L cos A).
+  pure real(dp) function slope_of_ratio(bodies, sin_rod, per_arm, ratio) result(slope)
+    type(bodies_t), intent(in) :: bodies
+    real(dp), intent(in) :: sin_rod, per_arm, ratio   !! sin A, 1/(L cos A) [1/m], k
+    slope = bodies%rod%length*sin_rod*per_arm*((ratio - 1)*(ratio + 1)) - bodies%piston%axis_offset*per_arm
+  end function slope_of_ratio
 end module ideal_chain

@@ -4,7 +4,7 @@
 !>
 !>     I = a + b p^2 + c k^2 + e p cos q,    a = m11 - m_r R^2 U/L,  b = m_p + m_r U/L,  c = m22 - m_r U L,  e = 2 m_r V R/L
 !>     G = w_1 sin q + w_2 cos q + w_3 p:    gravity on the crank, and on the rod with its mass at both ends
-!>     k = R cos q/(L cos A),  k' = tan A (k^2 - 1),  p = -R sin q (1 + k)
+!>     k = R cos q/(L cos A),  k' = tan A (k^2 - 1) - d/(L cos A),  p = -R sin q (1 + k) + d k
 !>
 !> Its bodies, with the body of the crank of its throw, are in its own axes: x along its axis, gravity turned accordingly.
 module ideal_cylinders
@@ -29,6 +29,7 @@ module ideal_cylinders
     type(bodies_t) :: bodies
     real(dp), private :: length = 0      !! R [m]
     real(dp), private :: ratio = 0       !! R/L
+    real(dp), private :: axis_offset = 0 !! d/R
     real(dp), private :: constant = 0    !! a [kg m^2]
     real(dp), private :: by_piston = 0   !! b [kg]
     real(dp), private :: by_rod = 0      !! c [kg m^2]
@@ -61,6 +62,7 @@ contains
       at_end = rod%mass*rod%com*b%per_rod_length
       self%length = b%crank%length
       self%ratio = b%crank%length*b%per_rod_length
+      self%axis_offset = b%piston%axis_offset/b%crank%length
       self%constant = b%crank_term - at_end(1)*b%crank%length**2
       self%by_piston = b%piston%mass + at_end(1)
       self%by_rod = b%rod_term - at_end(1)*rod%length**2
@@ -75,13 +77,14 @@ contains
     class(ideal_cylinder_t), intent(in) :: self
     real(dp), intent(in) :: sine, cosine
     real(dp), intent(out) :: inertia, half_slope, weight, rate
-    real(dp) :: sin_rod, lever, k, k_slope, rate_slope
-    sin_rod = self%ratio*sine
+    real(dp) :: across, sin_rod, lever, k, k_slope, rate_slope
+    across = sine - self%axis_offset
+    sin_rod = self%ratio*across
     lever = self%ratio/sqrt((1 - sin_rod)*(1 + sin_rod))
     k = lever*cosine
-    k_slope = lever*sine*((k - 1)*(k + 1))
-    rate = -self%length*sine*(1 + k)
-    rate_slope = -self%length*(sine*k_slope + cosine*(1 + k))
+    k_slope = lever*across*((k - 1)*(k + 1)) - lever*self%axis_offset
+    rate = -self%length*sine*(1 + k) + self%length*self%axis_offset*k
+    rate_slope = -self%length*(across*k_slope + cosine*(1 + k))
     inertia = self%constant + rate*(self%by_piston*rate + 2*self%by_offset*cosine) + self%by_rod*k**2
     half_slope = rate_slope*(self%by_piston*rate + self%by_offset*cosine) - self%by_offset*sine*rate + self%by_rod*k*k_slope
     weight = self%weight(1)*sine + self%weight(2)*cosine + self%weight(3)*rate

@@ -184,9 +184,9 @@ contains
     type(motion_t), intent(inout) :: motion
     logical, intent(out) :: reachable
     if (self%has_elastic_rod()) then
-      call self%elastic%rod%follow(self%bodies%crank%length, motion, reachable)
+      call self%elastic%rod%follow(self%bodies%crank%length, self%bodies%piston%axis_offset, motion, reachable)
     else
-      call follow_rod(self%bodies%crank%length, self%bodies%per_rod_length, motion, reachable)
+      call follow_rod(self%bodies%crank%length, self%bodies%per_rod_length, self%bodies%piston%axis_offset, motion, reachable)
     end if
   end subroutine move_rod
 

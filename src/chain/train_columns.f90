@@ -15,6 +15,7 @@ module train_columns
   !> Forces and moments of the frame on the whole engine, in the axes of the full cylinder, and forces of the frame on the throws of
   !> the shaft.
   type :: engine_forces_t
+    real(dp) :: axis_offset = 0      !! of every cylinder axis from the crank axis [m]
     real(dp) :: force(2) = 0         !! [N]
     real(dp) :: moment(3) = 0        !! about the point of the shaft with axial position 0 [N m]
     real(dp) :: throw(2, most_cylinders) = 0   !! (:, throw) [N]
@@ -33,6 +34,7 @@ contains
     type(reactions_t), intent(in) :: full
     type(engine_forces_t), intent(out) :: found
     integer :: i
+    found%axis_offset = train%axis_offset
     call found%add(full, motion%piston_position, train%full_axial_position, train%full_throw, 0.0_dp)
     do i = 1, size(train%cylinders)
       associate (it => train%cylinders(i), at => motion%train)
@@ -42,7 +44,8 @@ contains
     end do
   end subroutine find_engine_forces
 
-  !> Add the forces of a cylinder at the axial position z [m], whose axes are turned by its bank.
+  !> Add the forces of a cylinder at the axial position z [m], whose axes are turned by its bank. About the shaft turn those of the
+  !> guide and, with an offset of the axis, those along the axis: of the gas on the head, and of the friction of the bore.
   pure subroutine add(self, reactions, piston_position, z, throw, bank)
     class(engine_forces_t), intent(inout) :: self
     type(reactions_t), intent(in) :: reactions
@@ -51,7 +54,8 @@ contains
     real(dp) :: force(2)
     force = turned(reactions%frame, bank)
     self%force = self%force + force
-    self%moment = self%moment + [-z*force(2), z*force(1), -piston_position*reactions%guide]
+    self%moment = self%moment + [-z*force(2), z*force(1), &
+      self%axis_offset*(reactions%crank_bearing(1) - reactions%frame(1)) - piston_position*reactions%guide]
     self%throw(:, throw) = self%throw(:, throw) + turned(reactions%crank_bearing, bank)
   end subroutine add
 
@@ -78,7 +82,8 @@ contains
     call row%add('engine_force_y[N]', engine%force(2), 'the same along y')
     call row%add('engine_moment_x[N.m]', engine%moment(1), 'moment of these forces by their axial positions, about x')
     call row%add('engine_moment_y[N.m]', engine%moment(2), 'the same about y')
-    call row%add('engine_moment_z[N.m]', engine%moment(3), 'roll moment of the frame on the engine: of the guides about the shaft')
+    call row%add('engine_moment_z[N.m]', engine%moment(3), &
+      'roll moment of the frame on the engine, about the shaft: of the guides, and of the gas beside an offset shaft')
     if (train%is_chain) then
       do j = 1, train%n
         if (j /= train%full) call row%add_on_request(numbered('station', j, 'speed[rad/s]', row), motion%train%speed(j), &

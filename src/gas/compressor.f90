@@ -5,6 +5,7 @@ module compressor
   use number_text, only: short_text
   use error_handling, only: error_t
   use model_parameters, only: parameter_list_t
+  use ideal_linkage, only: linkage_t
   use cylinder, only: new_cylinder
   use gas_law, only: gas_law_t
   use valve_gas, only: valve_gas_t
@@ -52,19 +53,20 @@ contains
     if (self%discharge_pressure <= self%suction_pressure) key = 'discharge_pressure'
   end subroutine conflict
 
-  subroutine prepare(self, crank_length, rod_length, tolerance, gas, error)
+  subroutine prepare(self, linkage, sense, tolerance, gas, error)
     class(compressor_t), intent(in) :: self
-    real(dp), intent(in) :: crank_length, rod_length   !! [m]
-    real(dp), intent(in) :: tolerance
+    type(linkage_t), intent(in) :: linkage
+    real(dp), intent(in) :: sense, tolerance
     type(working_gas_t), intent(out) :: gas
     type(error_t), allocatable, intent(out) :: error
     type(valve_gas_t) :: valves
-    valves%cylinder = new_cylinder(self%bore, crank_length, rod_length, 1 + 1/self%dead_space)
+    valves%cylinder = new_cylinder(self%bore, linkage, 1 + 1/self%dead_space)
     valves%suction_pressure = self%suction_pressure
     valves%discharge_pressure = self%discharge_pressure
     valves%exponent = self%polytropic_exponent
     allocate (gas%valves, source=valves)
     gas%cylinder = valves%cylinder
+    gas%sense = sense
     gas%crankcase_pressure = self%crankcase_pressure
   end subroutine prepare
 

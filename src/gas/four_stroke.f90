@@ -1,8 +1,9 @@
-!> The four-stroke cycle: 720 degrees long, with the cylinder closed from 180 to 540 degrees.
+!> The four-stroke cycle: 720 degrees long, with the cylinder closed for a turn from the first bottom dead centre on, at 180 degrees
+!> without an offset of its axis.
 module four_stroke
   use kinds, only: dp
-  use number_text, only: short_text
-  use constants, only: pi
+  use constants, only: two_pi
+  use ideal_linkage, only: linkage_t
   use wiebe_law, only: wiebe_law_t
   implicit none
   private
@@ -10,24 +11,22 @@ module four_stroke
 
   type, extends(wiebe_law_t) :: four_stroke_t
   contains
-    procedure :: conflict
+    procedure :: revolutions
     procedure :: timing
   end type four_stroke_t
 
 contains
 
-  pure subroutine conflict(self, key, wanted)
+  pure integer function revolutions(self)
     class(four_stroke_t), intent(in) :: self
-    character(len=:), allocatable, intent(out) :: key, wanted
-    key = ''
-    wanted = 'must be <= 540 - start_deg = '//short_text(540 - self%start_deg)//': the cylinder opens at 540'
-    if (self%start_deg + self%duration_deg > 540) key = 'duration_deg'
-  end subroutine conflict
+    revolutions = 2
+  end function revolutions
 
-  pure subroutine timing(self, period, half_closed)
+  pure subroutine timing(self, linkage, closes, opens)
     class(four_stroke_t), intent(in) :: self
-    real(dp), intent(out) :: period, half_closed
-    period = 4*pi
-    half_closed = pi
+    type(linkage_t), intent(in) :: linkage
+    real(dp), intent(out) :: closes, opens
+    closes = linkage%bottom_angle() - linkage%top_angle()
+    opens = two_pi + closes
   end subroutine timing
 end module four_stroke

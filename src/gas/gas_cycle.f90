@@ -1,10 +1,11 @@
 !> The gas pressure of an engine as a function of the crank angle (Reis 2013, appendix A): Wiebe heat release while the cylinder is
 !> closed, intake pressure while it is open.
 !>
-!> Firing dead centre is at 360 degrees. In a four-stroke cycle q = 0 is the gas-exchange dead centre, and the cylinder is closed
-!> from 180 to 540 degrees; a two-stroke cycle repeats after 360 degrees. A cycle has four smooth parts: compression, combustion,
-!> expansion, open. The pressure depends on the crank angle alone. It is therefore integrated once, when the scene is built, and
-!> then interpolated; as a state it would require a power function and stricter error control in every evaluation.
+!> Angles q count from the dead centre; firing is at 360 degrees. In a four-stroke cycle q = 0 is the gas-exchange dead centre, and
+!> the cylinder is closed for a turn from the next bottom dead centre on; a two-stroke cycle repeats after 360 degrees.
+!> A cycle has four smooth parts: compression, combustion, expansion, open. The pressure depends on the crank angle alone. It is
+!> therefore integrated once, when the scene is built, and then interpolated; as a state it would require a power function and
+!> stricter error control in every evaluation.
 module gas_cycle
   use kinds, only: dp
   use constants, only: pi
@@ -78,6 +79,7 @@ contains
     goal = max(tolerance, 1e-13_dp)
     associate (release => gas%release)
       gas%bound = [gas%closes, release%start, release%start + release%duration, gas%opens, gas%closes + gas%period]
+      gas%bound(1) = max(gas%bound(1), gas%closes)
       gas%bound(2) = min(gas%bound(2), gas%opens)
       gas%grading = 1
       if (abs(release%form - nint(release%form)) > 0 .and. release%form < 8) gas%grading = ceiling(8/release%form)

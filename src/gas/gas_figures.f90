@@ -3,6 +3,7 @@ module gas_figures
   use kinds, only: dp
   use constants, only: degree
   use error_handling, only: error_t
+  use ideal_linkage, only: linkage_t
   use gas_law, only: gas_law_t
   use working_gas, only: working_gas_t
   implicit none
@@ -26,20 +27,19 @@ contains
 
   !> Find the figures of a gas in a mechanism whose crank turns with the sense of `crank_speed`, by sums over quarters of a degree.
   !> They are not known of a pressure from outside, or if the cycle cannot be integrated.
-  subroutine find_gas_figures(law, crank_length, rod_length, crank_speed, figures)
+  subroutine find_gas_figures(law, linkage, crank_speed, figures)
     class(gas_law_t), intent(in) :: law
-    real(dp), intent(in) :: crank_length, rod_length   !! [m]
-    real(dp), intent(in) :: crank_speed                !! [rad/s]
+    type(linkage_t), intent(in) :: linkage
+    real(dp), intent(in) :: crank_speed   !! [rad/s]
     type(gas_figures_t), intent(out) :: figures
     real(dp), parameter :: tolerance = 1e-6_dp, step = 0.25_dp   ! [-], [degrees]
     type(working_gas_t) :: gas
     type(error_t), allocatable :: error
     real(dp) :: angle, pressure, work
     integer :: i, n
-    call law%prepare(crank_length, rod_length, tolerance, gas, error)
+    call law%prepare(linkage, sign(1.0_dp, crank_speed), tolerance, gas, error)
     if (allocated(error)) return
     if (gas%is_external() .or. .not. gas%cylinder%displacement > 0) return
-    gas%sense = sign(1.0_dp, crank_speed)
     n = nint(360*gas%revolutions/step)
     work = 0
     figures%least = huge(work)
@@ -50,7 +50,7 @@ contains
       if (pressure > figures%peak) figures%peak_angle = i*step
       figures%peak = max(figures%peak, pressure)
       figures%least = min(figures%least, pressure)
-      work = work + pressure*gas%cylinder%volume_slope(angle)
+      work = work + pressure*gas%cylinder%volume_slope(angle - gas%cylinder%dead_centre)
     end do
     figures%imep = gas%sense*work*step*degree/gas%cylinder%displacement
     figures%is_known = .true.

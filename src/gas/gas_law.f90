@@ -3,6 +3,7 @@ module gas_law
   use kinds, only: dp
   use error_handling, only: error_t
   use model_parameters, only: law_t, parameter_list_t
+  use ideal_linkage, only: linkage_t
   use working_gas, only: working_gas_t
   implicit none
   private
@@ -17,6 +18,7 @@ module gas_law
     procedure :: heat_of_cycle
     procedure :: filling_pressure
     procedure :: description
+    procedure :: misfit => no_misfit
     procedure :: add_bore
     procedure :: add_crankcase_pressure
     procedure(prepare), deferred :: prepare
@@ -24,11 +26,12 @@ module gas_law
 
   abstract interface
     !> Prepare the gas of a running machine. Error: the cycle cannot be integrated.
-    subroutine prepare(self, crank_length, rod_length, tolerance, gas, error)
-      import :: gas_law_t, working_gas_t, error_t, dp
+    subroutine prepare(self, linkage, sense, tolerance, gas, error)
+      import :: gas_law_t, linkage_t, working_gas_t, error_t, dp
       class(gas_law_t), intent(in) :: self
-      real(dp), intent(in) :: crank_length, rod_length   !! [m]
-      real(dp), intent(in) :: tolerance                  !! allowed relative error of the pressure
+      type(linkage_t), intent(in) :: linkage
+      real(dp), intent(in) :: sense       !! 1 or -1: that of the crank; an engine that turns backwards is a mirror image
+      real(dp), intent(in) :: tolerance   !! allowed relative error of the pressure
       type(working_gas_t), intent(out) :: gas
       type(error_t), allocatable, intent(out) :: error
     end subroutine prepare
@@ -66,6 +69,16 @@ contains
     character(len=:), allocatable :: text
     text = trim(self%name)
   end function description
+
+  !> A key whose angle does not suit the dead centres of the mechanism, and what it must be; empty if all do.
+  subroutine no_misfit(self, linkage, sense, key, wanted)
+    class(gas_law_t), intent(in) :: self
+    type(linkage_t), intent(in) :: linkage
+    real(dp), intent(in) :: sense   !! see `prepare`
+    character(len=:), allocatable, intent(out) :: key, wanted
+    key = ''
+    wanted = ''
+  end subroutine no_misfit
 
   subroutine add_bore(self, list)
     class(gas_law_t), intent(inout) :: self

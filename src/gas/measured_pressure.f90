@@ -8,6 +8,7 @@ module measured_pressure
   use model_parameters, only: parameter_list_t
   use measured_curve, only: measured_curve_t
   use monotone_cubic, only: new_periodic_cubic
+  use ideal_linkage, only: linkage_t
   use cylinder, only: new_cylinder
   use gas_law, only: gas_law_t
   use working_gas, only: working_gas_t
@@ -47,7 +48,7 @@ contains
     call list%add('period_deg', self%period_deg, &
       'period of the table: 720 (four-stroke) or 360 degrees', '>= 360 and <= 720', '720')
     call list%add('offset_deg', self%offset_deg, &
-      'crank angle of the simulation at angle 0 of the table', 'degrees', '>= -1080 and <= 1080', '0.0', usual='0 to 1080')
+      'crank angle from the dead centre at angle 0 of the table', 'degrees', '>= -1080 and <= 1080', '0.0', usual='0 to 1080')
     call self%add_bore(list)
     call list%add('compression_ratio', self%compression_ratio, &
       'largest over smallest volume, for the column cylinder_volume only; 0: it shows the swept volume', &
@@ -55,13 +56,14 @@ contains
     call self%add_crankcase_pressure(list)
   end subroutine parameters
 
-  subroutine prepare(self, crank_length, rod_length, tolerance, gas, error)
+  subroutine prepare(self, linkage, sense, tolerance, gas, error)
     class(measured_pressure_t), intent(in) :: self
-    real(dp), intent(in) :: crank_length, rod_length   !! [m]
-    real(dp), intent(in) :: tolerance
+    type(linkage_t), intent(in) :: linkage
+    real(dp), intent(in) :: sense, tolerance
     type(working_gas_t), intent(out) :: gas
     type(error_t), allocatable, intent(out) :: error
-    gas%cylinder = new_cylinder(self%bore, crank_length, rod_length, 2.0_dp)
+    gas%cylinder = new_cylinder(self%bore, linkage, 2.0_dp)
+    gas%sense = sense
     gas%cylinder%dead_volume = 0
     if (self%compression_ratio > 1) gas%cylinder%dead_volume = gas%cylinder%displacement/(self%compression_ratio - 1)
     gas%crankcase_pressure = self%crankcase_pressure

@@ -47,9 +47,9 @@ contains
       allocate (self%valves(size(angle)), source=gas%valves)
     do i = 1, size(angle)
       if (allocated(gas%cycle)) then
-        call gas%cycle%part_at(gas%sense*angle(i), gas%sense*speed < 0, self%part(i), self%cycle_start(i))
+        call gas%cycle%part_at(gas%sense*gas%angle(angle(i)), gas%sense*speed < 0, self%part(i), self%cycle_start(i))
       else if (allocated(gas%valves)) then
-        call self%valves(i)%find_state(angle(i), speed)
+        call self%valves(i)%find_state(gas%angle(angle(i)), speed)
       end if
     end do
   end subroutine start
@@ -63,7 +63,7 @@ contains
     integer :: i
     if (allocated(self%valves)) then
       do i = 1, size(angle)
-        call self%valves(i)%declare(list, angle(i), speed(i), 'cylinder_'//integer_text(self%number(i))//'_')
+        call self%valves(i)%declare(list, gas%angle(angle(i)), speed(i), 'cylinder_'//integer_text(self%number(i))//'_')
       end do
     else if (list%sets) then
       call self%start(gas, angle, speed(1))
@@ -81,11 +81,11 @@ contains
     do i = 1, size(self%has_gas)
       if (.not. self%has_gas(i)) cycle
       if (allocated(gas%cycle)) then
-        pressure = gas%cycle%pressure(gas%sense*angle(i), self%part(i), self%cycle_start(i))
+        pressure = gas%cycle%pressure(gas%sense*gas%angle(angle(i)), self%part(i), self%cycle_start(i))
       else if (allocated(gas%valves)) then
-        pressure = self%valves(i)%pressure(angle(i))
+        pressure = self%valves(i)%pressure(gas%angle(angle(i)))
       else if (allocated(gas%curve)) then
-        pressure = gas%curve%value(angle(i))
+        pressure = gas%curve%value(gas%angle(angle(i)))
       else
         pressure = gas%held_pressure
       end if
@@ -129,9 +129,9 @@ contains
     real(dp), intent(out) :: g(n_valve_events), g_rate(n_valve_events)
     real(dp) :: along
     if (allocated(self%valves)) then
-      call self%valves(i)%events(angle, speed, g, g_rate)
+      call self%valves(i)%events(gas%angle(angle), speed, g, g_rate)
     else
-      along = gas%sense*angle - self%cycle_start(i)
+      along = gas%sense*gas%angle(angle) - self%cycle_start(i)
       g = [along - gas%cycle%bound(self%part(i)), gas%cycle%bound(self%part(i) - 1) - along]
       g_rate = gas%sense*[speed, -speed]
     end if
@@ -157,7 +157,7 @@ contains
         if (allocated(self%valves) .or. .not. is_now(g(event, i), angle(i))) cycle
       end if
       if (allocated(self%valves)) then
-        call self%valves(i)%pass(event, angle(i), speed(i))
+        call self%valves(i)%pass(event, gas%angle(angle(i)), speed(i))
       else
         call gas%cycle%next_part(event == 1, self%part(i), self%cycle_start(i))
       end if

@@ -1,11 +1,12 @@
 !> The two-stroke cycle with ports controlled by the piston: 360 degrees long, with the cylinder closed from `port_opens_deg` before
-!> the firing dead centre to the same angle after it.
+!> the firing dead centre to the same angle after it. Where the cylinder axis has an offset they close at the same height of the
+!> piston, a few degrees beside that angle.
 module two_stroke
   use kinds, only: dp
-  use number_text, only: short_text
   use constants, only: two_pi, degree
   use model_parameters, only: parameter_list_t
-  use wiebe_law, only: wiebe_law_t
+  use ideal_linkage, only: linkage_t
+  use wiebe_law, only: wiebe_law_t, turning_forwards
   implicit none
   private
   public :: two_stroke_t
@@ -14,7 +15,7 @@ module two_stroke
     real(dp) :: port_opens_deg = 0   !! from the firing dead centre [degrees]
   contains
     procedure :: parameters
-    procedure :: conflict
+    procedure :: misfit
     procedure :: timing
   end type two_stroke_t
 
@@ -25,29 +26,34 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call self%wiebe_parameters(list)
     call list%add('port_opens_deg', self%port_opens_deg, &
-      'crank angle after the firing dead centre at which the ports open; they close as much before it', 'degrees', &
-      '> 0 and <= 180', example='105.0', usual='70 to 150')
+      'crank angle after the firing dead centre at which the ports open; they close at the same height of the piston before it', &
+      'degrees', '> 0 and <= 180', example='105.0', usual='70 to 150')
   end subroutine parameters
 
-  pure subroutine conflict(self, key, wanted)
+  !> The ports must open before the piston is lowest.
+  subroutine misfit(self, linkage, sense, key, wanted)
     class(two_stroke_t), intent(in) :: self
+    type(linkage_t), intent(in) :: linkage
+    real(dp), intent(in) :: sense
     character(len=:), allocatable, intent(out) :: key, wanted
-    key = ''
-    wanted = ''
-    if (self%start_deg < 360 - self%port_opens_deg) then
-      key = 'start_deg'
-      wanted = 'must be >= 360 - port_opens_deg = '//short_text(360 - self%port_opens_deg)//', where the ports close'
-    else if (self%start_deg + self%duration_deg > 360 + self%port_opens_deg) then
-      key = 'duration_deg'
-      wanted = 'must be <= 360 + port_opens_deg - start_deg = '//short_text(360 + self%port_opens_deg - self%start_deg)// &
-        ', where the ports open'
-    end if
-  end subroutine conflict
+    real(dp), parameter :: rounding = 1e-9_dp   ! [rad]
+    real(dp) :: closes, opens
+    call self%wiebe_misfit(linkage, sense, key, wanted)
+    call self%timing(turning_forwards(linkage, sense), closes, opens)
+    if (opens - closes <= two_pi + rounding) return
+    key = 'port_opens_deg'
+    wanted = 'must be below the angle of the bottom dead centre'
+  end subroutine misfit
 
-  pure subroutine timing(self, period, half_closed)
+  !> The ports close at the height x of the piston at which they open: at 2 atan(d/x) - q, where that is at q.
+  pure subroutine timing(self, linkage, closes, opens)
     class(two_stroke_t), intent(in) :: self
-    real(dp), intent(out) :: period, half_closed
-    period = two_pi
-    half_closed = self%port_opens_deg*degree
+    type(linkage_t), intent(in) :: linkage
+    real(dp), intent(out) :: closes, opens
+    real(dp) :: after, height
+    after = self%port_opens_deg*degree
+    height = linkage%piston_position(linkage%top_angle() + after)
+    opens = two_pi + after
+    closes = two_pi - after + 2*(atan2(linkage%axis_offset, height) - linkage%top_angle())
   end subroutine timing
 end module two_stroke

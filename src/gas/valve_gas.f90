@@ -3,10 +3,11 @@
 !> While both valves are closed the mass in the cylinder and p V^n are constant. The discharge valve opens when the pressure reaches
 !> the discharge pressure; the displaced gas then leaves at this pressure, until the valve closes when the piston reverses. The
 !> suction valve behaves correspondingly at the suction pressure. The state of the valves follows from the motion of the piston, for
-!> either sense of rotation. At each opening and closing the derivative of the pressure is discontinuous.
+!> either sense of rotation. At each opening and closing the derivative of the pressure is discontinuous. Crank angles q count from
+!> the inner dead centre.
 module valve_gas
   use kinds, only: dp
-  use constants, only: pi, two_pi
+  use constants, only: two_pi
   use cylinder, only: cylinder_t
   use run_state, only: run_state_t
   implicit none
@@ -30,7 +31,7 @@ module valve_gas
     real(dp) :: held_pressure = 0, held_volume = 0             !! pressure [Pa] and volume [m^3] when the last valve closed
     real(dp) :: discharge_volume = 0, suction_volume = 0       !! volumes at which the valves open [m^3]
     real(dp) :: sense = 1             !! sense of rotation since a valve opened: 1 or -1
-    real(dp) :: dead_centre = 0       !! crank angle at which that valve closes [rad]
+    real(dp) :: dead_centre = 0       !! angle at which that valve closes [rad]
   contains
     procedure :: find_state
     procedure :: declare
@@ -152,7 +153,7 @@ contains
     integer, intent(in) :: state
     real(dp), intent(in) :: q, crank_speed
     real(dp) :: first
-    first = merge(0.0_dp, pi, state == discharge_open)
+    first = merge(0.0_dp, self%cylinder%bottom, state == discharge_open)
     self%state = state
     self%sense = sign(1.0_dp, crank_speed)
     self%dead_centre = first + self%sense*two_pi*ceiling(self%sense*(q - first)/two_pi)

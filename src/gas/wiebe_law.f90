@@ -2,6 +2,7 @@
 module wiebe_law
   use kinds, only: dp
   use constants, only: degree, two_pi
+  use ideal_linkage, only: linkage_t
   use error_handling, only: error_t
   use number_text, only: short_text, quantity_text
   use model_parameters, only: parameter_list_t
@@ -11,7 +12,7 @@ module wiebe_law
   use working_gas, only: working_gas_t
   implicit none
   private
-  public :: wiebe_law_t
+  public :: wiebe_law_t, turning_forwards
 
   type, abstract, extends(gas_law_t) :: wiebe_law_t
     real(dp) :: compression_ratio = 0             !! ratio of largest to smallest volume [-]
@@ -24,19 +25,20 @@ module wiebe_law
     procedure :: parameters => wiebe_parameters
     procedure, non_overridable :: wiebe_parameters
     procedure :: prepare
-    procedure :: revolutions
     procedure :: heat_of_cycle
     procedure :: description
+    procedure :: misfit => wiebe_misfit
+    procedure, non_overridable :: wiebe_misfit
     procedure(timing), deferred :: timing
   end type wiebe_law_t
 
   abstract interface
-    !> Angles of the cycle [rad]: that after which it repeats, and that for which the cylinder is closed before the firing dead
-    !> centre and again after it.
-    pure subroutine timing(self, period, half_closed)
-      import :: wiebe_law_t, dp
+    !> Angles at which the cylinder closes and opens, before and after the firing dead centre at 2 pi [rad].
+    pure subroutine timing(self, linkage, closes, opens)
+      import :: wiebe_law_t, linkage_t, dp
       class(wiebe_law_t), intent(in) :: self
-      real(dp), intent(out) :: period, half_closed
+      type(linkage_t), intent(in) :: linkage   !! of an engine that turns forwards
+      real(dp), intent(out) :: closes, opens
     end subroutine timing
   end interface
 
@@ -58,8 +60,8 @@ contains
     call list%add('wiebe_form', self%form, &
       'exponent n of the Wiebe function 1 - exp(-a z^n); most books write it as m + 1', range='>= 0.05 and <= 100', example='3.0', &
       usual='0.3 to 10')
-    call list%add('start_deg', self%start_deg, 'crank angle at which combustion starts; the firing dead centre is 360', 'degrees', &
-      '>= 180 and < 540', example='340.0', usual='270 to 400')
+    call list%add('start_deg', self%start_deg, 'crank angle from the dead centre at which combustion starts; firing is at 360', &
+      'degrees', '>= 180 and < 540', example='340.0', usual='270 to 400')
     call list%add('duration_deg', self%duration_deg, 'duration of combustion; it must end before the cylinder opens', 'degrees', &
       '> 0 and <= 360', example='40.0', usual='10 to 150')
     call list%add('intake_pressure', self%intake_pressure, 'pressure in the open cylinder', 'Pa', '> 0', default='101325.0', &
@@ -68,34 +70,56 @@ contains
   end subroutine wiebe_parameters
 
   !> Integrate the cycle with these parameters; see `new_gas_cycle`.
-  subroutine prepare(self, crank_length, rod_length, tolerance, gas, error)
+  subroutine prepare(self, linkage, sense, tolerance, gas, error)
     class(wiebe_law_t), intent(in) :: self
-    real(dp), intent(in) :: crank_length, rod_length   !! [m]
-    real(dp), intent(in) :: tolerance
+    type(linkage_t), intent(in) :: linkage
+    real(dp), intent(in) :: sense, tolerance
     type(working_gas_t), intent(out) :: gas
     type(error_t), allocatable, intent(out) :: error
     type(gas_cycle_t) :: cycle
-    real(dp) :: half_closed
-    cycle%cylinder = new_cylinder(self%bore, crank_length, rod_length, self%compression_ratio)
+    cycle%cylinder = new_cylinder(self%bore, turning_forwards(linkage, sense), self%compression_ratio)
     cycle%release = heat_release_t(self%heat, self%efficiency, self%form, self%start_deg*degree, self%duration_deg*degree)
     cycle%heat_capacity_ratio = self%heat_capacity_ratio
     cycle%intake_pressure = self%intake_pressure
-    call self%timing(cycle%period, half_closed)
-    cycle%closes = two_pi - half_closed
-    cycle%opens = two_pi + half_closed
+    cycle%period = two_pi*self%revolutions()
+    call self%timing(turning_forwards(linkage, sense), cycle%closes, cycle%opens)
     call new_gas_cycle(cycle, tolerance, error)
     allocate (gas%cycle, source=cycle)
-    gas%cylinder = cycle%cylinder
+    gas%cylinder = new_cylinder(self%bore, linkage, self%compression_ratio)
+    gas%sense = sense
     gas%revolutions = self%revolutions()
     gas%crankcase_pressure = self%crankcase_pressure
   end subroutine prepare
 
-  pure integer function revolutions(self)
+  !> The mechanism, or its mirror image if the crank turns backwards.
+  pure type(linkage_t) function turning_forwards(linkage, sense) result(forwards)
+    type(linkage_t), intent(in) :: linkage
+    real(dp), intent(in) :: sense
+    forwards = linkage
+    forwards%axis_offset = sense*linkage%axis_offset
+  end function turning_forwards
+
+  !> Combustion must lie where the cylinder is closed.
+  subroutine wiebe_misfit(self, linkage, sense, key, wanted)
     class(wiebe_law_t), intent(in) :: self
-    real(dp) :: period, half_closed
-    call self%timing(period, half_closed)
-    revolutions = nint(period/two_pi)
-  end function revolutions
+    type(linkage_t), intent(in) :: linkage
+    real(dp), intent(in) :: sense
+    character(len=:), allocatable, intent(out) :: key, wanted
+    real(dp), parameter :: rounding = 1e-9_dp   ! [degrees]
+    real(dp) :: closes, opens
+    call self%timing(turning_forwards(linkage, sense), closes, opens)
+    closes = closes/degree
+    opens = opens/degree
+    key = ''
+    wanted = ''
+    if (self%start_deg < closes - rounding) then
+      key = 'start_deg'
+      wanted = 'must be >= '//short_text(closes)//', where the cylinder closes'
+    else if (self%start_deg + self%duration_deg > opens + rounding) then
+      key = 'duration_deg'
+      wanted = 'must be <= '//short_text(opens - self%start_deg)//': the cylinder opens at '//short_text(opens)
+    end if
+  end subroutine wiebe_misfit
 
   pure real(dp) function heat_of_cycle(self)
     class(wiebe_law_t), intent(in) :: self

@@ -1,5 +1,6 @@
 !> The gas in the cylinder of a running machine: the cycle of an engine and its present part, the gas of a compressor and the state
-!> of its valves, a measured pressure, or one that is set from outside.
+!> of its valves, a measured pressure, or one that is set from outside. Its angle is the crank angle from the dead centre of the
+!> mechanism.
 module working_gas
   use kinds, only: dp
   use constants, only: degree
@@ -22,7 +23,7 @@ module working_gas
   type :: working_gas_t
     integer :: n_events = 0          !! number of event functions, set by `start`
     integer :: revolutions = 1       !! period of the pressure [revolutions]
-    real(dp) :: sense = 1            !! 1 or -1: a cycle follows the crank angle times this
+    real(dp) :: sense = 1            !! 1 or -1: a cycle follows its angle times this
     integer :: part = 0              !! present part of the cycle
     real(dp) :: cycle_start = 0      !! that angle at which the present cycle began [rad]
     type(cylinder_t) :: cylinder
@@ -35,6 +36,7 @@ module working_gas
     type(monotone_cubic_t), allocatable :: curve   !! measured pressure [Pa] over the crank angle [rad]
   contains
     procedure :: start
+    procedure, non_overridable :: angle => gas_angle
     procedure :: declare
     procedure :: longest_turn
     procedure :: is_external
@@ -54,12 +56,19 @@ contains
     real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
     if (allocated(self%cycle)) then
       self%n_events = n_cycle_events
-      call self%cycle%part_at(self%sense*crank_angle, self%sense*crank_speed < 0, self%part, self%cycle_start)
+      call self%cycle%part_at(self%sense*self%angle(crank_angle), self%sense*crank_speed < 0, self%part, self%cycle_start)
     else if (allocated(self%valves)) then
       self%n_events = n_valve_events
-      call self%valves%find_state(crank_angle, crank_speed)
+      call self%valves%find_state(self%angle(crank_angle), crank_speed)
     end if
   end subroutine start
+
+  !> The angle that the gas counts, from the dead centre at which its volume is smallest [rad].
+  pure elemental real(dp) function gas_angle(self, crank_angle)
+    class(working_gas_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle   !! from the axis of the cylinder [rad]
+    gas_angle = crank_angle - self%cylinder%dead_centre
+  end function gas_angle
 
   !> Declare the state of the gas at the angle and the speed of the crank, from which that of a cycle follows.
   subroutine declare(self, list, crank_angle, crank_speed)
@@ -67,7 +76,7 @@ contains
     type(run_state_t), intent(inout) :: list
     real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
     if (allocated(self%valves)) then
-      call self%valves%declare(list, crank_angle, crank_speed, '')
+      call self%valves%declare(list, self%angle(crank_angle), crank_speed, '')
     else if (list%sets) then
       call self%start(crank_angle, crank_speed)
     end if
@@ -93,11 +102,11 @@ contains
     class(working_gas_t), intent(in) :: self
     real(dp), value, intent(in) :: crank_angle
     if (allocated(self%cycle)) then
-      pressure = self%cycle%pressure(self%sense*crank_angle, self%part, self%cycle_start)
+      pressure = self%cycle%pressure(self%sense*self%angle(crank_angle), self%part, self%cycle_start)
     else if (allocated(self%valves)) then
-      pressure = self%valves%pressure(crank_angle)
+      pressure = self%valves%pressure(self%angle(crank_angle))
     else if (allocated(self%curve)) then
-      pressure = self%curve%value(crank_angle)
+      pressure = self%curve%value(self%angle(crank_angle))
     else
       pressure = self%held_pressure
     end if
@@ -132,11 +141,11 @@ contains
     class(working_gas_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle
     if (allocated(self%cycle)) then
-      force_slope = self%sense*self%cycle%pressure_slope(self%sense*crank_angle, self%part, self%cycle_start)
+      force_slope = self%sense*self%cycle%pressure_slope(self%sense*self%angle(crank_angle), self%part, self%cycle_start)
     else if (allocated(self%valves)) then
-      force_slope = self%valves%pressure_slope(crank_angle)
+      force_slope = self%valves%pressure_slope(self%angle(crank_angle))
     else if (allocated(self%curve)) then
-      force_slope = self%curve%slope(crank_angle)
+      force_slope = self%curve%slope(self%angle(crank_angle))
     else
       force_slope = 0
     end if
@@ -151,11 +160,11 @@ contains
     real(dp), intent(out) :: g(self%n_events), g_rate(self%n_events)
     real(dp) :: angle
     if (allocated(self%cycle)) then
-      angle = self%sense*crank_angle - self%cycle_start
+      angle = self%sense*self%angle(crank_angle) - self%cycle_start
       g = [angle - self%cycle%bound(self%part), self%cycle%bound(self%part - 1) - angle]
       g_rate = self%sense*[crank_speed, -crank_speed]
     else if (allocated(self%valves)) then
-      call self%valves%events(crank_angle, crank_speed, g, g_rate)
+      call self%valves%events(self%angle(crank_angle), crank_speed, g, g_rate)
     end if
   end subroutine events
 
@@ -167,7 +176,7 @@ contains
     if (allocated(self%cycle)) then
       call self%cycle%next_part(event == 1, self%part, self%cycle_start)
     else if (allocated(self%valves)) then
-      call self%valves%pass(event, crank_angle, crank_speed)
+      call self%valves%pass(event, self%angle(crank_angle), crank_speed)
     end if
   end subroutine pass
 end module working_gas

@@ -60,11 +60,11 @@ contains
   end subroutine check_guide
 
   !> Check that the friction law has no sticking, which the guide does not support, and that friction does not jam a piston with an
-  !> ideal pin: an axial force causes a side force of at most tan A times its size, where A is at most arcsin R/L.
+  !> ideal pin: an axial force causes a side force of at most tan A times its size, where A is at most arcsin (R + |d|)/L.
   subroutine check_guide_friction(c, values)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(inout) :: values
-    real(dp) :: most, speed
+    real(dp) :: most, speed, reach
     logical :: is_loose(n_pins)
     class(friction_law_t), allocatable :: law
     allocate (law, source=c%guide%friction)
@@ -76,10 +76,11 @@ contains
     if (c%has_loose_guide() .or. is_loose(piston_pin)) return
     associate (m => c%mechanism)
       speed = 2*m%crank_length*max(abs(c%initial%crank_speed), two_pi)
-      most = sqrt((m%rod_length - m%crank_length)*(m%rod_length + m%crank_length))/m%crank_length
+      reach = m%crank_length + abs(m%axis_offset)
+      most = sqrt((m%rod_length - reach)*(m%rod_length + reach))/reach
     end associate
     call values%forbid(c%guide%most_friction(speed) >= most, 'guide', 'coefficient', 'friction over normal force must stay < '// &
-      short_text(most)//', the least of rod_length cos A/(crank_length sin q): more would jam the piston')
+      short_text(most)//', the least cotangent of the rod angle: more would jam the piston')
   end subroutine check_guide_friction
 
   !> Check that the piston starts in its bore, or with corners in the wall but not beyond it.
@@ -152,8 +153,8 @@ contains
     logical :: reachable
     integer :: i
     associate (m => c%mechanism)
-      bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com), rigid, piston_t(m%piston_mass), &
-        [0.0_dp, 0.0_dp])
+      bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, m%crank_inertia, m%crank_com), rigid, &
+        piston_t(m%piston_mass, axis_offset=m%axis_offset), [0.0_dp, 0.0_dp])
     end associate
     loads = unloaded
     motion%crank_pin = 0
@@ -165,7 +166,7 @@ contains
     definite = .true.
     do i = 1, angles
       call turn_crank(motion, 2*pi*i/angles, 0.0_dp)
-      call rod%follow(bodies%crank%length, motion, reachable)
+      call rod%follow(bodies%crank%length, bodies%piston%axis_offset, motion, reachable)
       call accelerate_assembled(bodies, drive_t(c%drive%kind == 'free' .or. allocated(c%crankshaft), 0.0_dp, 0.0_dp, 0.0_dp, &
         inertia_beside(c)), c%loose_pins(), loads, motion, accelerations, crank_moment, rod, definite)
       if (.not. definite) return

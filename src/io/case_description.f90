@@ -1,7 +1,8 @@
 !> What the program has understood of a case, in units that people use: the answer to --check.
 module case_description
   use kinds, only: dp
-  use constants, only: pi, two_pi
+  use constants, only: pi, two_pi, degree
+  use ideal_linkage, only: linkage_t
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use joint_places, only: places, n_places, in_order
@@ -68,12 +69,17 @@ contains
     type(case_t), intent(in) :: case
     character(len=:), allocatable :: text
     real(dp) :: stroke, bore   !! [m]
-    stroke = 2*case%mechanism%crank_length
+    type(linkage_t) :: linkage
+    linkage = case%mechanism%linkage()
+    stroke = linkage%stroke()
     bore = 0
     if (allocated(case%combustion)) bore = case%combustion%bore
     if (allocated(case%measured)) bore = case%measured%bore
     text = 'stroke '//quantity_text(stroke, 'm', digits)//', rod '//quantity_text(case%mechanism%rod_length, 'm', digits)// &
-      ' (crank over rod '//short_text(0.5_dp*stroke/case%mechanism%rod_length, 3)//')'
+      ' (crank over rod '//short_text(linkage%crank_length/linkage%rod_length, 3)//')'
+    if (abs(linkage%axis_offset) > 0) text = text//', axis '//quantity_text(linkage%axis_offset, 'm', digits)// &
+      ' off: dead centres at '//short_text(linkage%top_angle()/degree, digits)//' and '// &
+      short_text(linkage%bottom_angle()/degree, digits)//' degrees'
     if (bore > 0) text = text//', bore '//quantity_text(bore, 'm', digits)//', displacement '// &
       short_text(mm3_to_cm3*pi/4*bore**2*stroke, digits)//' cm3'
     if (allocated(case%pin)) text = text//', piston pin: '//case%pin%kind
@@ -91,7 +97,7 @@ contains
     type(gas_figures_t) :: gas
     real(dp), parameter :: bar = 1e5_dp   ! [Pa]
     text = law%description()
-    call find_gas_figures(law, case%mechanism%crank_length, case%mechanism%rod_length, case%initial%crank_speed, gas)
+    call find_gas_figures(law, case%mechanism%linkage(), case%initial%crank_speed, gas)
     if (gas%is_known) text = text//'; '//short_text(gas%least/bar, digits)//' to '//short_text(gas%peak/bar, digits)// &
       ' bar, largest at '//short_text(gas%peak_angle, digits)//' degrees, IMEP '//short_text(gas%imep/bar, digits)//' bar'
   end function gas_text
@@ -129,6 +135,7 @@ contains
   function speed_text(case) result(text)
     type(case_t), intent(in) :: case
     character(len=:), allocatable :: text
+    type(linkage_t) :: linkage
     associate (speed => case%initial%crank_speed, drive => case%drive)
       text = rpm_text(speed)
       if (drive%kind == 'constant_speed') then
@@ -138,8 +145,9 @@ contains
       else
         text = text//' at first, free crank'
       end if
-      if (.not. allocated(case%load)) text = text//'; mean piston speed '// &
-        short_text(abs(speed)*2*case%mechanism%crank_length/pi, 3)//' m/s'
+      if (allocated(case%load)) return
+      linkage = case%mechanism%linkage()
+      text = text//'; mean piston speed '//short_text(abs(speed)*linkage%stroke()/pi, 3)//' m/s'
     end associate
   end function speed_text
 

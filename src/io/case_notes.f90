@@ -3,6 +3,7 @@
 module case_notes
   use kinds, only: dp
   use constants, only: pi
+  use ideal_linkage, only: linkage_t
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use joint_places, only: places, n_places, in_order, name_prefix, joint_group
@@ -31,11 +32,14 @@ contains
     character(len=:), allocatable :: notes
     logical, allocatable :: is_noted(:), is_unusual(:)   !! for each key
     real(dp) :: bore, stroke   !! [m]; bore 0: not known
+    type(linkage_t) :: linkage
     integer :: i
     notes = ''
     allocate (is_noted(size(values%keys)), is_unusual(size(values%keys)), source=.false.)
     call find_unusual()
-    stroke = 2*c%mechanism%crank_length
+    linkage = c%mechanism%linkage()
+    stroke = 0
+    if (linkage%crank_length > 0) stroke = linkage%stroke()
     bore = 0
     if (allocated(c%combustion)) bore = c%combustion%bore
     if (allocated(c%measured)) bore = c%measured%bore
@@ -196,6 +200,10 @@ contains
           likely_unit('m', norm2(m%rod_com), 0.0_dp, length), 'mechanism.rod_length')
         call expect('mechanism', 'rod_com', m%rod_com(1), length, 0.0_dp, 0.6_dp, 'is # of rod_length = @ m from the crank pin', &
           'mechanism.rod_length', 'measured from the piston pin')
+        call expect('mechanism', 'axis_offset', m%axis_offset, m%crank_length, 0.0_dp, 0.3_dp, 'is # of crank_length = @ m', &
+          'mechanism.crank_length')
+        if (is_engine() .and. m%axis_offset*c%initial%crank_speed < 0) call remark('mechanism', 'axis_offset', &
+          'is on the side that makes the side force of the working stroke larger', 'initial.crank_speed')
       end associate
     end subroutine note_lengths
 
@@ -330,7 +338,7 @@ contains
     subroutine note_gas()
       type(gas_figures_t) :: gas
       if (allocated(c%measured)) then
-        call find_gas_figures(c%measured, c%mechanism%crank_length, c%mechanism%rod_length, c%initial%crank_speed, gas)
+        call find_gas_figures(c%measured, linkage, c%initial%crank_speed, gas)
         if (gas%is_known) call note_table(gas)
       end if
       if (.not. allocated(c%combustion)) return
@@ -345,7 +353,7 @@ contains
       end associate
       if (any(values%keys%group == 'combustion' .and. (is_unusual .or. is_noted)) .or. .not. is_engine() .or. &
         any_remarkable('mechanism.crank_length mechanism.rod_length')) return
-      call find_gas_figures(c%combustion, c%mechanism%crank_length, c%mechanism%rod_length, c%initial%crank_speed, gas)
+      call find_gas_figures(c%combustion, linkage, c%initial%crank_speed, gas)
       if (.not. gas%is_known) return
       if (gas%peak > highest_peak) then
         call remark('combustion', 'heat', 'gives a largest pressure of '//quantity_text(gas%peak, 'Pa')// &

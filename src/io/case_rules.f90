@@ -74,18 +74,22 @@ contains
     type(case_values_t), intent(inout) :: values
     character(len=*), parameter :: away = 'must be > 0 unless crank_mass is > 0 away from the axis'
     character(len=:), allocatable :: key
-    real(dp) :: play, crank, rod
+    real(dp) :: play, room, crank, rod   ! room: of the rod at the bottom dead centre [m]
     logical :: is_loose(n_pins)
     associate (m => c%mechanism)
       play = sum(play_of(c%joints))
+      room = m%rod_length - m%crank_length - play
       if (m%rod_length <= m%crank_length) then
         call values%refuse('mechanism', 'rod_length', 'must be > crank_length = '//short_text(m%crank_length))
       else if (m%rod_length <= m%crank_length + play) then
         call values%refuse('mechanism', 'rod_length', 'must be > crank_length + clearance = '//short_text(m%crank_length + play))
-      else if (m%rod_length <= m%crank_length + play + bore_reach(c)) then
+      else if (abs(m%axis_offset) >= room) then
+        call values%refuse('mechanism', 'axis_offset', 'must be shorter than rod_length - crank_length, less clearances, = '// &
+          short_text(room)//': the crank could not turn')
+      else if (m%rod_length <= m%crank_length + play + abs(m%axis_offset) + bore_reach(c)) then
         key = trim(merge('bore_clearance', 'piston_com    ', c%guide%bore_clearance > abs(c%guide%piston_com(2))))
         call values%refuse('guide', key, 'lets the pin move '//short_text(bore_reach(c))//' m off the cylinder''s axis: must '// &
-          'be less than rod_length - crank_length - clearance = '//short_text(m%rod_length - m%crank_length - play))
+          'be less than rod_length - crank_length - clearance - axis_offset = '//short_text(room - abs(m%axis_offset)))
       end if
       crank = m%crank_inertia + c%drive%flywheel_inertia + m%crank_mass*sum(m%crank_com**2) + inertia_beside(c)
       rod = m%rod_inertia + m%rod_mass*sum(m%rod_com**2)
@@ -152,7 +156,7 @@ contains
   subroutine check_start(c, values)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(inout) :: values
-    real(dp) :: distance(n_places)
+    real(dp) :: distance(n_places), room
     integer :: place
     associate (start => c%initial, m => c%mechanism)
       distance = norm2(start%eccentricity, 1)
@@ -162,9 +166,9 @@ contains
       end do
       if (values%problems%concerns('mechanism') .or. values%problems%concerns('initial') .or. allocated(c%load)) return
       place = in_order(max(1, findloc(distance(in_order) > 0, .true., 1)))
-      call values%forbid(sum(distance, c%joints%has_clearance()) >= m%rod_length - m%crank_length, 'initial', &
-        name_prefix(place)//'eccentricity', &
-        'must be shorter than rod_length - crank_length = '//short_text(m%rod_length - m%crank_length))
+      room = m%rod_length - m%crank_length - abs(m%axis_offset)
+      call values%forbid(sum(distance, c%joints%has_clearance()) >= room, 'initial', name_prefix(place)//'eccentricity', &
+        'must be shorter than rod_length - crank_length - axis_offset = '//short_text(room))
     end associate
   end subroutine check_start
 
@@ -214,10 +218,16 @@ contains
       'must not be after the end of the run at '//short_text(known_end(c))//' s')
   end subroutine check_film_times
 
-  !> Check that there is one gas model at most, with an allowed period.
+  !> Check that there is one gas model at most, with angles that suit the mechanism and an allowed period.
   subroutine check_gas(c, values)
     type(case_t), intent(in) :: c
     type(case_values_t), intent(inout) :: values
+    character(len=:), allocatable :: key, wanted
+    if (allocated(c%combustion) .and. .not. (values%problems%concerns('combustion') .or. &
+      values%problems%concerns('mechanism'))) then
+      call c%combustion%misfit(c%mechanism%linkage(), sign(1.0_dp, c%initial%crank_speed), key, wanted)
+      if (key /= '') call values%refuse('combustion', key, wanted)
+    end if
     if (.not. allocated(c%measured)) return
     call values%forbid(allocated(c%combustion), 'cylinder_pressure', 'table', &
       'cannot be combined with the group combustion: one pressure acts on the piston')

@@ -2,7 +2,8 @@
 module run_summary
   use, intrinsic :: iso_fortran_env, only: compiler_version, compiler_options
   use kinds, only: dp
-  use constants, only: two_pi
+  use constants, only: two_pi, degree
+  use ideal_linkage, only: linkage_t
   use ode_method, only: highest_order, with_adams, with_radau, n_limits, limit_names, limit_stability
   use simulation, only: run_report_t
   use train_record, only: train_result_t
@@ -86,6 +87,7 @@ contains
       end if
       call add_kept('', in_cycle=.false.)
       if (f%floating%is_present) call add_floating_pin(f)
+      if (abs(case%mechanism%axis_offset) > 0) call add_dead_centres(case%mechanism%linkage())
       call table%add('crank_revolutions', f%crank_travel/two_pi)
       if (f%time > 0) call table%add('mean_crank_speed', f%crank_travel/f%time)
       if (report%periods%is_on) call add_period(report%periods)
@@ -131,6 +133,14 @@ contains
       if (allocated(case%notes)) notes = case%notes//newline//notes
       call table%add_notes(notes)
     end subroutine add_notes
+
+    !> Rows of the stroke of a mechanism whose cylinder axis is offset.
+    subroutine add_dead_centres(linkage)
+      type(linkage_t), intent(in) :: linkage
+      call table%add('stroke', linkage%stroke())
+      call table%add('top_dead_centre_angle', linkage%top_angle()/degree)
+      call table%add('bottom_dead_centre_angle', linkage%bottom_angle()/degree)
+    end subroutine add_dead_centres
 
     !> Rows about the period of the motion, of a run until it is periodic.
     subroutine add_period(periods)

@@ -46,6 +46,9 @@ module summary_quantities
     quantity_t('turning_in_rod', 'rad', 'the same in the small end of the rod'), &
     quantity_t('small_end_turning_share', '1', 'the latter over the sum of both'), &
     quantity_t('pin_warning', '', 'written where nothing decides in which bearing a floating pin turns'), &
+    quantity_t('stroke', 'm', 'stroke of the ideal mechanism, with an `axis_offset`'), &
+    quantity_t('top_dead_centre_angle', 'deg', 'crank angle at which the piston is highest, with an `axis_offset`'), &
+    quantity_t('bottom_dead_centre_angle', 'deg', 'crank angle at which it is lowest'), &
     quantity_t('crank_revolutions', '1', 'angle that the crank has turned through, in revolutions'), &
     quantity_t('mean_crank_speed', 'rad/s', 'that angle over the simulated time'), &
     quantity_t('motion', '', '`periodic` or `not_periodic` (`until = ''periodic''`)'), &

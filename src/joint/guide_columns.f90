@@ -1,5 +1,6 @@
 !> The columns of the piston's guide.
 module guide_columns
+  use kinds, only: dp
   use trace_row, only: trace_row_t
   use chain_motion, only: motion_t, tilting_t, accelerations_t
   use piston_guide, only: piston_guide_t, guide_loads_t
@@ -17,9 +18,13 @@ contains
     type(accelerations_t), intent(in) :: accelerations
     type(guide_loads_t), intent(in) :: loads
     type(trace_row_t), intent(inout) :: row
+    real(dp) :: speed
     integer :: k
     call row%add('guide_friction_force[N]', loads%friction_force, &
       'friction of the guide on the piston along x; the frame takes the opposite')
+    speed = motion%piston_velocity
+    if (guide%is_loose) speed = motion%tilting%com_velocity
+    call row%add_on_request('guide_friction_power[W]', loads%friction_force*speed, 'power of this friction; negative: a loss')
     if (guide%is_loose) call add_place(motion%tilting, accelerations, row)
     do k = 1, guide%n_elements
       call guide%slots(k)%element%add_columns(loads, row)

@@ -10,6 +10,7 @@ module case_definition
   use run_state, only: run_state_t
   use model_parameters, only: has_parameters_t, parameter_list_t, any_angle, any_speed
   use run_length, only: run_length_t
+  use ideal_linkage, only: linkage_t
   use chain_motion, only: n_pins
   use joint_places, only: places, n_places, in_order, name_prefix, pin_title, piston_pin, small_end, main_bearing
   use joint_case, only: joint_case_t
@@ -29,9 +30,10 @@ module case_definition
   type, extends(has_parameters_t) :: mechanism_case_t
     real(dp) :: crank_length = 0, crank_mass = 0, crank_inertia = 0, crank_com(2) = 0
     real(dp) :: rod_length = 0, rod_mass = 0, rod_inertia = 0, rod_com(2) = 0
-    real(dp) :: piston_mass = 0, gravity = 0, gravity_angle_deg = 0
+    real(dp) :: piston_mass = 0, axis_offset = 0, gravity = 0, gravity_angle_deg = 0
   contains
     procedure :: parameters => mechanism_parameters
+    procedure :: linkage => linkage_of
   end type mechanism_case_t
 
   type, extends(has_parameters_t) :: drive_case_t
@@ -250,6 +252,8 @@ contains
       'centre of mass of the rod from the crank pin, along and across the rod', 'm', default='0.0', example='0.0508, 0.0', &
       usual='0 to 10')
     call list%add('piston_mass', self%piston_mass, 'mass of the piston', 'kg', '> 0', example='0.91', usual='1e-4 to 1e4')
+    call list%add('axis_offset', self%axis_offset, 'offset of the cylinder axis from the crank axis, along y; > 0 where '// &
+      'crank_speed is > 0: the rod is straighter on the way down', 'm', default='0.0', usual='0 to 0.5')
     call list%add('gravity', self%gravity, &
       'acceleration of gravity; acts from the cylinder towards the crank unless gravity_angle_deg turns it', 'm/s^2', &
       default='9.80665', usual='0.1 to 30')
@@ -257,6 +261,12 @@ contains
       'direction of gravity: 0 from piston to crank along the cylinder; 90 across it, along -y', 'degrees', &
       any_angle, default='0.0', usual='0 to 360')
   end subroutine mechanism_parameters
+
+  !> The lengths from which strokes and dead centres follow.
+  pure type(linkage_t) function linkage_of(self)
+    class(mechanism_case_t), intent(in) :: self
+    linkage_of = linkage_t(self%crank_length, self%rod_length, self%axis_offset)
+  end function linkage_of
 
   subroutine drive_parameters(self, list)
     class(drive_case_t), intent(inout) :: self

@@ -16,6 +16,7 @@ module cycle_answers
   use result_ledger, only: ledger_t, degrees_in_cycle
   use archard_wear, only: of_pin, of_bore
   use gas_cycle, only: released_share
+  use ideal_linkage, only: linkage_t
   use film_heat, only: temperature_sum, heat_to_oil, heat_to_housing
   implicit none
   private
@@ -208,13 +209,17 @@ contains
     end subroutine add_joint
 
     subroutine add_machine()
+      type(linkage_t) :: linkage
       real(dp) :: mean_speed
       mean_speed = two_pi*revolutions/cycle%duration
       call add('cycle_mean_crank_speed', cycles%direction*mean_speed)
       if (allocated(scene%chain%floating)) call add('cycle_pin_turn', cycle%pin_turn)
       call add('cycle_speed_fluctuation', (kept('max_crank_speed') - kept('min_crank_speed'))/mean_speed)
       if (allocated(scene%given_load)) return
-      call add('cycle_mean_piston_speed', 4*scene%chain%bodies%crank%length*revolutions/cycle%duration)
+      associate (bodies => scene%chain%bodies)
+        linkage = linkage_t(bodies%crank%length, bodies%rod%length, bodies%piston%axis_offset)
+      end associate
+      call add('cycle_mean_piston_speed', 2*linkage%stroke()*revolutions/cycle%duration)
       if (.not. allocated(scene%gas)) return
       if (scene%gas%has_force) then
         call add('cycle_max_cylinder_pressure', cycle%max_pressure)

@@ -90,10 +90,10 @@ contains
     type(piston_t) :: piston
     real(dp) :: gravity(2)   ! along the axis of the cylinder towards the crank, rotated towards -y [m/s^2]
     associate (m => case%mechanism)
-      piston = piston_t(m%piston_mass)
+      piston = piston_t(m%piston_mass, axis_offset=m%axis_offset)
       if (case%has_floating_pin() .and. ideal_joint) piston%mass = piston%mass + case%pin%mass   ! it goes along the cylinder
       if (case%has_loose_guide() .and. .not. ideal_joint) &
-        piston = piston_t(m%piston_mass, .true., case%guide%piston_inertia, case%guide%piston_com)
+        piston = piston_t(m%piston_mass, .true., case%guide%piston_inertia, case%guide%piston_com, m%axis_offset)
       gravity = axis_gravity(case)
       scene%chain%bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, &
         m%crank_inertia + case%drive%flywheel_inertia, m%crank_com), &
@@ -216,16 +216,15 @@ contains
     if (.not. allocated(scene%gas)) return
     has_force = scene%gas%has_force   ! a law begins the gas anew
     tolerance = gas_margin*case%integrator%relative_tolerance
-    associate (m => case%mechanism)
+    associate (linkage => case%mechanism%linkage(), sense => sign(1.0_dp, scene%start_speed))
       if (allocated(case%measured)) then
-        call case%measured%prepare(m%crank_length, m%rod_length, tolerance, scene%gas, error)
+        call case%measured%prepare(linkage, sense, tolerance, scene%gas, error)
       else
-        call case%combustion%prepare(m%crank_length, m%rod_length, tolerance, scene%gas, error)
+        call case%combustion%prepare(linkage, sense, tolerance, scene%gas, error)
       end if
     end associate
     if (allocated(error)) return
     scene%gas%has_force = has_force
-    scene%gas%sense = sign(1.0_dp, scene%start_speed)   ! an engine that turns backwards is the mirror image of the other
     call scene%gas%start(scene%start_angle, merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
     if (.not. allocated(scene%chain%train)) return
     associate (train => scene%chain%train)

@@ -27,7 +27,7 @@ contains
       call self%read_crank(t, y, motion)
       motion%offset = 0
       motion%offset_rate = 0
-      call follow_rod(self%given_load%crank_to_rod, 1.0_dp, motion, in_domain)
+      call follow_rod(self%given_load%crank_to_rod, 1.0_dp, 0.0_dp, motion, in_domain)
       motion%turning(body_piston) = 0
       motion%tilting%tilt = 0
       motion%piston_position = 0

@@ -408,7 +408,7 @@ contains
     if (self%has_heat) call self%read_temperatures(n, joints, y, now, in_domain)
     if (.not. in_domain) return
     associate (bodies => self%chain%bodies, drive => self%chain%drive, motion => now%motion)
-      call follow_rod(bodies%crank%length, bodies%per_rod_length, motion, in_domain)
+      call follow_rod(bodies%crank%length, bodies%per_rod_length, bodies%piston%axis_offset, motion, in_domain)
       if (.not. in_domain) return
       call self%find_loads(n, joints, y, now)
       if (allocated(self%gas)) call self%load_gas(now)

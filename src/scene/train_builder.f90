@@ -28,6 +28,7 @@ contains
     allocate (train)
     allocate (train%rings(0), train%cylinders(0))
     train%is_chain = allocated(case%shaft) .and. .not. is_rigid
+    train%axis_offset = case%mechanism%axis_offset
     if (allocated(case%shaft)) then
       associate (shaft => case%shaft)
         train%n = shaft%n_inertia
@@ -94,7 +95,7 @@ contains
         other%cos_shift = cos(other%shift)
         other%axial_position = it%axial_position
         call other%set_bodies(new_bodies(crank_t(m%crank_length, it%crank_mass, it%crank_inertia, it%crank_com), &
-          rod_t(m%rod_length, it%rod_mass, it%rod_inertia, it%rod_com), piston_t(it%piston_mass), &
+          rod_t(m%rod_length, it%rod_mass, it%rod_inertia, it%rod_com), piston_t(it%piston_mass, axis_offset=m%axis_offset), &
           [gravity(1)*cos(other%bank) + gravity(2)*sin(other%bank), gravity(2)*cos(other%bank) - gravity(1)*sin(other%bank)]))
       end associate
     end do
@@ -147,7 +148,8 @@ contains
     type(case_t), intent(in) :: case
     associate (m => case%mechanism)
       bodies = new_bodies(crank_t(m%crank_length, m%crank_mass, m%crank_inertia + case%drive%flywheel_inertia, m%crank_com), &
-        rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_t(m%piston_mass), [0.0_dp, 0.0_dp])
+        rod_t(m%rod_length, m%rod_mass, m%rod_inertia, m%rod_com), piston_t(m%piston_mass, axis_offset=m%axis_offset), &
+        [0.0_dp, 0.0_dp])
     end associate
   end function bodies_of
 

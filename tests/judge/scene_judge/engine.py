@@ -28,11 +28,12 @@ class Other:
     mass: tuple[float, float, float]    # crank, rod, piston
     inertia_about: tuple[float, float]  # crank, rod, about their centres of mass
     com: tuple[list[float], list[float]]
+    axis_offset: float
 
     def of_angle(self, q: complex) -> tuple[complex, complex, complex]:
         """Twice the kinetic energy at a speed of 1 rad/s, the potential energy, and dx/dq of the piston."""
         r, length = self.length
-        a = cmath.asin(r / length * cmath.sin(q))
+        a = cmath.asin((r * cmath.sin(q) - self.axis_offset) / length)
         k = r * cmath.cos(q) / (length * cmath.cos(a))
         (u, v), (uc, vc) = self.com[1], self.com[0]
         along, normal = (cmath.cos(a), -cmath.sin(a)), (cmath.sin(a), cmath.cos(a))
@@ -91,7 +92,7 @@ class Engine:
             g = n("mechanism.gravity")
             self.others.append(Other(k + 1, max(int(n(f"{name}.station")) - 1, 0), shift, (-g * math.cos(down - bank), -g * math.sin(down - bank)),
                                      (n("mechanism.crank_length"), n("mechanism.rod_length")), (n(f"{name}.crank_mass"), n(f"{name}.rod_mass"), n(f"{name}.piston_mass")),
-                                     (n(f"{name}.crank_inertia"), n(f"{name}.rod_inertia")), (case[f"{name}.crank_com"], case[f"{name}.rod_com"])))
+                                     (n(f"{name}.crank_inertia"), n(f"{name}.rod_inertia")), (case[f"{name}.crank_com"], case[f"{name}.rod_com"]), n("mechanism.axis_offset")))
 
     @staticmethod
     def is_in(run: Run) -> bool:

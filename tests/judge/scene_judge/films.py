@@ -77,6 +77,7 @@ class Film:
         self.least = number("lubrication.least_film_ratio")
         self.scale = self.viscosity * self.length * self.radius**3 / self.clearance**2
         self.lever = number("mechanism.crank_length") / number("mechanism.rod_length", 1.0)
+        self.axis_offset = number("mechanism.axis_offset") / number("mechanism.rod_length", 1.0)
         self.is_solved = self.law == "finite_bearing" and self.variant != "short"
         self.table_error = min(float(run.summary.get("film_table_error", 0.0)), MOST_TABLE_ERROR)
 
@@ -178,10 +179,10 @@ class Film:
         """Its tangential force [N] is the real part, the magnitude is the largest force in a period at this place; and the sum of
         the magnitudes of its parts, whose rounding it contains. The gap's flow under i w rho V = -P'/R + mu V'', V = U at the pin, 0
         at the bearing, is the same all round, and P comes back to itself. U follows the rod of the mechanism with ideal joints."""
-        turn = self.lever * math.sin(row.q)
+        turn = self.lever * math.sin(row.q) - self.axis_offset
         slope = math.sqrt(1 - turn**2)
         speed = -self.lever * math.cos(row.q) * row.turn / slope
-        rate = (turn * row.turn**2 - speed**2 * turn) / slope
+        rate = (self.lever * math.sin(row.q) * row.turn**2 - speed**2 * turn) / slope
         w, rho = abs(row.turn), self.viscosity / self.kinematic
         surface = self.radius * complex(speed, -rate / w)
         root = cmath.sqrt(1j * w / self.kinematic)

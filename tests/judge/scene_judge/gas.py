@@ -11,27 +11,39 @@ GAUSS_5 = ((0.0, 0.5688888888888889), (0.5384693101056831, 0.47862867049936647),
 
 
 class Cylinder:
-    """The volume as a function of the crank angle, and the values of the gas that a row of a trace should have."""
+    """The volume as a function of the crank angle, and the values of the gas that a row of a trace should have. Angles count from
+    the dead centre, except those of rows."""
 
     def __init__(self, run: Run, group: str) -> None:
         self.under = run.number(f"{group}.crankcase_pressure")
         self.area = math.pi / 4 * run.number(f"{group}.bore")**2
         self.crank, self.rod = run.number("mechanism.crank_length"), run.number("mechanism.rod_length")
-        self.dead = 0.0
+        self.axis = run.number("mechanism.axis_offset")
+        self.top = math.asin(self.axis / (self.rod + self.crank))
+        self.bottom = math.pi + math.asin(self.axis / (self.rod - self.crank)) - self.top
+        self.highest, self.dead = self.height(0.0), 0.0
         self.rounding = 1e-15 * self.area * (self.crank + self.rod)   # rounding of `volume`, a difference of lengths
 
     def volume(self, q: float) -> float:
         """Dead volume, plus the distance of the piston from its top position times the area [m^3]."""
-        height = self.crank * math.cos(q) + math.sqrt((self.rod - self.crank * math.sin(q)) * (self.rod + self.crank * math.sin(q)))
-        return self.dead + self.area * (self.crank + self.rod - height)
+        return self.dead + self.area * (self.highest - self.height(q))
+
+    def height(self, q: float) -> float:
+        """Height of the piston pin above the crank axis [m]."""
+        across = self.crank * math.sin(q + self.top) - self.axis
+        return self.crank * math.cos(q + self.top) + math.sqrt((self.rod - across) * (self.rod + across))
+
+    @property
+    def displacement(self) -> float:
+        return self.area * (self.highest - self.height(self.bottom))
 
     def wanted(self, i: int, q: float) -> float | None:
-        """Pressure of row i, at the crank angle q [Pa]; None if the law does not determine it."""
-        return None if self.jumps_near(q, 1e-7) else self.pressure(q)
+        """Pressure of row i, at the crank angle q of the mechanism [Pa]; None if the law does not determine it."""
+        return None if self.jumps_near(q - self.top, 1e-7) else self.pressure(q - self.top)
 
     def part_of(self, i: int, q: float, turn: float) -> int:
         """Part of the cycle; a row on a boundary belongs to the part before it."""
-        return self.part(q - math.copysign(1e-10, turn))
+        return self.part(q - self.top - math.copysign(1e-10, turn))
 
     def pressure(self, q: float) -> float:
         raise NotImplementedError
@@ -58,15 +70,28 @@ class Gas(Cylinder):
                                                     n("combustion.wiebe_efficiency"), n("combustion.wiebe_form"))
         self.start, self.duration = math.radians(n("combustion.start_deg")), math.radians(n("combustion.duration_deg"))
         self.intake = n("combustion.intake_pressure")
-        self.dead = 2 * self.crank * self.area / (n("combustion.compression_ratio") - 1)
+        self.dead = self.displacement / (n("combustion.compression_ratio") - 1)
         two_strokes = run.text("combustion.cycle") == "two_stroke"
-        port = math.radians(n("combustion.port_opens_deg")) if two_strokes else math.pi
-        self.closes, self.opens, self.period = 2 * math.pi - port, 2 * math.pi + port, (2 if two_strokes else 4) * math.pi
-        self.closed = self.intake * self.volume(self.closes)**self.exponent
+        self.period = (2 if two_strokes else 4) * math.pi
+        bottom = self.bottom if self.sense > 0 else 2 * math.pi - self.bottom
+        self.closes, self.opens = bottom, 2 * math.pi + bottom
+        if two_strokes:
+            self.opens = 2 * math.pi + math.radians(n("combustion.port_opens_deg"))
+            self.closes = self.same_height(self.opens)
+        self.closed = self.intake * self.volume(self.sense * self.closes)**self.exponent
         self.panels = 400
         self.grid = [0.0]
         for i in range(self.panels):
             self.grid.append(self.grid[-1] + self.panel(i / self.panels, (i + 1) / self.panels))
+
+    def same_height(self, opens: float) -> float:
+        """The angle on the other side of the bottom dead centre with the height of the piston at `opens`, by bisection."""
+        bottom = self.bottom if self.sense > 0 else 2 * math.pi - self.bottom
+        low, high, height = bottom, 2 * math.pi, self.height(self.sense * opens)
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if self.height(self.sense * middle) < height else (low, middle)
+        return low
 
     def source(self, s: float) -> float:
         """V^(g-1) dQ/ds, where s is z, or for a release that begins abruptly z^n."""
@@ -75,7 +100,7 @@ class Gas(Cylinder):
             burnt = s**self.n
         else:
             z, rate, burnt = s**(1 / self.n), 1.0, s
-        return self.volume(self.start + z * self.duration)**(self.exponent - 1) * self.heat * self.a * rate * math.exp(-self.a * burnt)
+        return self.volume(self.sense * (self.start + z * self.duration))**(self.exponent - 1) * self.heat * self.a * rate * math.exp(-self.a * burnt)
 
     def panel(self, low: float, high: float) -> float:
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
@@ -83,7 +108,7 @@ class Gas(Cylinder):
                           for x, w in GAUSS_5)
 
     def pressure(self, q: float) -> float:
-        """Pressure at the crank angle q [Pa]."""
+        """Pressure at the angle q [Pa]."""
         angle = self.closes + (self.sense * q - self.closes) % self.period
         if not angle < self.opens:
             return self.intake
@@ -93,7 +118,7 @@ class Gas(Cylinder):
             s = z if self.n >= 1 else z**self.n
             whole = min(int(s * self.panels), self.panels)
             added = self.grid[whole] + (self.panel(whole / self.panels, s) if whole < self.panels else 0.0)
-        return (self.closed + (self.exponent - 1) * added) / self.volume(angle)**self.exponent
+        return (self.closed + (self.exponent - 1) * added) / self.volume(self.sense * angle)**self.exponent
 
     def jumps_near(self, q: float, margin: float) -> bool:
         """Whether a part of the cycle begins or ends so near that the row may belong to either side."""
@@ -117,9 +142,9 @@ class Compressor(Cylinder):
         n = run.number
         self.low, self.high = n("combustion.suction_pressure"), n("combustion.discharge_pressure")
         self.exponent = n("combustion.polytropic_exponent")
-        self.dead = 2 * self.crank * self.area * n("combustion.dead_space")
+        self.dead = self.displacement * n("combustion.dead_space")
         self.rows: list[tuple[float | None, int]] = []   # pressure, and number of the piece between events
-        angles, turns = run.columns["crank_angle"], run.columns["crank_speed"]
+        angles, turns = [q - self.top for q in run.columns["crank_angle"]], run.columns["crank_speed"]
         known = self.start(angles[0], turns[0])   # K
         state, piece = "", 0
         for i, q in enumerate(angles):
@@ -131,7 +156,7 @@ class Compressor(Cylinder):
             if known is not None:
                 pressure, now = self.held(known, q)
                 known = pressure * self.volume(q)**self.exponent
-            half_turn = f"{now}{math.floor(q / math.pi)}{turns[i] > 0}"
+            half_turn = f"{now}{divmod(q, 2 * math.pi)[0]}{q % (2 * math.pi) >= self.bottom}{turns[i] > 0}"
             piece += half_turn != state
             state = half_turn
             self.rows.append((pressure, piece))
@@ -140,8 +165,9 @@ class Compressor(Cylinder):
         """K of a machine that has run for a long time; a machine at rest is filled at the suction pressure."""
         if turn == 0:
             return self.low * self.volume(q)**self.exponent
-        full, empty = self.low * self.volume(math.pi)**self.exponent, self.volume(0.0)**self.exponent
-        comes_in = math.sin(q) * turn < 0 if abs(math.sin(q)) > 1e-12 else math.cos(q) < 0
+        full, empty = self.low * self.volume(self.bottom)**self.exponent, self.volume(0.0)**self.exponent
+        at = q % (2 * math.pi)
+        comes_in = abs(at - self.bottom) < 1e-12 or (at > self.bottom) == (turn > 0) and 1e-12 < at < 2 * math.pi - 1e-12
         return full if comes_in else min(full, self.high * empty)
 
     def held(self, known: float, q: float) -> tuple[float, str]:
@@ -154,9 +180,11 @@ class Compressor(Cylinder):
         if abs(here - before) > math.pi:
             return None
         first, last = sorted((before, here))
-        for k in range(math.ceil(first / math.pi), math.floor(last / math.pi) + 1):
+        between = [one + 2 * math.pi * k for one in (0.0, self.bottom)
+                   for k in range(math.ceil((first - one) / (2 * math.pi)), math.floor((last - one) / (2 * math.pi)) + 1)]
+        for one in sorted(between):
             if known is not None:
-                known = self.held(known, k * math.pi)[0] * self.volume(k * math.pi)**self.exponent
+                known = self.held(known, one)[0] * self.volume(one)**self.exponent
         if known is not None and turn_before * turn <= 0 and {self.held(known, q)[1] for q in (before, here)} != {"closed"}:
             return None
         return known

@@ -79,6 +79,7 @@ class Bodies:
     elastic: ElasticRod | None = None
     shaft: tuple[float, float, float] | None = None   # elastic crankshaft: flywheel's inertia, stiffness, damping
     engine: Engine | None = None          # other cylinders, or stations of the crankshaft
+    axis_offset: float = 0.0              # y of the cylinder axis
 
     @classmethod
     def of(cls, run: Run) -> Bodies:
@@ -90,6 +91,7 @@ class Bodies:
                    rotated(-1.0, 0.0, math.radians(n("mechanism.gravity_angle_deg"))), n("drive.damping"),
                    n("joint.bearing_radius") - n("joint.clearance"),
                    *((n("guide.piston_inertia"), run.pair("guide.piston_com")) if run.has_loose_guide else ()))
+        found.axis_offset = n("mechanism.axis_offset")
         if "elastic_rod.section_area" in run.case:
             found.elastic = ElasticRod(run)
         if Engine.is_in(run):
@@ -139,7 +141,7 @@ class Row:
         self.tilt, self.tilt_rate, self.tilt_acceleration = (get.get(f"piston_tilt{one}", 0.0) for one in ("", "_rate", "_acceleration"))
         self.com = rotated(*bodies.piston_com, self.tilt)
         self.com_velocity = self.vx - self.tilt_rate * self.com[1], self.offset_rate_y
-        self.bearing = self.x, self.offset_y - self.com[1]
+        self.bearing = self.x, bodies.axis_offset + self.offset_y - self.com[1]
         self.bearing_velocity = self.vx, self.offset_rate_y - self.tilt_rate * self.com[0]
         self.bore_friction = get.get("guide_friction_force", 0.0)
         self.journal_turn, self.bearing_turn = self.end_turn(1), self.tilt_rate

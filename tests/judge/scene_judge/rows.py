@@ -409,7 +409,7 @@ class RowChecks:
         get, gas = row.get, self.gas
         self.take("gas force", abs((get["cylinder_pressure"] - gas.under) * gas.area - get["gas_force"]),
                   SUM * (get["cylinder_pressure"] + gas.under) * gas.area, t)
-        volume = gas.volume(row.q)
+        volume = gas.volume(row.q - gas.top)
         self.take("cylinder volume", abs(volume - get["cylinder_volume"]), SUM * volume + gas.rounding, t)
         want = gas.wanted(i, row.q)
         if want is not None:

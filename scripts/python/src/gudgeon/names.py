@@ -33,6 +33,7 @@ KEYS = {
     "friction.coefficient": "coefficient of friction",
     "mechanism.gravity": "gravity",
     "drive.damping": "damping of the crank",
+    "mechanism.axis_offset": "offset of the cylinder axis",
 }
 
 #: Columns of results whose names alone are not clear as labels.
@@ -52,6 +53,8 @@ COLUMNS = {
     "small_end_min_film_thickness": "smallest film thickness in the small end",
     "small_end_eccentricity_rate_x_max_abs": "speed of the pin across the small end",
     "small_end_asperity_force_max": "force of asperities in the small end",
+    "guide_force_max_abs": "largest side force of the piston",
+    "guide_friction_power_mean": "mean power of the friction of the guide",
     "pin_speed_rms": "speed of the pin, root mean square",
     "eccentricity_y": "eccentricity across the cylinder",
     "eccentricity_x": "eccentricity along the cylinder",

@@ -12,6 +12,7 @@ def animated(run: Any, frames: int) -> FuncAnimation:
     """The animation of a `gudgeon.Run`. The piston moves along x; the rod ends at the piston pin, or beside it in its clearance, which
     is drawn to a scale of its own."""
     crank, rod = run.case["mechanism.crank_length"], run.case["mechanism.rod_length"]
+    offset = run.case["mechanism.axis_offset"]
     rows = np.linspace(0, len(run) - 1, frames).astype(int)
     angle, tilt, piston = (run[name][rows] for name in ("crank_angle", "rod_angle", "piston_position"))
     pin_x, pin_y = crank * np.cos(angle), crank * np.sin(angle)
@@ -22,7 +23,7 @@ def animated(run: Any, frames: int) -> FuncAnimation:
     (members,) = axis.plot([], [], "o-", color=BLUE, linewidth=3, markersize=6)
     half = 0.35 * crank
     (body,) = axis.plot([], [], color=BLACK, linewidth=1.5)
-    axis.axhline(0, color=GREY, linewidth=0.5)
+    axis.axhline(offset, color=GREY, linewidth=0.5)
     axis.set(xlim=(-1.3 * crank, 1.3 * crank + rod), ylim=(-1.4 * crank, 1.4 * crank), aspect="equal", xlabel="x [m]", ylabel="y [m]")
     if loose:
         clearance = run.case["joint.clearance"]
@@ -36,7 +37,7 @@ def animated(run: Any, frames: int) -> FuncAnimation:
 
     def show(i: int) -> list[Any]:
         members.set_data([0, pin_x[i], end_x[i]], [0, pin_y[i], end_y[i]])
-        body.set_data(piston[i] + half * np.array([-1, 1, 1, -1, -1]), half * np.array([-1, -1, 1, 1, -1]))
+        body.set_data(piston[i] + half * np.array([-1, 1, 1, -1, -1]), offset + half * np.array([-1, -1, 1, 1, -1]))
         axis.set_title(f"{1e3 * run['time'][rows[i]]:.2f} ms", fontsize=9)
         if loose:
             pin.set_data([e_x[rows[i]]], [e_y[rows[i]]])

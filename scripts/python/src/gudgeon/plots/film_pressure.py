@@ -78,9 +78,10 @@ def inertia_function(v: np.ndarray) -> np.ndarray:
 def ideal_rod_motion(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """The rod's angular velocity [rad/s] and acceleration [rad/s2], x towards y, in the mechanism with an ideal joint at constant
     speed."""
-    ratio = float(run.parameter("mechanism", "crank_length")) / float(run.parameter("mechanism", "rod_length"))
+    rod = float(run.parameter("mechanism", "rod_length"))
+    ratio = float(run.parameter("mechanism", "crank_length")) / rod
     q, q1 = run["crank_angle"], run["crank_speed"]
-    sine = ratio * np.sin(q)
+    sine = ratio * np.sin(q) - float(run.parameter("mechanism", "axis_offset", 0)) / rod
     cosine = np.sqrt(1 - sine**2)
     rate = ratio * np.cos(q) * q1 / cosine
     return -rate, -(rate**2 * sine - ratio * np.sin(q) * q1**2) / cosine

@@ -447,6 +447,7 @@ def page(
         "clearance": run.clearance,
         "crank": float(run.parameter("mechanism", "crank_length")),
         "rod": float(run.parameter("mechanism", "rod_length")),
+        "axis": float(run.parameter("mechanism", "axis_offset", 0)),
         "bearing": drawn_bearing_radius(run),
         "bore": bore,
         "crank_pin": orbit_of(run, columns, "crank_pin"),

@@ -142,6 +142,7 @@
     const top = crank + rod + 4.2 * bearing, bottom = -1.35 * crank;
     const scale = Math.min(height / (top - bottom), width / (2.9 * crank));
     const X = (y) => width / 2 + scale * y, Y = (x) => height - scale * (x - bottom);
+    const B = (y) => X(scene.axis + y);   // from the axis of the bore
     const q = at("crank_angle"), piston = at("piston_position"), m = magnification();
     const px = crank * Math.cos(q), py = crank * Math.sin(q);
     // for a piston with clearance in its bore: the drawn distances of its axis and its pin from the cylinder axis, and its tilt
@@ -156,30 +157,30 @@
     g.strokeStyle = COLOUR.ink; g.lineWidth = 2.5;
     for (const side of [-1, 1]) {
       g.beginPath();
-      g.moveTo(X(side * (half + gap)), Y(Math.min(1.45 * crank, rod - crank))); g.lineTo(X(side * (half + gap)), Y(top));
+      g.moveTo(B(side * (half + gap)), Y(Math.min(1.45 * crank, rod - crank))); g.lineTo(B(side * (half + gap)), Y(top));
       g.stroke();
     }
     if (column.cylinder_pressure) {
       const share = Math.min(1, at("cylinder_pressure") / scene.peak.cylinder_pressure);
       g.fillStyle = `rgba(213,94,0,${(0.75 * share).toFixed(3)})`;
-      g.fillRect(X(-half), Y(top), 2 * half * scale, Y(piston + 2.6 * bearing) - Y(top));
+      g.fillRect(B(-half), Y(top), 2 * half * scale, Y(piston + 2.6 * bearing) - Y(top));
     }
     circle(g, X(0), Y(0), 1.25 * crank * scale, COLOUR.light, COLOUR.grey, 1);
     bar(g, X(0), Y(0), X(py), Y(px), 0.9 * bearing * scale);
     g.fillStyle = COLOUR.light; g.strokeStyle = COLOUR.ink; g.lineWidth = 1.5;
     g.save();
-    g.translate(X(aside), Y(piston)); g.rotate(tilt);   // x is up: from x to y is clockwise here
+    g.translate(B(aside), Y(piston)); g.rotate(tilt);   // x is up: from x to y is clockwise here
     g.beginPath(); g.rect(-half * scale, -2.6 * bearing * scale, 2 * half * scale, 4.1 * bearing * scale); g.fill(); g.stroke();
     g.restore();
-    circle(g, X(pin), Y(piston), bearing * scale, "#fff", COLOUR.ink, 1.2);
-    if (bending) bentBar(g, X, Y, [bx, by], [piston + rx, ry], 0.55 * bearing, bending);
-    else bar(g, X(by), Y(bx), X(ry), Y(piston + rx), 0.55 * bearing * scale);
+    circle(g, B(pin), Y(piston), bearing * scale, "#fff", COLOUR.ink, 1.2);
+    if (bending) bentBar(g, X, Y, [bx, by], [piston + rx, scene.axis + ry], 0.55 * bearing, bending);
+    else bar(g, X(by), Y(bx), B(ry), Y(piston + rx), 0.55 * bearing * scale);
     const radius = bearing - m * pinClearance;   // of the pin
-    if (smallEnd) circle(g, X(ry), Y(piston + rx), (radius + m * smallEnd.clearance) * scale, "#fff", COLOUR.ink, 1);
-    circle(g, X(ey), Y(piston + ex), radius * scale * (joint || smallEnd ? 1 : 0.75), COLOUR.blue, COLOUR.ink, 1);
+    if (smallEnd) circle(g, B(ry), Y(piston + rx), (radius + m * smallEnd.clearance) * scale, "#fff", COLOUR.ink, 1);
+    circle(g, B(ey), Y(piston + ex), radius * scale * (joint || smallEnd ? 1 : 0.75), COLOUR.blue, COLOUR.ink, 1);
     if (column.pin_angle) {   // a mark on the pin shows how it turns
       const turn = at("pin_angle");
-      g.beginPath(); g.moveTo(X(ey), Y(piston + ex)); g.lineTo(X(ey + radius * Math.sin(turn)), Y(piston + ex + radius * Math.cos(turn)));
+      g.beginPath(); g.moveTo(B(ey), Y(piston + ex)); g.lineTo(B(ey + radius * Math.sin(turn)), Y(piston + ex + radius * Math.cos(turn)));
       g.strokeStyle = "#fff"; g.lineWidth = 2; g.stroke();
     }
     circle(g, X(0), Y(0), 0.45 * bearing * scale, "#fff", COLOUR.ink, 1);
