@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Several cylinders on one crankshaft: whole runs against motions, frequencies and amplitudes computed by other programs
-(data/cylinders), equalities between cases, the energy of cases that no reference has, and what the program refuses.
+(data/cylinders), equalities between cases, the energy of cases that no reference has, and what the program refuses; the same of one cylinder whose
+axis is beside the crank axis.
 
     .venv/bin/python tests/test_cylinders.py [--program PATH]        (after scripts/setup.sh --python)
 
