@@ -13,8 +13,8 @@ contains
 
   !> dE/dt [W] of kinetic and potential energy, for coordinates (q, c_x, c_y, e_x, e_y) with these values, rates and accelerations;
   !> for a piston with clearance in its bore also y of its centre of mass and its tilt. The crank pin is at R (cos q, sin q), the
-  !> rod's big end at this position minus c, its small end at the distance e_y from the axis of the guide. What the offset of that axis adds to
-  !> the potential energy is constant.
+  !> rod's big end at this position minus c, its small end at the distance e_y from the axis of the guide.
+  !> What the offset of that axis adds to the potential energy is constant.
   real(dp) function energy_slope(bodies, z, z_rate, z_acceleration)
     type(bodies_t), intent(in) :: bodies
     real(dp), intent(in) :: z(:), z_rate(:), z_acceleration(:)

@@ -827,7 +827,7 @@ contains
       n//'x.nml:8: &lubrikation: unknown group; did you mean lubrication?'//all_groups)
     call refused(check, whole(:index(whole, 'rod_length') - 1)//'rod_lenght'//whole(index(whole, 'rod_length') + 10:), &
       'x.nml:2: &mechanism rod_lenght: unknown key; did you mean rod_length? (allowed: crank_length, crank_mass, '// &
-      'crank_inertia, crank_com, rod_length, rod_mass, rod_inertia, rod_com, piston_mass, gravity, gravity_angle_deg)')
+      'crank_inertia, crank_com, rod_length, rod_mass, rod_inertia, rod_com, piston_mass, axis_offset, gravity, gravity_angle_deg)')
     text = whole//'&output '
     do i = 1, 30
       text = text//repeat('x', i)//'=1 '
