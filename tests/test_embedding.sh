@@ -41,6 +41,7 @@ if gcc -Wall -Wextra -Werror -Isrc/api build/turn.c "$library" -Wl,-rpath,"$(dir
   build/turn | grep -q '^status,done,'; then passed=$((passed + 1)); else echo "FAILED: the page on C"; failed=$((failed + 1)); fi
 add "examples" .venv/bin/python tests/test_examples.py "$@"
 add "Python package" .venv/bin/python tests/test_python.py "$program" "$@"
+add "periodic orbits" .venv/bin/python tests/test_orbits.py "$program" "$@"
 add "functional mock-up units" .venv/bin/python tests/test_fmu.py "$@"
 add "shell and editor" .venv/bin/python tests/test_shell_pages.py "$program"
 echo "$passed passed, $failed failed"

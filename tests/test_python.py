@@ -704,7 +704,7 @@ def writes_nowhere(program: str) -> None:
 
 def texts_of_the_package() -> None:
     """The examples in docstrings hold, and the declarations for editors have every key."""
-    for name in ("gudgeon", *(f"gudgeon.{part}" for part in ("case", "run", "stepper", "_sweep", "_table", "_fit", "_tolerances", "_fmu", "_keys", "_library"))):
+    for name in ("gudgeon", *(f"gudgeon.{part}" for part in ("case", "run", "stepper", "_sweep", "_table", "_fit", "_tolerances", "_orbit", "_fmu", "_keys", "_library"))):
         module = importlib.import_module(name)
         counts = doctest.testmod(module, extraglobs={"gudgeon": gudgeon, **vars(gudgeon)})
         check(counts.failed == 0, f"examples in {name}: {counts}")

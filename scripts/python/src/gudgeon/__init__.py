@@ -20,6 +20,7 @@ _HOMES = {
     "sweep": "_sweep", "schema": "_schema", "fmu": "_fmu", "table": "_table", "Table": "_table",
     "fit": "_fit", "Fit": "_fit", "levels": "_fit", "tolerances": "_tolerances", "Tolerances": "_tolerances",
     "Key": "_keys", "keys": "_keys", "groups": "_keys",
+    "orbit": "_orbit", "continuation": "_orbit", "Orbit": "_orbit", "Branch": "_orbit", "OrbitError": "_orbit",
 }  # fmt: skip
 
 __all__ = [*_HOMES, "certify", "version"]  # pyright: ignore

@@ -15,6 +15,7 @@ WHAT = {
     "orders": "settled cycles of a run: orders, means and scatter, work, loads on the bearings",
     "bearing": "the orbit of a pin in its clearance circle, in fixed axes and in those of the load",
     "campbell": "critical speeds of a crankshaft: natural frequencies, orders, shapes",
+    "branch": "periodic orbits of a case over a key: stability, flips, folds, ends",
     "film": "the pressure in a film at chosen times",
     "wear": "worn surfaces of pins and bores",
     "laws": "forces of contact and friction of runs over penetration and sliding speed",

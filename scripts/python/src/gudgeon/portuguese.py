@@ -3,7 +3,7 @@
 #: Words that are the same, symbols of units, and names.
 UNTRANSLATED = {
     "rad", "mm", "cm", "cm³", "µs", "µm", "nm", "ms", "kN", "MPa", "GPa", "Pa", "mPa", "nJ", "MJ", "bar", "kg", "mJ", "µJ", "kJ", "mrad", "Hz", "rpm", "deg", "min",
-    "II", "III", "IV", "VI", "Pinkus", "Sternlicht", "Hertz", "Lankarani", "Nikravesh", "Flores", "Coulomb", "Ambrosio", "Morris", "Sobol",
+    "II", "III", "IV", "VI", "Pinkus", "Sternlicht", "Neimark", "Sacker", "Hertz", "Lankarani", "Nikravesh", "Flores", "Coulomb", "Ambrosio", "Morris", "Sobol",
     "hertz", "sphere", "johnson", "conformal", "pereira", "winkler", "lankarani", "nikravesh", "hunt", "crossley", "herbert", "mcwhannell",
     "zhiying", "qishao", "gonthier", "flores", "carvalho", "martins", "csv", "sim", "Reynolds", "Lyapunov", "gudgeon", "plotly", "js", "adams", "radau", "auto", "SciPy", "DOP", "Radau", "LSODA", "CVODE", "RADAU", "Adams", "BDF",
 }
@@ -20,6 +20,17 @@ TEXTS = {
     "revolutions of the crank": "revoluções da manivela",
     "time / time of a right-hand side": "tempo / tempo de uma avaliação",
     "dry contact": "contato seco",
+    # branches of periodic orbits
+    "{}: periodic orbits": "{}: órbitas periódicas",
+    "stable": "estável",
+    "unstable": "instável",
+    "brute force": "força bruta",
+    "fold": "dobra",
+    "flip": "duplicação de período",
+    "grazing": "contato rasante",
+    "lift-off": "perda do contato",
+    "edge": "borda",
+    "end": "fim",
     # Campbell diagram
     "{}: critical speeds": "{}: rotações críticas",
     "speed [rpm]": "rotação [rpm]",
