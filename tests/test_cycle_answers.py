@@ -121,6 +121,107 @@ def integral(rows: list[dict[str, float]], column, begins: float, ends: float) -
     return sum(0.5*(column(a) + column(b))*(b["time"] - a["time"]) for a, b in zip(inside, inside[1:]))
 
 
+def test_reversals(program: Path, work: Path) -> None:
+    """Load of the piston pin along the rod. A piston alone is pushed along the cylinder by m a(q), and a weightless rod carries m a / cos A:
+    with r = R/L, x = R cos q + L cos A, sin A = r sin q, it reverses where the acceleration is 0."""
+    case = work / "reversing.nml"
+    case.write_text("""&mechanism crank_length=0.05, crank_mass=1, crank_inertia=1e-3, crank_com=0,0, rod_length=0.16, rod_mass=1e-12,
+  rod_inertia=1e-15, rod_com=0,0, piston_mass=0.4, gravity=0 /
+&drive kind='constant_speed' /
+&initial crank_angle_deg=10, crank_speed=200 /
+&integrator revolutions=3, relative_tolerance=1e-10 /
+""")
+    ratio, scale = 0.05/0.16, 0.4*0.05*200**2
+
+    def load(angle: float) -> float:   # along the rod, pressing: -m a / cos A, over m R w^2
+        sine, cosine = ratio*math.sin(angle), math.sqrt(1 - (ratio*math.sin(angle))**2)
+        return (math.cos(angle) + ratio*(math.cos(angle)**2 - math.sin(angle)**2)/cosine + ratio*sine**2*math.cos(angle)**2/cosine**3)/cosine
+
+    low, high = 0.5, 2.0
+    while high - low > 1e-14:
+        middle = 0.5*(low + high)
+        low, high = (middle, high) if load(middle) > 0 else (low, middle)
+    largest = max(abs(load(math.pi*i/100000)) for i in range(100001) if load(math.pi*i/100000) < 0)
+    summary, _ = run(program, work, case)
+    for name, wanted in (("load_reversals", 2.0), ("reversed_load", scale*largest), ("degrees_under_reversed_load", 360 - 2*math.degrees(low))):
+        check(close(summary[f"cycle_{name}"], wanted, 1e-7), f"load along the rod: cycle_{name}", f"{summary[f'cycle_{name}']}, not {wanted}")
+    pressed, _ = run(program, work, case, "initial.crank_speed=1", "mechanism.gravity=9.80665")   # its weight is 200 times m R w^2
+    check(pressed["cycle_load_reversals"] == 0 == pressed["cycle_degrees_under_reversed_load"] == pressed["cycle_reversed_load"],
+          "a slow piston always presses", str({name: value for name, value in pressed.items() if "revers" in name}))
+    for name in ("joints/both_pins_lubricated", "pin/engine", "flores/dry_0100um", "gas/compressor"):
+        summary, rows = run(program, work, ROOT / "cases" / f"{name}.nml", "output.samples_per_revolution=36000", "output.sampling=crank_angle",
+                            "output.ideal_twin=F", "integrator.revolutions=2",
+                            "output.columns=standard," + ",".join(f"{place}load_along_rod" for place in prefixes(program, work, name)))
+        turned = 2*math.pi*summary["cycle_revolutions"]
+        begins = next(row["crank_angle"] for row in rows if row["time"] >= summary["cycle_start"])
+        inside = [row for row in rows if begins - 1e-9 <= row["crank_angle"] <= begins + turned + 1e-9]
+        for place in prefixes(program, work, name):
+            loads = [row[f"{place}load_along_rod"] for row in inside]
+            senses = [math.copysign(1, value) for value in loads if value]
+            number_of = sum(a != b for a, b in zip(senses, senses[1:]))
+            sense = -1 if max(loads) > -min(loads) else 1
+            degrees = sum(0.01 for value in loads[1:] if value*sense > 0)
+            largest = max(0.0, *(value*sense for value in loads))
+            found = {word: summary[f"{place}cycle_{word}"] for word in ("load_reversals", "reversed_load", "degrees_under_reversed_load")}
+            check(abs(found["load_reversals"] - number_of) <= (0 if "dry" not in name else 0.05*number_of), f"{name}: {place}load_reversals against the rows",
+                  f"{found['load_reversals']}, not {number_of}")
+            check(largest*(1 - 1e-4) <= found["reversed_load"] <= largest*(1.001 if "dry" not in name else 1.05), f"{name}: {place}reversed_load against the rows",
+                  f"{found['reversed_load']}, not {largest}")
+            check(abs(found["degrees_under_reversed_load"] - degrees) <= 0.011*(number_of + 1), f"{name}: {place}degrees under reversed load against the rows",
+                  f"{found['degrees_under_reversed_load']}, not {degrees}")
+
+
+def prefixes(program: Path, work: Path, name: str) -> list[str]:
+    """Prefixes of the pins of a case whose load along the rod is a result."""
+    summary, _ = run(program, work, ROOT / "cases" / f"{name}.nml", "output.ideal_twin=F", "integrator.revolutions=2")
+    return [key.removesuffix("cycle_load_reversals") for key in summary if key.endswith("cycle_load_reversals")]
+
+
+def test_slap(program: Path, work: Path) -> None:
+    """The hardest impact of a cycle, its angle and corner, and the number of impacts against the events; the energy against the rows."""
+    case = ROOT / "cases" / "joints" / "piston_slap.nml"
+    summary, rows = run(program, work, case, "output.samples_per_revolution=20000")
+    with (work / "piston_slap.events.csv").open() as file:
+        events = [row for row in csv.DictReader(file) if row["event"] == "contact_begins"]
+    begins = [(float(row["time[s]"]), float(row["normal_speed[m/s]"]), float(row["crank_angle[rad]"]), row["joint"]) for row in events]
+    ends = summary["cycle_start"] + summary["cycle_duration"]
+    inside = [event for event in begins if summary["cycle_start"] < event[0] <= ends]
+    for joint, prefix in (("piston_pin", ""), *((f"guide_{i}", f"guide_{i}_") for i in range(1, 5))):
+        ours = [event for event in inside if event[3] == joint]
+        check(summary[f"{prefix}cycle_impacts"] == len(ours), f"{joint}: number of impacts", f"{summary[f'{prefix}cycle_impacts']}, not {len(ours)}")
+        check(close(summary[f"{prefix}cycle_max_impact_speed"], max(event[1] for event in ours), 1e-9), f"{joint}: largest speed of impacts in the cycle")
+        check(close(summary[f"{prefix}max_impact_speed"], max(event[1] for event in begins if event[3] == joint), 1e-9), f"{joint}: the same in the run")
+    skirt = [event for event in inside if event[3] != "piston_pin"]
+    time, speed, angle, corner = max(skirt, key=lambda event: event[1])
+    check(close(summary["cycle_slap_speed"], speed, 1e-9) and summary["cycle_slap_corner"] == corner, "speed and corner of the slap")
+    check(abs(summary["cycle_slap_angle"] - math.degrees(angle) % 360) < 1e-6, "crank angle of the slap", str(summary["cycle_slap_angle"]))
+    check(summary["cycle_slap_impacts"] == len(skirt), "impacts of the skirt")
+    resolved = (work / "piston_slap.resolved.nml").read_text()
+    mass, inertia = (float(next(line for line in resolved.splitlines() if line.strip().startswith(f"{key} =")).split("=")[1].split("!")[0])
+                     for key in ("piston_mass", "piston_inertia"))
+
+    def energy(event) -> float:   # the rows before and after, which are at most 3e-7 s away
+        nearest = min(rows, key=lambda row: abs(row["time"] - event[0]))
+        return 0.5*(mass*nearest["piston_offset_rate"]**2 + inertia*nearest["piston_tilt_rate"]**2)
+
+    largest = max(map(energy, skirt))
+    check(close(summary["cycle_slap_energy"], largest, 0.02), "energy of the slap against the rows", f"{summary['cycle_slap_energy']}, not {largest}")
+    check(close(summary["guide_2_cycle_max_impact_energy"], max(energy(event) for event in skirt if event[3] == "guide_2"), 0.02), "energy at one corner")
+    study = work / "slaps.nml"
+    study.write_text(f"&study case = '{case}', statistics = 'cycle_slap_speed, max abs guide_1_force, guide_2_cycle_max_impact_speed_angle' /\n"
+                     "&parameter key = 'integrator.revolutions', values = '2, 3' /\n")
+    ran = subprocess.run([program, "sweep", "-q", "-o", work, study], capture_output=True, text=True, check=False)
+    check(ran.returncode == 0, "a study of the slap", ran.stderr)
+    with (work / "slaps.runs.csv").open() as file:
+        for row, revolutions in zip(csv.DictReader(file), (2, 3)):
+            alone, _ = run(program, work, case, f"integrator.revolutions={revolutions}")
+            check(close(float(row["cycle_slap_speed[m/s]"]), alone["cycle_slap_speed"], 1e-4), "speed of the slap in a study", str(row))
+            check(abs(float(row["guide_2_cycle_max_impact_speed_angle[deg]"]) - alone["guide_2_cycle_max_impact_speed_angle"]) < 0.1, "its angle")
+    study.write_text(study.read_text().replace("cycle_slap_speed", "cycle_slap_sped"))
+    ran = subprocess.run([program, "sweep", "-q", "-o", work, study], capture_output=True, text=True, check=False)
+    check(ran.returncode == 3 and "'cycle_slap_sped': must be" in ran.stderr and "did you mean cycle_slap_speed?" in ran.stderr, "a wrong name", ran.stderr)
+
+
 def test_rows(program: Path, work: Path) -> None:
     """Work and extremes against the rows of dense traces."""
     for name, place in (("joints/both_pins_lubricated", "crank_pin_"), ("film/sim_IV_mixed", ""), ("joints/piston_slap", ""),
@@ -279,7 +380,7 @@ def main() -> int:
             sys.exit(f"{built.stderr}\n0 passed, 1 failed")
         program = ROOT / built.stdout.strip()
     with tempfile.TemporaryDirectory(prefix="answers") as work:
-        for test in (test_engine, test_ledger, test_rows, test_extremes, test_no_gas, test_wear, test_scope):
+        for test in (test_engine, test_ledger, test_reversals, test_slap, test_rows, test_extremes, test_no_gas, test_wear, test_scope):
             folder = Path(work) / test.__name__
             folder.mkdir()
             test(program.resolve(), folder)

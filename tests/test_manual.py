@@ -22,6 +22,7 @@ from urllib.parse import unquote
 for folder in ("manual", "bench"):
     sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts" / folder))
 
+import gudgeon
 import tell_rungs
 import tutorial
 from test_faults import ROOT, assertions, check, program_built
@@ -59,7 +60,7 @@ def check_markdown() -> None:
             if not target.exists() or (anchor and target.suffix == ".md" and anchor not in anchors(target)):
                 broken.append(link)
         for path in PATH.findall(text):
-            if not (any(ROOT.glob(path)) if "*" in path else (ROOT / path).exists()) and not path.endswith("linear_ramp.f90"):
+            if not (any(ROOT.glob(path)) if "*" in path else (ROOT / path).exists()) and not path.endswith(("linear_ramp.f90", "hu_guo.f90")):
                 broken.append(path)
         check(not broken, f"{page.relative_to(ROOT)}: its links and paths lead to existing files and headings", str(broken))
 
@@ -431,6 +432,33 @@ def code_after(text: str, words: str) -> str:
     return "\n".join(lines).strip() + "\n"
 
 
+def insert(file: Path, lines: dict[str, str]) -> None:
+    """Put each line before the first place of a text in a file."""
+    text = file.read_text(encoding="utf-8")
+    for place, line in lines.items():
+        assert place in text
+        text = text.replace(place, f"    {line.strip()}\n{place}" if not line.endswith(",") else f"{line} {place}", 1)
+    file.write_text(text, encoding="utf-8")
+
+
+def check_new_answer(copy: Path) -> None:
+    """An answer that is one line beside its column is where users look for it: against the rows of the trace."""
+    run = gudgeon.load(copy / "results/dry_0100um")
+    force = abs(run["guide_force"])
+    kept = run.summary["max_guide_force"]
+    check(0 < force.max() <= kept * (1 + 1e-9), "a new answer against its column", f"{kept}, {force.max()}")
+    check(run.summary["cycle_max_guide_force"] <= kept, "a new answer over the last cycle")
+    (copy / "study.nml").write_text("&study case = 'cases/sim_I.nml', statistics = 'cycle_max_guide_force, max abs guide_force' /\n"
+                                    "&parameter key = 'integrator.revolutions', values = '2, 3' /\n")
+    done = run_in(copy, "fpm run -- sweep -q study.nml")
+    check(done.returncode == 0, "a new answer in a study", done.stderr[-300:])
+    with (copy / "results/study.runs.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        new, known = float(row["cycle_max_guide_force[N]"]), float(row["guide_force_max_abs[N]"])
+        check(abs(new / known - 1) < 1e-3, "a new answer in a study, against the statistic of the column", f"{new}, {known}")
+
+
 def run_in(folder: Path, command: str) -> subprocess.CompletedProcess:
     return subprocess.run(command, shell=True, cwd=folder, capture_output=True, text=True)
 
@@ -452,16 +480,19 @@ def check_law() -> None:
         law = copy / "src/friction/linear_ramp.f90"
         law.write_text(code_after(page, "**1. "), encoding="utf-8")
         use, _, line = code_after(page, "**2. ").partition("...")
-        registry = copy / "src/friction/friction_laws.f90"
-        text = registry.read_text(encoding="utf-8")
-        text = text.replace("  implicit none\n", f"  {use.strip()}\n  implicit none\n", 1)
-        last = "    call list%law('elasto_plastic', elasto_plastic_t())\n"
-        text = text.replace(last, f"{last}    {line.strip()}\n", 1)
-        registry.write_text(text, encoding="utf-8")
-        for command in code_after(page, "**3. ").splitlines():
-            done = run_in(copy, command)
-            check(done.returncode == 0, f"adding a law: {command}", (done.stdout + done.stderr)[-800:])
-            check("linear_ramp" in done.stdout or "done" in done.stdout, f"adding a law, output of: {command}", done.stdout[-300:])
+        insert(copy / "src/friction/friction_laws.f90", {"  implicit none\n": use, "    call list%law('dahl'": line})
+        (copy / "src/contact/hu_guo.f90").write_text(code_after(page, "**5. "), encoding="utf-8")
+        use, _, line = code_after(page, "**6. ").partition("...")
+        insert(copy / "src/contact/contact_laws.f90", {"  implicit none\n": use, "    call list%law('flores'": line})
+        columns = copy / "src/scene/trace_columns.f90"
+        insert(columns, {"    call row%add('frame_force_x[N]'": code_after(page, "**7. ")})
+        insert(columns, {"column_list_t, name_length, ": "largest_size,"})
+        for number in ("**3. ", "**8. "):
+            for command in code_after(page, number).splitlines():
+                done = run_in(copy, command)
+                check(done.returncode == 0, f"adding a law: {command}", (done.stdout + done.stderr)[-800:])
+                check(any(word in done.stdout for word in ("linear_ramp", "done", "max_guide_force")), f"adding a law, output of: {command}", done.stdout[-300:])
+        check_new_answer(copy)
         suite = copy / "tests/test_friction.f90"
         text = suite.read_text(encoding="utf-8")
         text = text.replace("  end subroutine run_test_friction\n", f"    {code_after(page, 'and call it in').strip()}\n  end subroutine run_test_friction\n")

@@ -34,8 +34,8 @@ module certificate
   !> Units of coordinates and speeds, and parts of names of other columns with these units. Of an elastic rod stretch and deflection
   !> midway count; a single shape may have a thousandth of their ranges. The deflection of bristles jumps as a force does.
   character(len=*), parameter :: of_states(*) = [character(len=7) :: '[m]', '[rad]', '[m/s]', '[rad/s]']
-  character(len=*), parameter :: of_others(*) = [character(len=15) :: 'film_thickness', 'sliding_speed', 'half_angle', 'bristle', &
-    'wall_deflection', 'rod_mode_', 'rod_axial_', '_gap']
+  character(len=*), parameter :: of_others(*) = [character(len=15) :: 'film_thickness', 'sliding_speed', 'closing_speed', &
+    'half_angle', 'bristle', 'wall_deflection', 'rod_mode_', 'rod_axial_', '_gap']
 
   type :: certificate_t
     character(len=:), allocatable :: reason      !! reason for which no certificate could be made; else unallocated

@@ -115,7 +115,8 @@ contains
   function results_reference() result(text)
     character(len=:), allocatable :: text
     character(len=:), allocatable :: kept
-    character(len=name_length), allocatable :: seen(:), seen_kept(:)
+    character(len=name_length), allocatable :: seen(:)
+    character(len=len(quantities_of_runs%name)), allocatable :: seen_kept(:)
     type(error_t), allocatable :: error
     type(column_list_t) :: list
     integer :: i
@@ -207,7 +208,7 @@ contains
   !> Append the results that are kept of the columns of a scene and that no earlier scene had.
   subroutine add_kept(list, seen, text)
     type(column_list_t), intent(in) :: list
-    character(len=name_length), allocatable, intent(inout) :: seen(:)
+    character(len=len(quantities_of_runs%name)), allocatable, intent(inout) :: seen(:)
     character(len=:), allocatable, intent(inout) :: text
     integer :: i
     do i = 1, size(list%kept)
@@ -226,7 +227,7 @@ contains
     subroutine add(name, unit, meaning)
       character(len=*), intent(in) :: name, unit, meaning
       if (any(seen == name)) return
-      seen = [character(len=name_length) :: seen, name]
+      seen = [character(len=len(seen)) :: seen, name]
       text = text//'| `'//name//'` | '//trim(unit)//' | '//escaped(sentence(meaning))//' |'//newline
     end subroutine add
   end subroutine add_kept

@@ -13,7 +13,7 @@ module run_summary
   use run_figures, only: run_figures_t, pin_figures_t, elastic_figures_t
   use piston_guide, only: n_corners, corner_names
   use period_watch, only: period_watch_t
-  use joint_places, only: n_places, in_order, name_prefix, crank_pin, piston_pin, small_end
+  use joint_places, only: n_places, in_order, name_prefix, piston_pin, small_end
   use archard_wear, only: of_pin, of_bore
   use film_heat, only: heat_totals_t
   use case_definition, only: case_t
@@ -173,8 +173,6 @@ contains
       if (allocated(joint%film) .and. abs(pin%film_change) > 0) &
         call table%add('film_thickness_change', pin%film_change, prefix)
       call add_contacts(prefix, pin)
-      if (report%figures%floating%is_present .and. joint%can_touch() .and. prefix /= name_prefix(crank_pin)) &
-        call table%add('max_impact_speed', pin%max_impact_speed, prefix)
       call table%add('max_entry_penetration', pin%max_entry_penetration, prefix)
       call table%add('impacts_beyond_validity', pin%impacts_beyond_validity, prefix)
       call table%add('contacts_beyond_validity', pin%contacts_beyond_validity, prefix)

@@ -80,7 +80,6 @@ module summary_quantities
     quantity_t('contacts', '1', 'contacts that began'), &
     quantity_t('contact_time_fraction', '1', 'share of the simulated time in contact'), &
     quantity_t('max_penetration', 'm', 'deepest penetration; 0 without contact'), &
-    quantity_t('max_impact_speed', 'm/s', 'largest normal speed at which a contact of a floating pin began'), &
     quantity_t('max_entry_penetration', 'm', 'deepest penetration at the instant that counts as the beginning of a contact'), &
     quantity_t('impacts_beyond_validity', '1', &
       'contacts that began faster than 1e-5 sqrt(E/rho), the limit of the contact theory'), &

@@ -1,15 +1,17 @@
 !> The columns of a joint with clearance. Columns of the piston pin have plain names, those of other places have a prefix.
 module joint_columns
   use kinds, only: dp
-  use trace_row, only: trace_row_t, least, largest, mean, of_run, of_cycle
+  use trace_row, only: trace_row_t, least, largest, mean, changes, reversed, reversed_angle, impacts, of_run, of_cycle
   use chain_loads, only: force_size
+  use chain_motion, only: motion_t
   use joint_places, only: places, piston_pin
   use joint_evaluation, only: joint_evaluation_t
   use clearance_joint, only: clearance_joint_t
+  use joint_events, only: may_touch
   use archard_wear, only: of_pin, of_bore
   implicit none
   private
-  public :: add_joint_columns, add_pin_force
+  public :: add_joint_columns, add_pin_force, add_rod_load
 
 contains
 
@@ -36,6 +38,12 @@ contains
       'smallest gap between pin and bearing; negative where the pin penetrates')
     call row%keep('min_film_thickness', least, 'smallest film thickness; negative: deepest penetration', &
       rate=-now%penetration_rate, is_of_contact=.true., has_angle=.true.)
+    call row%add_on_request('closing_speed[m/s]', now%penetration_rate, 'speed at which this gap closes')
+    if (may_touch(joint)) then
+      call row%keep('max_impact_speed', largest, 'largest speed at which a contact began; 0: none began', at_impacts=.true., &
+        has_angle=.true.)
+      call row%keep('impacts', impacts, 'contacts that began', told=of_cycle, unit='1', at_impacts=.true.)
+    end if
     call row%add('phase[-]', real(joint%phase, dp), 'what acts in the joint: 0 nothing (free flight), 1 the oil film, 2 contact')
     do k = 1, joint%n_elements
       call joint%slots(k)%element%add_columns(now, row)
@@ -58,6 +66,22 @@ contains
     call row%add_on_request('pin_force[N]', force_size(force), 'size of the force of the joint on the pin')
     call row%keep('max_pin_force', largest, 'largest force of the joint on the pin', told=of_run)
   end subroutine add_pin_force
+
+  !> Add the column of the force that a pin carries along the rod; `force` [N] is that of its joint on it.
+  pure subroutine add_rod_load(place, motion, force, row)
+    integer, intent(in) :: place   !! of the pin, at an end of the rod
+    type(motion_t), intent(in) :: motion
+    real(dp), intent(in) :: force(2)
+    type(trace_row_t), intent(inout) :: row
+    row%place = places(place)%prefix
+    call row%add_on_request('load_along_rod[N]', -places(place)%sense*(force(1)*motion%cos_rod - force(2)*motion%sin_rod), &
+      'force of the pin along the rod, positive where it presses on it')
+    call row%keep('load_reversals', changes, 'changes of the sense of the load along the rod', told=of_cycle, unit='1')
+    call row%keep('reversed_load', reversed, &
+      'largest load along the rod in the sense opposite to that of the largest load; 0: it never reverses', told=of_cycle)
+    call row%keep('degrees_under_reversed_load', reversed_angle, 'crank angle under such loads', told=of_cycle, unit='deg')
+    row%place = ''
+  end subroutine add_rod_load
 
   !> Add the volumes that wear in a second.
   pure subroutine add_wear(joint, now, row)

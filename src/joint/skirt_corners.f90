@@ -2,7 +2,7 @@
 module skirt_corners
   use kinds, only: dp
   use bearing_size, only: bearing_t
-  use trace_row, only: trace_row_t, least, largest
+  use trace_row, only: trace_row_t, least, largest, impacts, of_cycle
   use chain_motion, only: motion_t
   use friction_law, only: friction_law_t
   use piston_skirt, only: skirt_t, n_corners, corner_names
@@ -69,6 +69,10 @@ contains
         'gap between this corner of the skirt and the bore; negative where it penetrates')
       call row%keep('min_gap', least, 'smallest gap at this corner of the skirt; negative: deepest penetration', &
         rate=-now%corner(i)%depth_rate, is_of_contact=.true.)
+      call row%add_on_request('closing_speed[m/s]', now%corner(i)%depth_rate, 'speed at which this gap closes')
+      call row%keep('max_impact_speed', largest, 'largest speed at which a contact of this corner began; 0: none began', &
+        at_impacts=.true., has_angle=.true.)
+      call row%keep('impacts', impacts, 'contacts of this corner that began', told=of_cycle, unit='1', at_impacts=.true.)
       call row%add('force[N]', now%corner(i)%normal_force, &
         'contact force of this corner, positive where it presses; 0 without contact')
       call row%keep('max_force', largest, 'largest contact force of this corner of the skirt', is_of_contact=.true.)

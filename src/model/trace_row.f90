@@ -10,14 +10,17 @@ module trace_row
   implicit none
   private
   public :: trace_row_t, column_list_t, kept_t, name_length, most_columns
-  public :: least, largest, largest_size, mean, integral, everywhere, of_run, of_cycle
+  public :: least, largest, largest_size, mean, integral, changes, reversed, reversed_angle, impacts
+  public :: everywhere, of_run, of_cycle
 
   integer, parameter :: name_length = 40
   integer, parameter :: meaning_length = 160
   integer, parameter :: most_columns = 360
 
-  !> What is kept of a column: an extreme, that of its size, or its mean or integral over the time.
-  integer, parameter :: least = 1, largest = 2, largest_size = 3, mean = 4, integral = 5
+  !> What is kept of a column: an extreme, that of its size, its mean or integral over the time; how often its sense changes, the
+  !> largest value in the sense opposite to that of the largest size, and the crank angle in that sense; or the number of contacts.
+  integer, parameter :: least = 1, largest = 2, largest_size = 3, mean = 4, integral = 5, changes = 6, reversed = 7, &
+    reversed_angle = 8, impacts = 9
 
   integer, parameter :: everywhere = 0, of_run = 1, of_cycle = 2   !! where it is told: over the run and its last cycle, or over one
 
@@ -26,14 +29,15 @@ module trace_row
     character(len=13) :: place = ''                !! prefix of its name
     character(len=name_length) :: name = ''        !! that over the run; with `cycle_` before it that over the last cycle
     character(len=meaning_length) :: meaning = ''
-    integer :: what = 0                            !! least, largest, largest_size, mean or integral
+    integer :: what = 0                            !! least, largest, ...
     integer :: column = 0                          !! its index among all columns of the scene
     integer :: told = everywhere
-    character(len=name_length) :: unit = ''        !! that of the column, unless it is an integral
+    character(len=name_length) :: unit = ''        !! that of the column, unless `keep` gives it
     logical :: has_rate = .false.                  !! the rate of the column is known
     logical :: is_cubic = .false.                  !! inside a step it is the cubic through values and rates; no angle
     logical :: is_of_contact = .false.             !! it follows from the state alone, and events tell it of each contact
     logical :: is_sampled = .false.                !! it is found at the points of Gauss's rule of each step
+    logical :: at_impacts = .false.                !! of its values where a contact at the place begins, alone
     logical :: has_angle = .false.                 !! of the last cycle, the crank angle of the extreme is told
   end type kept_t
 
@@ -127,15 +131,15 @@ contains
 
   !> Keep a result of the column that was just added. With its rate, which must be that of the column at every instant, and 0
   !> while names are collected, peaks inside a step are searched with fewer evaluations, and with `is_cubic` with none.
-  pure subroutine keep(self, name, what, says, rate, told, unit, is_cubic, is_of_contact, is_sampled, has_angle)
+  pure subroutine keep(self, name, what, says, rate, told, unit, is_cubic, is_of_contact, is_sampled, at_impacts, has_angle)
     class(trace_row_t), intent(inout) :: self
     character(len=*), intent(in) :: name   !! of the result
-    integer, intent(in) :: what            !! least, largest, largest_size, mean or integral
+    integer, intent(in) :: what            !! least, largest, ...
     character(len=*), intent(in) :: says   !! its meaning
     real(dp), intent(in), optional :: rate
     integer, intent(in), optional :: told  !! everywhere, of_run or of_cycle
-    character(len=*), intent(in), optional :: unit   !! of an integral
-    logical, intent(in), optional :: is_cubic, is_of_contact, is_sampled, has_angle   !! see `kept_t`
+    character(len=*), intent(in), optional :: unit   !! of a result that does not have that of its column
+    logical, intent(in), optional :: is_cubic, is_of_contact, is_sampled, at_impacts, has_angle   !! see `kept_t`
     if (.not. self%is_naming) then   ! of a row, which makes no record: there are many
       if (present(rate)) self%rates(self%n) = rate
       return
@@ -150,6 +154,7 @@ contains
       if (present(is_cubic)) kept%is_cubic = is_cubic
       if (present(is_of_contact)) kept%is_of_contact = is_of_contact
       if (present(is_sampled)) kept%is_sampled = is_sampled
+      if (present(at_impacts)) kept%at_impacts = at_impacts
       if (present(has_angle)) kept%has_angle = has_angle
     end associate
   end subroutine keep

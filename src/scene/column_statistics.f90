@@ -14,16 +14,17 @@ module column_statistics
   use run_length, only: longest_period
   implicit none
   private
-  public :: statistic_t, column_statistics_t, read_statistics
+  public :: statistic_t, column_statistics_t, read_statistics, of_result
 
-  integer, parameter :: of_min = 1, of_max = 2, of_max_abs = 3, of_range = 4, of_mean = 5, of_rms = 6
+  integer, parameter :: of_min = 1, of_max = 2, of_max_abs = 3, of_range = 4, of_mean = 5, of_rms = 6, &
+    of_result = 7   ! of the run, by its name in the summary: not followed here
   character(len=7), parameter :: kinds_of(6) = [character(len=7) :: 'min', 'max', 'max abs', 'range', 'mean', 'rms']
 
   !> One statistic that is wanted.
   type :: statistic_t
     integer :: kind = 0
-    character(len=40) :: column = ''   !! with its unit
-    character(len=56) :: name = ''     !! of its column in the results, with its unit
+    character(len=48) :: column = ''   !! with its unit, or the name of a result
+    character(len=72) :: name = ''     !! of its column in the results, with its unit
   end type statistic_t
 
   !> Sums and extremes of each column over a time.
@@ -51,8 +52,8 @@ module column_statistics
 
 contains
 
-  !> Read statistics such as 'max abs piston_acceleration, mean film_power'. Errors: a statistic that there is not, or a column that
-  !> the scene of the case does not have.
+  !> Read statistics such as 'max abs piston_acceleration, mean film_power', and names of results. Errors: a statistic that there is
+  !> not, or a column that the scene of the case does not have.
   subroutine read_statistics(text, case, wanted, error)
     character(len=*), intent(in) :: text
     type(case_t), intent(in) :: case
@@ -72,6 +73,11 @@ contains
       blank = index(part, ' ', back=.true.)
       word = squeezed(part(:max(0, blank - 1)))
       column = part(blank + 1:)
+      if (blank == 0 .and. part /= '') then
+        call add(statistic_t(of_result, name=part))
+        if (allocated(error)) return
+        cycle
+      end if
       one%kind = findloc(kinds_of == word, .true., 1)
       if (one%kind == 0) then
         near = nearest_word(word, kinds_of)
@@ -90,12 +96,17 @@ contains
       end if
       one%column = list%names(i)
       one%name = trim(bare(list%names(i)))//'_'//replaced(word, ' ', '_')//list%names(i)(scan(list%names(i), '['):)
-      if (any(wanted%name == one%name)) then
-        call fail(error, ''''//part//''': is given twice', status_case_file)
-        return
-      end if
-      wanted = [wanted, one]
+      call add(one)
+      if (allocated(error)) return
     end do
+
+  contains
+
+    subroutine add(one)
+      type(statistic_t), intent(in) :: one
+      if (any(wanted%name == one%name)) call fail(error, ''''//part//''': is given twice', status_case_file)
+      wanted = [wanted, one]
+    end subroutine add
   end subroutine read_statistics
 
   !> The name of a column without its unit.
@@ -122,7 +133,7 @@ contains
   pure logical function is_on(self)
     class(column_statistics_t), intent(in) :: self
     is_on = .false.
-    if (allocated(self%wanted)) is_on = size(self%wanted) > 0
+    if (allocated(self%wanted)) is_on = any(self%wanted%kind /= of_result)
   end function is_on
 
   !> Find the columns in the scene of the case that is run next.

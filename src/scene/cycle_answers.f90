@@ -13,7 +13,8 @@ module cycle_answers
   use cycle_watch, only: cycle_watch_t
   use period_watch, only: period_watch_t
   use run_extremes, only: run_extremes_t
-  use result_ledger, only: ledger_t, degrees_in_cycle
+  use piston_skirt, only: n_corners, corner_names
+  use result_ledger, only: kept_result_t, degrees_in_cycle
   use archard_wear, only: of_pin, of_bore
   use gas_cycle, only: released_share
   use ideal_linkage, only: linkage_t
@@ -24,7 +25,7 @@ module cycle_answers
 
   !> What a result is.
   type :: quantity_t
-    character(len=40) :: name = ''
+    character(len=48) :: name = ''
     character(len=14) :: unit = ''    !! unit as in the file; 1: a number without unit; empty: a text
     character(len=170) :: meaning = ''
   end type quantity_t
@@ -69,9 +70,17 @@ module cycle_answers
     quantity_t('cycle_wear_depth_rate_pin', 'm/h', &
       'largest depth by which a bin of the pin has worn in the cycle, in an hour of such cycles; without `extrapolation`'), &
     quantity_t('cycle_wear_depth_rate_bore', 'm/h', 'the same on the bore'), &
+    quantity_t('cycle_wear_depth_100h_pin', 'm', 'the same on the pin, in 100 hours of such cycles'), &
+    quantity_t('cycle_wear_depth_100h_bore', 'm', 'the same on the bore'), &
     quantity_t('cycle_mean_crank_speed', 'rad/s', 'angle that the crank turns through in the cycle over its duration'), &
     quantity_t('cycle_pin_turn', 'rad', 'angle by which a floating pin turns in the cycle, positive from x to y'), &
     quantity_t('cycle_speed_fluctuation', '1', 'largest minus smallest crank speed in the cycle, over the mean'), &
+    quantity_t('cycle_slap_impacts', '1', 'contacts of the corners of the skirt with the bore that began in the cycle'), &
+    quantity_t('cycle_slap_speed', 'm/s', 'largest speed at which one of them began: the hardest slap'), &
+    quantity_t('cycle_slap_angle', 'deg', 'crank angle then, from 0 to the length of the cycle'), &
+    quantity_t('cycle_slap_corner', '', 'which corner it was, `guide_1` to `guide_4`'), &
+    quantity_t('cycle_slap_energy', 'J', &
+      'largest kinetic energy of the piston across its bore and of its tilt when one of them began'), &
     quantity_t('cycle_mean_piston_speed', 'm/s', 'two strokes of the ideal mechanism in the mean time of a revolution'), &
     quantity_t('cycle_max_cylinder_pressure', 'Pa', &
       'largest pressure of the gas in the cycle, in the cylinder of the mechanism itself'), &
@@ -100,12 +109,12 @@ module cycle_answers
 contains
 
   !> The answers of a run that has ended; none if it has no whole cycle. The scene must tell the parts of the work apart.
-  function find_answers(scene, cycles, periods, extremes, ledger) result(answers)
+  function find_answers(scene, cycles, periods, extremes, kept_results) result(answers)
     type(scene_t), intent(in) :: scene
     type(cycle_watch_t), intent(in) :: cycles
     type(period_watch_t), intent(in) :: periods
     type(run_extremes_t), intent(in) :: extremes
-    type(ledger_t), intent(in) :: ledger
+    type(kept_result_t), intent(in) :: kept_results(:)   !! those of columns
     type(answer_t), allocatable :: answers(:)
     type(cycle_t) :: cycle
     real(dp) :: displacement   !! swept in all cycles of the gas in this cycle [m^3]
@@ -197,14 +206,16 @@ contains
         worn = extremes%wear_growth(scene, joint%place, revolutions)*3600/cycle%duration
         if (all(worn >= 0)) call add('cycle_wear_depth_rate_pin', worn(of_pin), i)
         if (all(worn >= 0)) call add('cycle_wear_depth_rate_bore', worn(of_bore), i)
+        if (all(worn >= 0)) call add('cycle_wear_depth_100h_pin', 100*worn(of_pin), i)
+        if (all(worn >= 0)) call add('cycle_wear_depth_100h_bore', 100*worn(of_bore), i)
         if (allocated(joint%heat)) then
           call add('cycle_mean_film_temperature', pin%heat(temperature_sum)/cycle%duration, i)
           call add('cycle_heat_to_oil', pin%heat(heat_to_oil), i)
           call add('cycle_heat_to_housing', pin%heat(heat_to_housing), i)
         end if
-        load = kept(name_prefix(joint%place)//'mean_pin_force')
+        load = kept(name_prefix(joint%place), 'mean_pin_force')
         if (joint%reports_film .and. joint%has_kind(of_asperities) .and. load > 0) call add('cycle_asperity_load_share', &
-          kept(name_prefix(joint%place)//'mean_asperity_force')/load, i)
+          kept(name_prefix(joint%place), 'mean_asperity_force')/load, i)
       end associate
     end subroutine add_joint
 
@@ -214,8 +225,11 @@ contains
       mean_speed = two_pi*revolutions/cycle%duration
       call add('cycle_mean_crank_speed', cycles%direction*mean_speed)
       if (allocated(scene%chain%floating)) call add('cycle_pin_turn', cycle%pin_turn)
-      call add('cycle_speed_fluctuation', (kept('max_crank_speed') - kept('min_crank_speed'))/mean_speed)
+      call add('cycle_speed_fluctuation', (kept('', 'max_crank_speed') - kept('', 'min_crank_speed'))/mean_speed)
       if (allocated(scene%given_load)) return
+      if (allocated(scene%guide)) then
+        if (scene%guide%is_loose) call add_slap()
+      end if
       associate (bodies => scene%chain%bodies)
         linkage = linkage_t(bodies%crank%length, bodies%rod%length, bodies%piston%axis_offset)
       end associate
@@ -240,10 +254,27 @@ contains
         call add('cycle_one_way_fmep', one_way/displacement)
     end subroutine add_machine
 
-    !> A result that is kept of a column, over this cycle.
-    pure real(dp) function kept(name)
-      character(len=*), intent(in) :: name
-      kept = ledger%over_cycle(name, cycles%ended, revolutions)
+    !> The hardest impact of the skirt in the cycle.
+    subroutine add_slap()
+      integer :: hardest
+      hardest = maxloc([(kept(corner_names(i)//'_', 'max_impact_speed'), i=1, n_corners)], 1)
+      call add('cycle_slap_impacts', sum([(kept(corner_names(i)//'_', 'impacts'), i=1, n_corners)]))
+      if (.not. kept(corner_names(hardest)//'_', 'max_impact_speed') > 0) return
+      call add('cycle_slap_speed', kept(corner_names(hardest)//'_', 'max_impact_speed'))
+      call add('cycle_slap_angle', kept(corner_names(hardest)//'_', 'max_impact_speed_angle'))
+      call add('cycle_slap_corner', 0.0_dp)
+      answers(size(answers))%text = corner_names(hardest)
+      call add('cycle_slap_energy', maxval([(kept(corner_names(i)//'_', 'max_impact_energy'), i=1, n_corners)]))
+    end subroutine add_slap
+
+    !> A result that is kept of a column, over this cycle; 0 if the scene does not have it.
+    pure real(dp) function kept(place, name)
+      character(len=*), intent(in) :: place, name   !! prefix of the place
+      integer :: k
+      kept = 0
+      do k = 1, size(kept_results)
+        if (kept_results(k)%place == place .and. kept_results(k)%name == 'cycle_'//name) kept = kept_results(k)%value
+      end do
     end function kept
   end function find_answers
 end module cycle_answers

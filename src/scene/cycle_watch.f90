@@ -24,6 +24,7 @@ module cycle_watch
     integer :: settle = 0                          !! number of revolutions at the start that are left out of the statistics
     integer :: uncounted = 0                       !! number of revolutions left out in the present run
     logical :: keeps_cycles = .false.              !! keep the results of every revolution counted
+    logical :: wants_answers = .false.             !! the answers of the last cycle are wanted too
     type(cycle_statistics_t) :: statistics         !! of the revolutions counted
     type(cycle_t), allocatable :: cycles(:)        !! results of the first statistics%cycles revolutions counted, if they are kept
     type(column_list_t) :: strobe_list             !! columns to be sampled once in each revolution, at one crank angle

@@ -71,9 +71,10 @@ contains
   end subroutine add_time
 
   !> A contact of corner i begins or ends at time t; `now` is evaluated before that event. `event` is its entry in the trace.
-  subroutine record_contact(self, i, kind, t, now, ledger, figures, event)
+  subroutine record_contact(self, i, kind, scene, t, now, ledger, figures, event)
     class(guide_record_t), intent(inout) :: self
     integer, intent(in) :: i, kind
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     type(ledger_t), intent(inout) :: ledger
@@ -83,7 +84,7 @@ contains
     call self%contact(i)%change(kind, kind == event_contact_begins, t, now%motion%crank_angle, now%guide%corner(i)%depth_rate)
     event = self%contact(i)
     if (kind == event_contact_begins) then
-      call ledger%begin_contact(corner_names(i)//'_', goes_on=.false.)
+      call ledger%begin_contact(corner_names(i)//'_', scene, t, now)
     else
       call ledger%find_contact(corner_names(i)//'_', event%max_penetration, event%max_normal_force)
       call ledger%end_contact(corner_names(i)//'_')

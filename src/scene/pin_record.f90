@@ -75,8 +75,6 @@ contains
       associate (f => figures%pin(self%pin))
         call list%add(name_prefix(self%pin)//'turning', f%turning, 'rad', &
           'angle that the pin has turned through in this bearing')
-        if (touches) call list%add(name_prefix(self%pin)//'max_impact_speed', f%max_impact_speed, 'm/s', &
-          'largest speed at which a contact began')
       end associate
     end if
     if (allocated(self%wear)) call self%wear%declare(name_prefix(self%pin), list, scene%joints(self%joint))
@@ -159,9 +157,10 @@ contains
   end subroutine follow_turn
 
   !> A contact begins or ends at time t; `now` is evaluated before that event. `event` is its entry in the trace.
-  subroutine record_contact(self, kind, t, now, ledger, figures, event, cycles)
+  subroutine record_contact(self, kind, scene, t, now, ledger, figures, event, cycles)
     class(pin_record_t), intent(inout) :: self
     integer, intent(in) :: kind
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     type(ledger_t), intent(inout) :: ledger
@@ -173,14 +172,13 @@ contains
       if (kind == event_contact_begins) then
         f%contacts = f%contacts + 1
         if (present(cycles)) call cycles%count_impact(self%pin)
-        f%max_impact_speed = max(f%max_impact_speed, relative%penetration_rate)
         f%max_entry_penetration = max(f%max_entry_penetration, relative%penetration)
         if (relative%penetration_rate > self%validity_limit) f%impacts_beyond_validity = f%impacts_beyond_validity + 1
       end if
       call self%contact%change(kind, kind == event_contact_begins, t, now%motion%crank_angle, relative%penetration_rate)
       event = self%contact
       if (kind == event_contact_begins) then
-        call ledger%begin_contact(places(self%pin)%prefix, goes_on=.false.)
+        call ledger%begin_contact(places(self%pin)%prefix, scene, t, now)
       else
         if (self%is_too_deep(ledger)) f%contacts_beyond_validity = f%contacts_beyond_validity + 1
         call ledger%find_contact(places(self%pin)%prefix, event%max_penetration, event%max_normal_force)

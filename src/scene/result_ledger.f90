@@ -11,7 +11,9 @@ module result_ledger
   use scene_problem, only: scene_t, evaluation_t
   use inside_step, only: evaluate_inside, inner_points_t, look_at_contacts
   use trace_columns, only: column_list_t, row_values
-  use trace_row, only: name_length, kept_t, least, largest, largest_size, mean, integral, of_run, of_cycle
+  use trace_row, only: name_length, kept_t, least, largest, mean, integral, of_run, of_cycle
+  use column_fold, only: fold_t, found, set_found, is_searched, has_senses, sense_of
+  use root_search, only: bracket_t, next_abscissa, narrow
   use peak_search, only: sample_t, peak_search_t, may_peak, may_exceed, top_of_cubic
   use run_length, only: longest_period
   implicit none
@@ -27,23 +29,17 @@ module result_ledger
     real(dp) :: value = 0
   end type kept_result_t
 
-  !> What is known of a column over a time.
-  type :: fold_t
-    real(dp) :: most(2) = -huge(1.0_dp)                !! largest value, and negative of the smallest one
-    real(dp) :: angle(2) = 0                           !! crank angles of these [rad]
-    real(dp) :: sum = 0                                !! integral over time, of a column that is sampled
-    real(dp) :: duration = 0                           !! that time [s]
-  end type fold_t
-
   type :: ledger_t
     type(kept_t), allocatable, private :: kept(:)
     type(column_list_t), private :: list               !! the columns that are followed
     type(column_list_t), private :: of_contact, cheap  !! those of contacts, and those that are not sampled
+    type(column_list_t), private :: at_impacts         !! the columns whose values count where a contact begins
     integer, allocatable, private :: contact_at(:), cheap_at(:)   !! their places in the list
-    integer, allocatable, private :: at(:)             !! of each result: its column in the list
+    integer, allocatable, private :: at(:)             !! of each result: its column in the list, or behind in that of impacts
     integer, allocatable, private :: in_row(:)         !! of each column: its place in a row of the trace, or 0
     logical, allocatable, private :: is_searched(:, :) !! (1: for its largest, 2: for its smallest value; column)
-    logical, allocatable, dimension(:), private :: has_rate, is_cubic, is_of_contact, is_sampled
+    logical, allocatable, dimension(:), private :: has_rate, is_cubic, is_of_contact, is_sampled, has_senses
+    integer, allocatable, private :: sense(:)          !! of the last value of a column that was not 0
     logical, allocatable, private :: touches(:)        !! the surfaces of its contact touch
     type(fold_t), allocatable, dimension(:), private :: present, whole, episode   !! present revolution, run before it, contact
     type(fold_t), allocatable, private :: recent(:, :) !! of revolution k in element mod(k, longest_period)
@@ -55,6 +51,7 @@ module result_ledger
                                                        !! contacts, 2: of the others
     real(dp), private :: t_before = 0, t = 0           !! beginning and end of the last interval [s]
     real(dp), private :: angle = 0                     !! crank angle at its end [rad]
+    real(dp), private :: angle_inside = 0              !! of the values inside [rad]
     real(dp), allocatable, private :: before(:), last(:), last_rate(:)   !! values there, and rates at its end
     real(dp), allocatable, dimension(:), private :: values, rates, inside   !! at the end of the interval, and inside
     real(dp), allocatable, private :: samples(:, :)    !! values at the points of Gauss's rule in the interval
@@ -82,23 +79,29 @@ contains
   subroutine prepare(self, list)
     class(ledger_t), intent(inout) :: self
     type(column_list_t), intent(in) :: list   !! the columns of a row
-    integer :: i, n
+    integer :: i, n, m
     allocate (self%kept(0))
     if (allocated(list%kept)) self%kept = list%kept
     self%list = list
     if (.not. allocated(list%names)) allocate (self%list%names(0))
     n = size(self%list%names)
-    self%list%id = pack([(i, i=1, n)], [(any(self%kept%column == i), i=1, n)])
+    self%at_impacts = self%list
+    self%list%id = pack([(i, i=1, n)], [(any(self%kept%column == i .and. .not. self%kept%at_impacts), i=1, n)])
     n = size(self%list%id)
-    self%at = [(findloc(self%list%id, self%kept(i)%column, 1), i=1, size(self%kept))]
+    self%at_impacts%id = pack(self%kept%column, self%kept%at_impacts)   ! each by itself: places may share a column
+    self%at = [(merge(n + count(self%kept(:i)%at_impacts), findloc(self%list%id, self%kept(i)%column, 1), &
+      self%kept(i)%at_impacts), i=1, size(self%kept))]
+    m = n + size(self%at_impacts%id)
     allocate (self%in_row(n), source=0)
     if (allocated(list%id)) self%in_row = [(findloc(list%id, self%list%id(i), 1), i=1, n)]
     allocate (self%is_searched(2, n), source=.false.)
-    allocate (self%has_rate(n), self%is_cubic(n), self%is_of_contact(n), self%is_sampled(n), self%touches(n), source=.false.)
+    allocate (self%has_rate(n), self%is_cubic(n), self%is_sampled(n), self%has_senses(n), source=.false.)
+    allocate (self%is_of_contact(m), self%touches(m), source=.false.)
     do i = 1, size(self%kept)
       associate (kept => self%kept(i), k => self%at(i))
-        if (kept%what == largest .or. kept%what == largest_size) self%is_searched(1, k) = .true.
-        if (kept%what == least .or. kept%what == largest_size) self%is_searched(2, k) = .true.
+        if (kept%at_impacts) cycle
+        self%is_searched(:, k) = self%is_searched(:, k) .or. is_searched(kept)
+        self%has_senses(k) = self%has_senses(k) .or. has_senses(kept)
         self%has_rate(k) = self%has_rate(k) .or. kept%has_rate
         self%is_cubic(k) = self%is_cubic(k) .or. kept%is_cubic
         self%is_of_contact(k) = self%is_of_contact(k) .or. kept%is_of_contact
@@ -106,15 +109,16 @@ contains
       end associate
     end do
     self%needs_inner = any(self%is_sampled)
-    self%contact_at = pack([(i, i=1, n)], self%is_of_contact)
+    self%contact_at = pack([(i, i=1, n)], self%is_of_contact(:n))
     self%cheap_at = pack([(i, i=1, n)], .not. self%is_sampled)
     self%of_contact = self%list
     self%of_contact%id = self%list%id(self%contact_at)
     self%cheap = self%list
     self%cheap%id = self%list%id(self%cheap_at)
-    allocate (self%present(n), self%whole(n), self%episode(n), self%recent(n, 0:longest_period - 1))
+    allocate (self%present(m), self%whole(m), self%episode(m), self%recent(m, 0:longest_period - 1))
     allocate (self%before(n), self%last(n), self%last_rate(n), source=0.0_dp)
-    allocate (self%values(n), self%rates(n), self%inside(n), self%row(n), self%samples(n, size(self%inner%t)))
+    allocate (self%values(n), self%rates(n), self%inside(n), self%row(m), self%samples(n, size(self%inner%t)))
+    allocate (self%sense(n), source=0)
   end subroutine prepare
 
   !> Declare the results over the run so far, and what is known of the present contacts.
@@ -130,60 +134,25 @@ contains
       associate (kept => self%kept(i), whole => self%whole(self%at(i)), episode => self%episode(self%at(i)), &
         name => trim(self%kept(i)%place)//trim(self%kept(i)%name))
         if (kept%told /= of_cycle) then
-          run = joined(whole, self%present(self%at(i)))
+          run = whole + self%present(self%at(i))
           if (kept%what == mean .or. kept%what == integral) then
             call list%add(name//'_integral', run%sum, trim(kept%unit)//' s', trim(kept%meaning)//': integral over time')
             call list%add(name//'_time', run%duration, 's', 'time of this integral')
             if (is_set) whole%sum = run%sum
             if (is_set) whole%duration = run%duration
           else
-            value = found(kept%what, run)
+            value = found(kept, run)
             call list%add(name, value, trim(kept%unit), trim(kept%meaning))
-            if (is_set) call set_extreme(kept%what, value, whole%most)
+            if (is_set) call set_found(kept, value, whole)
           end if
         end if
         if (.not. kept%is_of_contact) cycle
-        value = found(kept%what, episode)
+        value = found(kept, episode)
         call list%add(name//'_of_contact', value, trim(kept%unit), 'the same in the present contact, or in the last one')
-        if (is_set) call set_extreme(kept%what, value, episode%most)
+        if (is_set) call set_found(kept, value, episode)
       end associate
     end do
   end subroutine declare
-
-  pure subroutine set_extreme(what, value, most)
-    integer, intent(in) :: what
-    real(dp), intent(in) :: value
-    real(dp), intent(inout) :: most(2)
-    if (what /= least) most(1) = value
-    if (what /= largest) most(2) = merge(-value, value, what == least)
-  end subroutine set_extreme
-
-  !> The result of what is known of a column.
-  pure real(dp) function found(what, known)
-    integer, intent(in) :: what
-    type(fold_t), intent(in) :: known
-    select case (what)
-    case (least)
-      found = -known%most(2)
-    case (largest)
-      found = known%most(1)
-    case (largest_size)
-      found = maxval(known%most)
-    case (integral)
-      found = known%sum
-    case default   ! mean
-      found = known%sum/max(known%duration, tiny(1.0_dp))
-    end select
-  end function found
-
-  !> What is known of two times together, the first one first.
-  elemental type(fold_t) function joined(one, other) result(both)
-    type(fold_t), intent(in) :: one, other
-    both%most = max(one%most, other%most)
-    both%angle = merge(other%angle, one%angle, other%most > one%most)
-    both%sum = one%sum + other%sum
-    both%duration = one%duration + other%duration
-  end function joined
 
   !> Begin at t, where the scene has been evaluated.
   subroutine begin(self, scene, t, now)
@@ -199,6 +168,7 @@ contains
     self%angle = now%motion%crank_angle
     call row_values(self%list, scene, t, now, 0.0_dp, 0.0_dp, self%last, self%last_rate)
     call add_values(self, self%last, self%angle)
+    self%sense = sense_of(self%last)
   end subroutine begin
 
   !> Loads have changed at an event.
@@ -207,16 +177,25 @@ contains
     self%is_fresh = .true.
   end subroutine change_phases
 
-  !> A contact begins at a place, or goes on there.
-  pure subroutine begin_contact(self, place, goes_on)
+  !> A contact begins at a place at time t, at which the scene has been evaluated before it begins; without a scene it goes on.
+  pure subroutine begin_contact(self, place, scene, t, now)
     class(ledger_t), intent(inout) :: self
     character(len=*), intent(in) :: place    !! prefix of the names of its columns
-    logical, intent(in) :: goes_on           !! what is known of it is kept
-    integer :: i
-    do i = 1, size(self%kept)
-      if (self%kept(i)%place /= place) cycle
-      self%touches(self%at(i)) = self%is_of_contact(self%at(i))
-      if (.not. goes_on) self%episode(self%at(i)) = fold_t()
+    type(scene_t), intent(in), optional :: scene
+    real(dp), intent(in), optional :: t
+    type(evaluation_t), intent(in), optional :: now
+    integer :: k, n
+    n = size(self%last)
+    if (present(scene) .and. size(self%at_impacts%id) > 0) &
+      call row_values(self%at_impacts, scene, t, now, 0.0_dp, 0.0_dp, self%row(n + 1:))
+    do k = 1, size(self%touches)
+      if (.not. any(self%at == k .and. self%kept%place == place)) cycle
+      self%touches(k) = self%is_of_contact(k)
+      if (.not. present(scene)) cycle
+      self%episode(k) = fold_t()
+      if (k <= n) cycle
+      call self%present(k)%add(self%row(k), now%motion%crank_angle)
+      self%present(k)%number = self%present(k)%number + 1
     end do
   end subroutine begin_contact
 
@@ -258,12 +237,8 @@ contains
     class(ledger_t), intent(inout) :: self
     integer, intent(in) :: k
     real(dp), intent(in) :: value, angle
-    associate (known => self%present(k))
-      if (value > known%most(1)) known%angle(1) = angle
-      if (-value > known%most(2)) known%angle(2) = angle
-      known%most = max(known%most, [value, -value])
-    end associate
-    if (self%touches(k)) self%episode(k)%most = max(self%episode(k)%most, [value, -value])
+    call self%present(k)%add(value, angle)
+    if (self%touches(k)) call self%episode(k)%add(value, angle)
   end subroutine add_value
 
   !> Account for the values of a row of the trace in the results of the run and of the present contact alone: those of a revolution
@@ -291,10 +266,12 @@ contains
     type(evaluation_t), intent(in) :: now
     integer, intent(inout) :: evaluations    !! of the scene so far
     logical :: has_slopes(2), has_samples   ! has_slopes: as above, at both ends of this interval
+    real(dp) :: angle   ! at the beginning of the interval
     integer :: k
     if (size(self%last) == 0 .or. .not. t > self%t) return
     if (self%is_fresh) call begin_anew(self, method, scene, evaluations)
     call row_values(self%list, scene, t, now, 0.0_dp, 0.0_dp, self%values, self%rates)
+    angle = self%angle
     self%angle = now%motion%crank_angle
     call add_values(self, self%values, self%angle)
     has_samples = .false.
@@ -303,6 +280,7 @@ contains
     do k = 1, size(self%values)
       if (self%is_searched(1, k)) call search(1, 1.0_dp)
       if (self%is_searched(2, k)) call search(2, -1.0_dp)
+      if (self%has_senses(k)) call follow_sense(k)
     end do
     self%before = self%last
     self%t_before = self%t
@@ -394,6 +372,49 @@ contains
       end if
       call climb(k, sense, sample_t(times(before), v(before), 0.0_dp), sample_t(times(after), v(after), 0.0_dp), inside)
     end subroutine search_samples
+
+    !> Account for the senses of column k in the interval, which it changes at most once inside.
+    subroutine follow_sense(k)
+      integer, intent(in) :: k
+      integer :: first, last
+      real(dp) :: root
+      first = sense_of(self%last(k))
+      last = sense_of(self%values(k))
+      root = angle
+      if (first*last < 0) root = angle_of_root(k, last)
+      if (last == 0) root = self%angle
+      call add_turn(k, first, abs(root - angle))
+      call add_turn(k, last, abs(self%angle - root))
+    end subroutine follow_sense
+
+    subroutine add_turn(k, sense, turn)
+      integer, intent(in) :: k, sense
+      real(dp), intent(in) :: turn   !! of the crank under this sense [rad]
+      if (sense == 0) return
+      associate (known => self%present(k), i => merge(1, 2, sense > 0))
+        if (self%sense(k)*sense < 0) known%number = known%number + 1
+        known%turned(i) = known%turned(i) + turn
+      end associate
+      self%sense(k) = sense
+    end subroutine add_turn
+
+    !> Crank angle at which column k changes to a sense in the interval [rad].
+    real(dp) function angle_of_root(k, sense) result(root)
+      integer, intent(in) :: k, sense
+      real(dp), parameter :: narrow_enough = 1e-4_dp   !! part of the interval: between these points the column is a straight line
+      type(bracket_t) :: bracket
+      real(dp) :: time, angles(2)
+      bracket = bracket_t(self%t, t, sense*self%last(k), sense*self%values(k), width=t - self%t)
+      angles = [angle, self%angle]
+      do while (bracket%b - bracket%a > narrow_enough*(t - self%t))
+        time = next_abscissa(bracket)
+        if (.not. (time > bracket%a .and. time < bracket%b)) exit
+        call look(self, method, scene, time, k, now, evaluations)
+        angles(merge(1, 2, sense*self%inside(k) < 0)) = self%angle_inside
+        call narrow(bracket, time, sense*self%inside(k))
+      end do
+      root = angles(1) + (angles(2) - angles(1))*bracket%fa/(bracket%fa - bracket%fb)
+    end function angle_of_root
   end subroutine follow
 
   !> Evaluate the scene at the points of Gauss's rule, for means; `is_whole` is false if it is not defined in one.
@@ -412,10 +433,12 @@ contains
       if (.not. self%inner%in_domain(i)) cycle
       call row_values(self%list, scene, self%inner%t(i), self%inner%now(i), 0.0_dp, 0.0_dp, self%samples(:, i))
       call add_values(self, self%samples(:, i), self%inner%now(i)%motion%crank_angle)
-      where (self%is_sampled)
-        self%present%sum = self%present%sum + self%inner%weight(i)*self%samples(:, i)
-        self%present%duration = self%present%duration + self%inner%weight(i)
-      end where
+      associate (known => self%present(:size(self%is_sampled)), weight => self%inner%weight(i))
+        where (self%is_sampled)
+          known%sum = known%sum + weight*self%samples(:, i)
+          known%duration = known%duration + weight
+        end where
+      end associate
     end do
   end subroutine take_samples
 
@@ -477,6 +500,7 @@ contains
     logical :: in_domain
     integer :: i
     self%inside = self%values
+    self%angle_inside = at_end%motion%crank_angle
     if (self%is_of_contact(k)) then
       there = at_end
       call look_at_contacts(scene, method, time, there)
@@ -485,7 +509,7 @@ contains
       call evaluate_inside(scene, method, time, y, there, in_domain, evaluations)
       if (.not. in_domain) return
       if (self%is_sampled(k)) then
-        call take(self%list, [(i, i=1, size(self%row))])
+        call take(self%list, [(i, i=1, size(self%last))])
       else
         call take(self%cheap, self%cheap_at)
       end if
@@ -497,9 +521,10 @@ contains
       type(column_list_t), intent(in) :: list
       integer, intent(in) :: at(:)
       call row_values(list, scene, time, there, 0.0_dp, 0.0_dp, self%row(:size(at)))
+      self%angle_inside = there%motion%crank_angle
       do i = 1, size(at)
         self%inside(at(i)) = self%row(i)
-        call add_value(self, at(i), self%row(i), there%motion%crank_angle)
+        call add_value(self, at(i), self%row(i), self%angle_inside)
       end do
     end subroutine take
   end subroutine look
@@ -509,7 +534,7 @@ contains
     class(ledger_t), intent(inout) :: self
     integer, intent(in) :: number   !! of the revolution that ends
     self%recent(:, mod(number, longest_period)) = self%present
-    self%whole = joined(self%whole, self%present)
+    self%whole = self%whole + self%present
     self%present = fold_t()
     call add_values(self, self%last, self%angle)
   end subroutine end_revolution
@@ -519,11 +544,11 @@ contains
     class(ledger_t), intent(in) :: self
     integer, intent(in) :: number, revolutions
     type(kept_result_t), allocatable :: list(:)
-    type(fold_t) :: known(size(self%last))
+    type(fold_t) :: known(size(self%present))
     integer :: i, n
     allocate (list(3*size(self%kept)))
     n = 0
-    known = joined(self%whole, self%present)
+    known = self%whole + self%present
     do i = 1, size(self%kept)
       if (self%kept(i)%told /= of_cycle) call add('')
     end do
@@ -538,10 +563,10 @@ contains
     subroutine add(prefix)
       character(len=*), intent(in) :: prefix
       associate (kept => self%kept(i))
-        if (.not. known(self%at(i))%most(1) > -huge(1.0_dp)) return   ! the run had no state in the model
+        if (.not. (known(self%at(i))%most(1) > -huge(1.0_dp) .or. kept%at_impacts)) return   ! the run had no state in the model
         n = n + 1
-        list(n) = kept_result_t(kept%place, prefix//trim(kept%name), kept%unit, prefix /= '', found(kept%what, known(self%at(i))))
-        if (prefix == '' .or. .not. kept%has_angle) return
+        list(n) = kept_result_t(kept%place, prefix//trim(kept%name), kept%unit, prefix /= '', found(kept, known(self%at(i))))
+        if (prefix == '' .or. .not. kept%has_angle .or. kept%at_impacts .and. known(self%at(i))%number == 0) return
         n = n + 1
         list(n) = kept_result_t(kept%place, prefix//trim(kept%name)//'_angle', 'deg', .true., &
           degrees_in_cycle(known(self%at(i))%angle(merge(2, 1, kept%what == least)), revolutions))
@@ -572,7 +597,7 @@ contains
     integer :: i
     i = index_of(self, name)
     value = 0
-    if (i > 0) value = found(self%kept(i)%what, self%present(self%at(i)))
+    if (i > 0) value = found(self%kept(i), self%present(self%at(i)))
   end function of_revolution
 
   !> A result of the run so far; 0 if the scene does not have it.
@@ -582,7 +607,7 @@ contains
     integer :: i
     i = index_of(self, name)
     value = 0
-    if (i > 0) value = found(self%kept(i)%what, joined(self%whole(self%at(i)), self%present(self%at(i))))
+    if (i > 0) value = found(self%kept(i), self%whole(self%at(i)) + self%present(self%at(i)))
   end function of_whole_run
 
   !> A result of the last cycle of some revolutions up to one with a number; 0 if the scene does not have it.
@@ -590,24 +615,24 @@ contains
     class(ledger_t), intent(in) :: self
     character(len=*), intent(in) :: name
     integer, intent(in) :: number, revolutions
-    type(fold_t) :: known(size(self%last))
+    type(fold_t) :: known(size(self%present))
     integer :: i
     i = index_of(self, name)
     value = 0
     if (i == 0) return
     known = cycle_of(self, number, revolutions)
-    value = found(self%kept(i)%what, known(self%at(i)))
+    value = found(self%kept(i), known(self%at(i)))
   end function over_cycle
 
   !> What is known of the columns in a cycle of some revolutions up to one with a number.
   pure function cycle_of(self, number, revolutions) result(known)
     class(ledger_t), intent(in) :: self
     integer, intent(in) :: number, revolutions
-    type(fold_t) :: known(size(self%last))
+    type(fold_t) :: known(size(self%present))
     integer :: k
     known = fold_t()
     do k = number - revolutions + 1, number
-      known = joined(known, self%recent(:, mod(k, longest_period)))
+      known = known + self%recent(:, mod(k, longest_period))
     end do
   end function cycle_of
 end module result_ledger

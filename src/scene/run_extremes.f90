@@ -202,11 +202,12 @@ contains
 
   !> Record that a contact begins or ends at time t, at a joint or at a corner of the skirt; `now` is evaluated before that event. A
   !> joint without a record has no entry in the trace.
-  subroutine record_event(self, joint, corner, kind, t, now, ledger, event, is_found, cycles)
+  subroutine record_event(self, joint, corner, kind, scene, t, now, ledger, event, is_found, cycles)
     class(run_extremes_t), intent(inout) :: self
     integer, intent(in) :: joint    !! index in the scene, or `of_guide`
     integer, intent(in) :: corner   !! of the skirt
     integer, intent(in) :: kind     !! event_contact_begins or event_contact_ends
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     type(ledger_t), intent(inout) :: ledger
@@ -216,13 +217,13 @@ contains
     integer :: i
     is_found = joint == of_guide
     if (is_found) then
-      call self%guide%record_contact(corner, kind, t, now, ledger, self%figures, event)
+      call self%guide%record_contact(corner, kind, scene, t, now, ledger, self%figures, event)
       if (present(cycles) .and. kind == event_contact_begins) call cycles%count_impact(skirt)
       return
     end if
     do i = 1, self%n_pins
       if (self%pins(i)%joint /= joint) cycle
-      call self%pins(i)%record_contact(kind, t, now, ledger, self%figures, event, cycles)
+      call self%pins(i)%record_contact(kind, scene, t, now, ledger, self%figures, event, cycles)
       is_found = .true.
     end do
   end subroutine record_event
@@ -234,11 +235,11 @@ contains
     type(ledger_t), intent(inout) :: ledger
     integer :: i
     do i = 1, self%n_pins
-      if (self%pins(i)%is_touching(scene)) call ledger%begin_contact(places(self%pins(i)%pin)%prefix, goes_on=.true.)
+      if (self%pins(i)%is_touching(scene)) call ledger%begin_contact(places(self%pins(i)%pin)%prefix)
     end do
     if (.not. self%guide%is_present) return
     do i = 1, n_corners
-      if (scene%guide%touches(i)) call ledger%begin_contact(corner_names(i)//'_', goes_on=.true.)
+      if (scene%guide%touches(i)) call ledger%begin_contact(corner_names(i)//'_')
     end do
   end subroutine resume_contacts
 

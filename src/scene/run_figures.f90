@@ -26,7 +26,6 @@ module run_figures
     real(dp) :: friction_work = huge(1.0_dp)  !! work of the friction forces on the bodies so far [J]; huge: not integrated
     type(heat_totals_t) :: heat               !! of its film
     real(dp) :: turning = 0                   !! angle that a floating pin has turned through in this bearing, in either sense [rad]
-    real(dp) :: max_impact_speed = 0          !! normal speed at the beginning of a contact of a floating pin [m/s]
   contains
     procedure :: declare => declare_pin
   end type pin_figures_t

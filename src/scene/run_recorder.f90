@@ -123,11 +123,11 @@ contains
     do i = 1, size(scene%reported)
       joint = scene%joint_at(scene%reported(i))
       if (joint == 0) cycle
-      if (scene%joints(joint)%phase == phase_contact) call record_event(self, joint, 0, event_contact_begins, t, now)
+      if (scene%joints(joint)%phase == phase_contact) call record_event(self, joint, 0, event_contact_begins, scene, t, now)
     end do
     if (.not. allocated(scene%guide)) return
     do i = 1, merge(size(scene%guide%touches), 0, scene%guide%is_loose)
-      if (scene%guide%touches(i)) call record_event(self, of_guide, i, event_contact_begins, t, now)
+      if (scene%guide%touches(i)) call record_event(self, of_guide, i, event_contact_begins, scene, t, now)
     end do
   end subroutine record_first_contacts
 
@@ -339,7 +339,7 @@ contains
       if (problem%reported_event(index) == event_none) return
       call evaluate_scene(self, problem, t, y, now, in_domain)
       associate (owner => problem%event_of(index))
-        call record_event(self, owner%joint, owner%event, problem%reported_event(index), t, now)
+        call record_event(self, owner%joint, owner%event, problem%reported_event(index), problem, t, now)
       end associate
     end select
   end subroutine event_accepted
@@ -372,14 +372,15 @@ contains
 
   !> Record that a contact begins or ends at time t, at a joint or at a corner of the skirt; `now` is evaluated before that event.
   !> It is handed on, unless only events of a last period are wanted, which has not begun.
-  subroutine record_event(self, joint, corner, kind, t, now)
+  subroutine record_event(self, joint, corner, kind, scene, t, now)
     class(recorder_t), intent(inout) :: self
     integer, intent(in) :: joint, corner, kind   !! see `run_extremes_t%record_event`
+    type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     type(trace_event_t) :: event
     logical :: is_found
-    call self%extremes%record_event(joint, corner, kind, t, now, self%ledger, event, is_found, self%cycles)
+    call self%extremes%record_event(joint, corner, kind, scene, t, now, self%ledger, event, is_found, self%cycles)
     if (.not. is_found .or. (self%periods%keeps_one_more .and. self%periods%window_after < 0)) return
     call self%sink%accept_event(event)
   end subroutine record_event

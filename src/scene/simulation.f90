@@ -16,7 +16,8 @@ module simulation
   use crank_turns, only: all_made, turned_back
   use trace_columns, only: column_list_t, all_columns
   use cycle_watch, only: cycle_watch_t
-  use cycle_answers, only: answer_t, find_answers
+  use joint_places, only: places
+  use cycle_answers, only: answer_t, find_answers, cycle_quantities
   use period_watch, only: period_watch_t
   use lyapunov, only: exponent_t, measurement_t
   use run_recorder, only: recorder_t
@@ -89,7 +90,7 @@ module simulation
 
 contains
 
-  !> A result that is kept of a column; `is_known` is false if the run does not have it.
+  !> A result that is kept of a column, or an answer of the last cycle; `is_known` is false if the run does not have it.
   pure subroutine value_of(self, name, value, is_known)
     class(run_report_t), intent(in) :: self
     character(len=*), intent(in) :: name   !! with the prefix of its place
@@ -103,6 +104,19 @@ contains
       if (trim(self%kept(i)%place)//self%kept(i)%name /= name) cycle
       value = self%kept(i)%value
       is_known = .true.
+    end do
+    if (is_known) return
+    do i = 1, size(self%answers)
+      associate (it => self%answers(i))
+        if (it%text /= '') cycle
+        if (it%place > 0) then
+          if (trim(places(it%place)%prefix)//cycle_quantities(it%quantity)%name /= name) cycle
+        else if (cycle_quantities(it%quantity)%name /= name) then
+          cycle
+        end if
+        value = it%value
+        is_known = .true.
+      end associate
     end do
   end subroutine value_of
 
@@ -153,6 +167,7 @@ contains
       if (present(cycles)) self%has_cycles = allocated(cycles)
       if (self%has_cycles) then
         call scene%measure_joint()
+        if (cycles%wants_answers) call scene%measure_works()
         call move_alloc(cycles, recorder%cycles)
       else if (case%output%answers .and. .not. ideal_joint) then
         allocate (recorder%cycles)
@@ -380,11 +395,11 @@ contains
     if (allocated(self%method%time_with)) report%time_with = self%method%time_with
     report%figures = self%recorder%extremes%figures_of_run(self%scene, self%recorder%ledger)
     call self%recorder%extremes%find_wear(self%scene, report%wear)
-    allocate (report%answers(0))
-    if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, &
-      self%recorder%periods, self%recorder%extremes, self%recorder%ledger)
     call find_last_cycle(self%recorder, ended, revolutions)
     report%kept = self%recorder%ledger%results(ended, revolutions)
+    allocate (report%answers(0))
+    if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, &
+      self%recorder%periods, self%recorder%extremes, report%kept)
     if (allocated(self%scene%chain%train)) report%train = self%recorder%extremes%train%results(self%scene, ended, revolutions)
     if (self%has_cycles) call move_alloc(self%recorder%cycles, cycles)
     if (allocated(self%recorder%films)) report%films = self%recorder%films%fields(self%scene)

@@ -6,7 +6,7 @@ module trace_columns
   use trace_row, only: trace_row_t, column_list_t, name_length, least, largest
   use chain_motion, only: motion_t, accelerations_t, piston_pin, small_end, body_pin
   use chain_reactions, only: reactions_t
-  use joint_columns, only: add_joint_columns, add_pin_force
+  use joint_columns, only: add_joint_columns, add_pin_force, add_rod_load
   use joint_places, only: places, in_order
   use guide_columns, only: add_guide_columns
   use elastic_columns, only: add_elastic_columns
@@ -170,9 +170,11 @@ contains
       'energy minus initial energy minus the work of all non-conservative forces and of the drive; 0 for an exact integration')
     do i = 1, size(scene%joints)
       call add_joint_columns(scene%joints(i), now%joint(i), row)
+      if (places(scene%joints(i)%place)%pin > 0) call add_rod_load(scene%joints(i)%place, now%motion, now%joint(i)%force, row)
     end do
     if (allocated(scene%chain%floating)) call add_floating_pin(scene, now, row)
-    if (allocated(scene%guide)) call add_guide_columns(scene%guide, now%motion, now%accelerations, now%guide, row)
+    if (allocated(scene%guide)) &
+      call add_guide_columns(scene%guide, scene%chain%bodies%piston, now%motion, now%accelerations, now%guide, row)
     if (allocated(scene%chain%elastic)) call add_elastic_columns(scene%chain%elastic, now%motion, now%accelerations, row)
     if (allocated(scene%chain%train)) &
       call add_train_columns(scene%chain%train, now%motion, now%accelerations, reaction, row)
@@ -239,7 +241,10 @@ contains
     call row%add('pin_force_x[N]', now%loads%force(1, piston_pin), &
       'force of the joint on the piston pin (on the rod), along x; the piston takes the opposite force')
     call row%add('pin_force_y[N]', now%loads%force(2, piston_pin), 'the same along y')
-    if (all(scene%joints%place /= in_order(1))) call add_pin_force(scene%pin_force(now, in_order(1)), row)
+    if (all(scene%joints%place /= in_order(1))) then
+      call add_pin_force(scene%pin_force(now, in_order(1)), row)
+      call add_rod_load(in_order(1), now%motion, now%loads%force(:, piston_pin), row)
+    end if
     if (row%wants(7) .or. allocated(scene%chain%train) .and. .not. row%is_naming) &
       reaction = scene%chain%reactions(now%motion, now%accelerations, now%loads)
     call row%add('crankpin_force_x[N]', reaction%crankpin(1), 'force of the crank on the rod at the crank pin, along x (F3)')

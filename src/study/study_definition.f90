@@ -36,7 +36,7 @@ module study_definition
     logical :: cycles = .false.                     !! write the statistics of every revolution too
     real(dp) :: strobe_angle_deg = 0
     character(len=:), allocatable :: strobe_columns !! columns sampled once per revolution; empty: none
-    character(len=:), allocatable :: statistics     !! statistics of columns, separated by commas; empty: none
+    character(len=:), allocatable :: statistics     !! of columns, and results by name, separated by commas; empty: none
     integer :: strobe_cycles = 0                    !! number of samples in a run; 0: no limit
     type(parameter_t), allocatable :: varied(:)
     character(len=:), allocatable :: resolved       !! study file with all defaults, which gives the same study
@@ -76,7 +76,8 @@ contains
     call list%word('traces', self%traces, 'none, all, failed', 'none', 'runs whose trace is written to NAME/RUN.csv')
     call list%add('cycles', self%cycles, 'also write the statistics of each revolution to NAME.cycles.csv', '.false.')
     call list%text('statistics', self%statistics, &
-      'statistics of any columns over the last cycle: min, max, max abs, range, mean or rms; e.g. ''max abs guide_force''', &
+      'statistics of any columns over the last cycle: min, max, max abs, range, mean or rms; and numbers of a summary by name; '// &
+      'e.g. ''max abs guide_force, cycle_slap_speed''', &
       '', .true.)
     call list%add('strobe_angle_deg', self%strobe_angle_deg, &
       'crank angle at which the strobe columns are recorded, once in each revolution', 'degrees', default='0.0')

@@ -8,7 +8,7 @@ module study_rows
   use trace_columns, only: column_list_t, column_name
   use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt
   use cycle_watch, only: cycle_watch_t
-  use column_statistics, only: statistic_t
+  use column_statistics, only: statistic_t, of_result
   use simulation, only: run_report_t
   use result_notes, only: relative_residual
   use archard_wear, only: of_pin, of_bore
@@ -183,7 +183,7 @@ contains
     call row%end_row()
   end subroutine add_run
 
-  !> Append the statistics of columns; a run that has reached its end has them, also without a whole revolution.
+  !> Append the statistics of columns and results by name; a run that has reached its end has them, also without a whole revolution.
   subroutine add_statistics(row, watch, report)
     class(study_row_t), intent(inout) :: row
     type(cycle_watch_t), intent(in) :: watch
@@ -198,7 +198,11 @@ contains
         call row%add_text(trim(row%statistics(i)%name))
         cycle
       end if
-      call watch%find_statistic(i, report%periods%cycle_revolutions(), value, is_known)
+      if (row%statistics(i)%kind == of_result) then
+        call report%value_of(trim(row%statistics(i)%column), value, is_known)
+      else
+        call watch%find_statistic(i, report%periods%cycle_revolutions(), value, is_known)
+      end if
       call row%add_number(row%numbers, value, is_done .and. is_known)
     end do
   end subroutine add_statistics

@@ -6,7 +6,7 @@ module study_worker
   use constants, only: degree
   use trace_columns, only: column_list_t, choose_columns
   use cycle_watch, only: cycle_watch_t
-  use column_statistics, only: statistic_t
+  use column_statistics, only: statistic_t, of_result
   use film_files, only: provide_tables
   use simulation, only: run_t, run_report_t
   use whole_run, only: go_to_end
@@ -67,6 +67,7 @@ contains
     self%watch%keeps_cycles = study%cycles
     self%watch%strobe_list = strobe_list
     self%watch%columns%wanted = statistics
+    self%watch%wants_answers = any(statistics%kind == of_result)
     self%watch%strobe_angle = study%strobe_angle_deg*degree
     self%watch%most_strobes = study%strobe_cycles
     allocate (self%no_columns%id(0))

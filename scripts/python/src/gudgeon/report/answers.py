@@ -68,9 +68,30 @@ def losses(rows: Answers, pre: str) -> str:
 
 
 def touching(rows: Answers, pre: str) -> str:
-    """Share of the time in contact, where there has been any."""
+    """Share of the time in contact, where there has been any, with the number of impacts and the speed of the hardest one."""
     share = rows(rows.of(pre, "cycle_contact_share", "contact_time_fraction"))
-    return "" if share is None or not (rows(f"{pre}contacts") or share) else f"{100 * share:.3g} %"
+    if share is None or not (rows(f"{pre}contacts") or share):
+        return ""
+    impacts, speed = rows(f"{pre}cycle_impacts"), rows(f"{pre}cycle_max_impact_speed")
+    return f"{100 * share:.3g} %" + (f", {impacts:.0f} impacts at up to {number(speed)} m/s" if impacts and speed is not None else "")
+
+
+def force(rows: Answers, pre: str) -> str:
+    """The largest force, and that along the rod in the other sense."""
+    text = rows.shown(rows.of(pre, "cycle_max_force", "max_pin_force"), "kN", 1e-3)
+    back, degrees = rows(f"{pre}cycle_reversed_load"), rows(f"{pre}cycle_degrees_under_reversed_load")
+    if not text or back is None or degrees is None:
+        return text
+    return text + (f"; reversed {number(1e-3 * back)} kN over {degrees:.0f}°" if back > 0 else "; never reversed")
+
+
+def slap(rows: Answers) -> str:
+    """The hardest impact of the skirt."""
+    speed, energy, impacts = (rows(f"cycle_slap_{name}") for name in ("speed", "energy", "impacts"))
+    if speed is None or energy is None or impacts is None:
+        return ""
+    corner = rows.summary["cycle_slap_corner"][0].removeprefix("guide_")
+    return f"{number(speed)} m/s at {rows('cycle_slap_angle'):.1f}°, corner {corner}, {number(1e3 * energy)} mJ; {impacts:.0f} impacts"
 
 
 #: Lines of bearings: name, and the text for the rows with a prefix.
@@ -78,11 +99,12 @@ OF_BEARINGS: tuple[tuple[str, Callable[[Answers, str], str]], ...] = (
     ("Thinnest film", lambda rows, pre: gap(rows, pre, True)),
     ("Deepest penetration", lambda rows, pre: gap(rows, pre, False)),
     ("Largest film pressure", lambda rows, pre: rows.shown(rows.of(pre, "cycle_max_film_pressure", "max_film_pressure"), "MPa", 1e-6)),
-    ("Largest force", lambda rows, pre: rows.shown(rows.of(pre, "cycle_max_force", "max_pin_force"), "kN", 1e-3)),
+    ("Largest force", force),
     ("Mean loss", losses),
     ("Film temperature", temperature),
     ("Oil flow", lambda rows, pre: rows.shown(rows.of(pre, "cycle_mean_film_side_flow", "mean_film_side_flow"), "cm³/min", 6e7)),
     ("In contact", touching),
+    ("Wear of the bore in 100 h", lambda rows, pre: rows.shown(f"{pre}cycle_wear_depth_100h_bore", "µm", 1e6)),
 )
 
 
@@ -99,6 +121,8 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
               if (value := rows(f"cycle_{key}_power")) is not None]
     if powers:
         found.append(("Power", ", ".join(powers)))
+    if text := slap(rows):
+        found.append(("Hardest slap", text))
     if text := rows.shown("cycle_max_cylinder_pressure", "bar", 1e-5):
         found.append(("Cylinder pressure", text))
     speed = rows(rows.of("", "cycle_mean_crank_speed", "mean_crank_speed"))
