@@ -33,7 +33,7 @@ module result_ledger
     type(kept_t), allocatable, private :: kept(:)
     type(column_list_t), private :: list               !! the columns that are followed
     type(column_list_t), private :: of_contact, cheap  !! those of contacts, and those that are not sampled
-    type(column_list_t), private :: at_impacts         !! the columns whose values count where a contact begins
+    type(column_list_t), private :: at_impacts         !! columns whose values count where a contact begins, one for each result
     integer, allocatable, private :: contact_at(:), cheap_at(:)   !! their places in the list
     integer, allocatable, private :: at(:)             !! of each result: its column in the list, or behind in that of impacts
     integer, allocatable, private :: in_row(:)         !! of each column: its place in a row of the trace, or 0
@@ -88,15 +88,15 @@ contains
     self%at_impacts = self%list
     self%list%id = pack([(i, i=1, n)], [(any(self%kept%column == i .and. .not. self%kept%at_impacts), i=1, n)])
     n = size(self%list%id)
-    self%at_impacts%id = pack(self%kept%column, self%kept%at_impacts)   ! each by itself: places may share a column
+    self%at_impacts%id = pack([(self%kept(i)%column, i=1, size(self%kept))], [(self%kept(i)%at_impacts, i=1, size(self%kept))])
     self%at = [(merge(n + count(self%kept(:i)%at_impacts), findloc(self%list%id, self%kept(i)%column, 1), &
       self%kept(i)%at_impacts), i=1, size(self%kept))]
     m = n + size(self%at_impacts%id)
     allocate (self%in_row(n), source=0)
     if (allocated(list%id)) self%in_row = [(findloc(list%id, self%list%id(i), 1), i=1, n)]
     allocate (self%is_searched(2, n), source=.false.)
-    allocate (self%has_rate(n), self%is_cubic(n), self%is_sampled(n), self%has_senses(n), source=.false.)
-    allocate (self%is_of_contact(m), self%touches(m), source=.false.)
+    allocate (self%has_rate(n), self%is_cubic(n), self%is_of_contact(n), self%is_sampled(n), self%has_senses(n), source=.false.)
+    allocate (self%touches(m), source=.false.)
     do i = 1, size(self%kept)
       associate (kept => self%kept(i), k => self%at(i))
         if (kept%at_impacts) cycle
@@ -109,7 +109,7 @@ contains
       end associate
     end do
     self%needs_inner = any(self%is_sampled)
-    self%contact_at = pack([(i, i=1, n)], self%is_of_contact(:n))
+    self%contact_at = pack([(i, i=1, n)], self%is_of_contact)
     self%cheap_at = pack([(i, i=1, n)], .not. self%is_sampled)
     self%of_contact = self%list
     self%of_contact%id = self%list%id(self%contact_at)
@@ -190,7 +190,7 @@ contains
       call row_values(self%at_impacts, scene, t, now, 0.0_dp, 0.0_dp, self%row(n + 1:))
     do k = 1, size(self%touches)
       if (.not. any(self%at == k .and. self%kept%place == place)) cycle
-      self%touches(k) = self%is_of_contact(k)
+      if (k <= n) self%touches(k) = self%is_of_contact(k)
       if (.not. present(scene)) cycle
       self%episode(k) = fold_t()
       if (k <= n) cycle
