@@ -22,7 +22,6 @@ from urllib.parse import unquote
 for folder in ("manual", "bench"):
     sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts" / folder))
 
-import gudgeon
 import tell_rungs
 import tutorial
 from test_faults import ROOT, assertions, check, program_built
@@ -443,7 +442,9 @@ def insert(file: Path, lines: dict[str, str]) -> None:
 
 def check_new_answer(copy: Path) -> None:
     """An answer that is one line beside its column is where users look for it: against the rows of the trace."""
-    run = gudgeon.load(copy / "results/dry_0100um")
+    from gudgeon.files import load
+
+    run = load(copy / "results/dry_0100um")
     force = abs(run["guide_force"])
     kept = run.summary["max_guide_force"]
     check(0 < force.max() <= kept * (1 + 1e-9), "a new answer against its column", f"{kept}, {force.max()}")
