@@ -144,8 +144,8 @@ contains
               -rows%values(column(rows, prefix//'film_thickness[m]'), :), rounding, name//prefix//': film thickness')
             call check_contacts()
           end do
-          call check%that(100*figures%peak_evaluations <= 6*(plain%report%statistics%evaluations + 720) .or. i == 5, &
-            name//': extremes need less than 6 % of the evaluations')
+          call check%that(100*figures%peak_evaluations <= 12*(plain%report%statistics%evaluations + 720) .or. i == 5, &
+            name//': extremes need less than 12 % of the evaluations')
         end associate
       end do
     end do

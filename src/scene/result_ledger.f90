@@ -405,7 +405,7 @@ contains
     !> Crank angle at which column k changes to a sense in the interval [rad].
     real(dp) function angle_of_root(k, sense) result(root)
       integer, intent(in) :: k, sense
-      real(dp), parameter :: narrow_enough = 1e-4_dp   !! part of the interval: between these points the column is a straight line
+      real(dp), parameter :: narrow_enough = 1e-2_dp   !! part of the interval: between these points the column is a straight line
       type(bracket_t) :: bracket
       real(dp) :: time, angles(2)
       bracket = bracket_t(self%t, t, sense*self%last(k), sense*self%values(k), width=t - self%t)
