@@ -247,7 +247,7 @@ def _section(case: Case) -> Section:
         name = number.name
         if number.kind == 1:
             modes.append(i)
-        elif name.endswith("impact_speed"):
+        elif number.kind == 0 and name.endswith("impact_speed"):
             prefix = _corner_or(numbers, i)
             touches = of[prefix + "contact"] == 1 if name.startswith("guide") else of[prefix + "phase"] == 2
             if touches and _remembers(case, prefix):
