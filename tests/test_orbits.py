@@ -22,19 +22,14 @@ os.environ.setdefault("GUDGEON_LIBRARY", str(TOP / "build" / "library" / "libgud
 import gudgeon
 import matplotlib
 import numpy as np
+from assertions import Assertions
 from gudgeon import _orbit, orbits
 from gudgeon.orbits import Image, Shooting
 from scipy.optimize import brentq
 
 matplotlib.use("Agg")
-passed = failed = 0
-
-
-def check(holds: bool, what: str) -> None:
-    global passed, failed
-    passed, failed = passed + bool(holds), failed + (not holds)
-    if not holds:
-        print(f"FAILED: {what}")
+assertions = Assertions()
+check = assertions.check
 
 
 def refuses(kind: type, words: str, action) -> None:
@@ -324,8 +319,7 @@ def main() -> int:
             part()
         except Exception:
             check(False, traceback.format_exc())
-    print(f"{passed} passed, {failed} failed")
-    return failed > 0
+    return assertions.report()
 
 
 if __name__ == "__main__":

@@ -34,7 +34,7 @@ module trace_row
     integer :: told = everywhere
     character(len=name_length) :: unit = ''        !! that of the column, unless `keep` gives it
     logical :: has_rate = .false.                  !! the rate of the column is known
-    logical :: is_cubic = .false.                  !! inside a step it is the cubic through values and rates; no angle
+    logical :: is_cubic = .false.                  !! inside a step it is the cubic through values and rates
     logical :: is_of_contact = .false.             !! it follows from the state alone, and events tell it of each contact
     logical :: is_sampled = .false.                !! it is found at the points of Gauss's rule of each step
     logical :: at_impacts = .false.                !! of its values where a contact at the place begins, alone

@@ -14,7 +14,7 @@ module cycle_answers
   use period_watch, only: period_watch_t
   use run_extremes, only: run_extremes_t
   use piston_skirt, only: n_corners, corner_names
-  use result_ledger, only: kept_result_t, degrees_in_cycle
+  use result_ledger, only: kept_result_t, find_result, degrees_in_cycle
   use archard_wear, only: of_pin, of_bore
   use gas_cycle, only: released_share
   use ideal_linkage, only: linkage_t
@@ -270,11 +270,8 @@ contains
     !> A result that is kept of a column, over this cycle; 0 if the scene does not have it.
     pure real(dp) function kept(place, name)
       character(len=*), intent(in) :: place, name   !! prefix of the place
-      integer :: k
-      kept = 0
-      do k = 1, size(kept_results)
-        if (kept_results(k)%place == place .and. kept_results(k)%name == 'cycle_'//name) kept = kept_results(k)%value
-      end do
+      logical :: is_known
+      call find_result(kept_results, place//'cycle_'//name, kept, is_known)
     end function kept
   end function find_answers
 end module cycle_answers

@@ -64,7 +64,6 @@ module cycle_watch
     procedure :: find_statistic
     procedure :: film_change
     procedure :: record_point
-    procedure :: count_impact
     procedure :: record_skirt
     procedure :: finish
   end type cycle_watch_t
@@ -202,18 +201,20 @@ contains
     end associate
   end function film_change
 
-  !> Account for the largest force [N] and the smallest film thickness [m] of a pin in the present revolution.
-  pure subroutine record_pin(self, pin, force, film_thickness, may_touch)
+  !> Account for the largest force [N], the smallest film thickness [m] and the impacts of a pin in the present revolution.
+  pure subroutine record_pin(self, pin, force, film_thickness, may_touch, impacts)
     class(cycle_watch_t), intent(inout) :: self
     integer, intent(in) :: pin
     real(dp), intent(in) :: force
     real(dp), intent(in), optional :: film_thickness   !! of a pin with clearance
     logical, intent(in), optional :: may_touch         !! it may penetrate
+    integer, intent(in), optional :: impacts           !! contacts that began
     associate (c => self%present%pin(pin))
       c%max_force = force
       if (.not. present(film_thickness)) return
       c%min_film_thickness = film_thickness
       if (may_touch) c%max_penetration = max(0.0_dp, -film_thickness)
+      c%impacts = impacts
     end associate
   end subroutine record_pin
 
@@ -235,19 +236,14 @@ contains
     self%t = t
   end subroutine record_point
 
-  !> Count a contact that begins at a pin or at a corner of the skirt.
-  pure subroutine count_impact(self, pin)
-    class(cycle_watch_t), intent(inout) :: self
-    integer, intent(in) :: pin
-    self%present%pin(pin)%impacts = self%present%pin(pin)%impacts + 1
-  end subroutine count_impact
-
-  !> Account for the largest penetration and force of the corners of the skirt in the present revolution.
-  pure subroutine record_skirt(self, penetration, force)
+  !> Account for the largest penetration and force of the corners of the skirt in the present revolution, and their impacts.
+  pure subroutine record_skirt(self, penetration, force, impacts)
     class(cycle_watch_t), intent(inout) :: self
     real(dp), intent(in) :: penetration, force   !! [m], [N]
+    integer, intent(in) :: impacts               !! contacts that began
     self%present%pin(skirt)%max_penetration = penetration
     self%present%pin(skirt)%max_force = force
+    self%present%pin(skirt)%impacts = impacts
   end subroutine record_skirt
 
   !> End the run at (t, y): the crank may be at the strobe angle but for rounding.

@@ -49,7 +49,7 @@ contains
     end do
   end subroutine declare
 
-  !> End the revolution: its largest penetration [m] and force [N] at a corner are added to the results.
+  !> End the revolution: its largest penetration [m] and force [N] at a corner and its impacts are added to the results.
   pure subroutine end_revolution(self, ledger, cycles)
     class(guide_record_t), intent(inout) :: self
     type(ledger_t), intent(in) :: ledger
@@ -57,7 +57,8 @@ contains
     integer :: i
     if (.not. self%is_present) return
     call cycles%record_skirt(max(0.0_dp, maxval([(-ledger%of_revolution(corner_names(i)//'_min_gap'), i=1, n_corners)])), &
-      maxval([(ledger%of_revolution(corner_names(i)//'_max_force'), i=1, n_corners)]))
+      maxval([(ledger%of_revolution(corner_names(i)//'_max_force'), i=1, n_corners)]), &
+      nint(sum([(ledger%of_revolution(corner_names(i)//'_impacts'), i=1, n_corners)])))
   end subroutine end_revolution
 
   !> Account for the time [s] that has passed since the last point.

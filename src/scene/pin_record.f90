@@ -157,7 +157,7 @@ contains
   end subroutine follow_turn
 
   !> A contact begins or ends at time t; `now` is evaluated before that event. `event` is its entry in the trace.
-  subroutine record_contact(self, kind, scene, t, now, ledger, figures, event, cycles)
+  subroutine record_contact(self, kind, scene, t, now, ledger, figures, event)
     class(pin_record_t), intent(inout) :: self
     integer, intent(in) :: kind
     type(scene_t), intent(in) :: scene
@@ -166,12 +166,10 @@ contains
     type(ledger_t), intent(inout) :: ledger
     type(run_figures_t), intent(inout) :: figures
     type(trace_event_t), intent(out) :: event
-    type(cycle_watch_t), intent(inout), optional :: cycles
 
     associate (f => figures%pin(self%pin), relative => now%joint(self%joint))
       if (kind == event_contact_begins) then
         f%contacts = f%contacts + 1
-        if (present(cycles)) call cycles%count_impact(self%pin)
         f%max_entry_penetration = max(f%max_entry_penetration, relative%penetration)
         if (relative%penetration_rate > self%validity_limit) f%impacts_beyond_validity = f%impacts_beyond_validity + 1
       end if

@@ -18,7 +18,7 @@ module result_ledger
   use run_length, only: longest_period
   implicit none
   private
-  public :: ledger_t, kept_result_t, degrees_in_cycle
+  public :: ledger_t, kept_result_t, find_result, degrees_in_cycle
 
   !> A result over the run, or over its last cycle.
   type :: kept_result_t
@@ -577,6 +577,23 @@ contains
       end associate
     end subroutine add
   end function results
+
+  !> A result of a list; 0 and not known if the list does not have it.
+  pure subroutine find_result(list, name, value, is_known)
+    type(kept_result_t), intent(in) :: list(:)
+    character(len=*), intent(in) :: name   !! with the prefix of its place
+    real(dp), intent(out) :: value
+    logical, intent(out) :: is_known
+    integer :: i
+    value = 0
+    is_known = .false.
+    do i = 1, size(list)
+      if (trim(list(i)%place)//list(i)%name /= name) cycle
+      value = list(i)%value
+      is_known = .true.
+      return
+    end do
+  end subroutine find_result
 
   !> A crank angle [rad] in degrees, from 0 to the length of a cycle of some revolutions.
   pure real(dp) function degrees_in_cycle(angle, revolutions)

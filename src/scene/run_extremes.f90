@@ -4,10 +4,9 @@ module run_extremes
   use run_state, only: run_state_t
   use ode_method, only: ode_method_t
   use joint_places, only: places, n_places, name_prefix
-  use scene_problem, only: scene_t, evaluation_t, event_contact_begins, of_guide, phase_contact
+  use scene_problem, only: scene_t, evaluation_t, of_guide, phase_contact
   use joint_events, only: penetration_and_rate, may_lose_force, may_touch, find_lost_force
   use piston_guide, only: n_corners, corner_names
-  use cycle_statistics, only: skirt
   use run_length, only: longest_period
   use cycle_watch, only: cycle_watch_t
   use result_ledger, only: ledger_t
@@ -110,7 +109,8 @@ contains
       associate (pin => self%pins(i)%pin, joint => self%pins(i)%joint)
         if (joint > 0) then
           call cycles%record_pin(pin, ledger%of_revolution(trim(places(pin)%prefix)//'max_force'), &
-            ledger%of_revolution(trim(places(pin)%prefix)//'min_film_thickness'), may_touch(scene%joints(joint)))
+            ledger%of_revolution(trim(places(pin)%prefix)//'min_film_thickness'), may_touch(scene%joints(joint)), &
+            nint(ledger%of_revolution(trim(places(pin)%prefix)//'impacts')))
         else
           call cycles%record_pin(pin, ledger%of_revolution(trim(places(pin)%prefix)//'max_pin_force'))
         end if
@@ -202,7 +202,7 @@ contains
 
   !> Record that a contact begins or ends at time t, at a joint or at a corner of the skirt; `now` is evaluated before that event. A
   !> joint without a record has no entry in the trace.
-  subroutine record_event(self, joint, corner, kind, scene, t, now, ledger, event, is_found, cycles)
+  subroutine record_event(self, joint, corner, kind, scene, t, now, ledger, event, is_found)
     class(run_extremes_t), intent(inout) :: self
     integer, intent(in) :: joint    !! index in the scene, or `of_guide`
     integer, intent(in) :: corner   !! of the skirt
@@ -213,17 +213,15 @@ contains
     type(ledger_t), intent(inout) :: ledger
     type(trace_event_t), intent(out) :: event
     logical, intent(out) :: is_found
-    type(cycle_watch_t), intent(inout), optional :: cycles
     integer :: i
     is_found = joint == of_guide
     if (is_found) then
       call self%guide%record_contact(corner, kind, scene, t, now, ledger, self%figures, event)
-      if (present(cycles) .and. kind == event_contact_begins) call cycles%count_impact(skirt)
       return
     end if
     do i = 1, self%n_pins
       if (self%pins(i)%joint /= joint) cycle
-      call self%pins(i)%record_contact(kind, scene, t, now, ledger, self%figures, event, cycles)
+      call self%pins(i)%record_contact(kind, scene, t, now, ledger, self%figures, event)
       is_found = .true.
     end do
   end subroutine record_event

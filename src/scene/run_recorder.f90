@@ -380,7 +380,7 @@ contains
     type(evaluation_t), intent(in) :: now
     type(trace_event_t) :: event
     logical :: is_found
-    call self%extremes%record_event(joint, corner, kind, scene, t, now, self%ledger, event, is_found, self%cycles)
+    call self%extremes%record_event(joint, corner, kind, scene, t, now, self%ledger, event, is_found)
     if (.not. is_found .or. (self%periods%keeps_one_more .and. self%periods%window_after < 0)) return
     call self%sink%accept_event(event)
   end subroutine record_event

@@ -28,7 +28,7 @@ module simulation
   use joint_places, only: n_places, in_order
   use wear_record, only: wear_profile_t
   use train_record, only: train_result_t
-  use result_ledger, only: kept_result_t
+  use result_ledger, only: kept_result_t, find_result
   use trace_sink, only: trace_sink_t
   use constants, only: two_pi
   implicit none
@@ -100,11 +100,7 @@ contains
     value = 0
     is_known = .false.
     if (.not. allocated(self%kept)) return
-    do i = 1, size(self%kept)
-      if (trim(self%kept(i)%place)//self%kept(i)%name /= name) cycle
-      value = self%kept(i)%value
-      is_known = .true.
-    end do
+    call find_result(self%kept, name, value, is_known)
     if (is_known) return
     do i = 1, size(self%answers)
       associate (it => self%answers(i))

@@ -22,6 +22,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(quantity_t), allocatable :: known(:)
     character(len=:), allocatable :: near
+    character(len=14) :: unit
     integer :: i, k
     if (all(wanted%kind /= of_result)) return
     call find_results(case, known)
@@ -36,8 +37,9 @@ contains
         return
       end if
       wanted(i)%column = trim(known(k)%name)
-      wanted(i)%name = trim(known(k)%name)//'['//trim(merge('-', known(k)%unit(1:1), known(k)%unit == '1'))// &
-        trim(known(k)%unit(2:))//']'
+      unit = known(k)%unit
+      if (unit == '1') unit = '-'   ! as in the names of columns
+      wanted(i)%name = trim(known(k)%name)//'['//trim(unit)//']'
     end do
   end subroutine name_results
 
