@@ -1,6 +1,7 @@
 #!/bin/sh
-# Tests of scripts/build.sh: source files that are moved, and objects of an earlier build that make the build fail. The test uses a
-# small separate project. Run from the top of the checkout; ends with the line "N passed, N failed".
+# Tests of scripts/build.sh: source files that are moved, and objects of an earlier build that make the build fail; and whether the
+# programs of scripts/bench compile. The test uses a small separate project. Run from the top of the checkout; ends with the line
+# "N passed, N failed".
 . scripts/setup.sh || { echo "0 passed, 1 failed"; exit 1; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -64,6 +65,14 @@ sed -i 's/\[ -e build.gfortran_left \]/true/' "$work/bin/fpm"
 program=$(cd "$work" && PATH="$work/bin:$PATH" scripts/build.sh 2>"$work/err")
 check "a build that fails again is not repeated" [ "$program" = "" -a "$(wc -l <"$work/calls")" = 5 ]
 check "a build that fails has a message" grep -q "build: cannot build gudgeon" "$work/err"
+
+# the programs of scripts/bench, with the modules of the strict build: whether they compile; they are built where they measure
+modules=$(ls -t build/gfortran_*/absolute_coordinates.mod | head -n 1)
+mkdir "$work/modules"
+# shellcheck disable=SC2046  # names of files
+check "the programs that measure compile" gfortran -fsyntax-only -fimplicit-none -std=f2008 -J "$work/modules" \
+  -I "$(dirname "$modules")" $(grep -l '^module' scripts/bench/*.f90) tests/state_watcher.f90 tests/absolute_gas_engine.f90 \
+  $(grep -L '^module' scripts/bench/*.f90) tests/integrator_battery.f90 tests/absolute_run.f90
 
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

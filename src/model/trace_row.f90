@@ -10,17 +10,18 @@ module trace_row
   implicit none
   private
   public :: trace_row_t, column_list_t, kept_t, name_length, most_columns
-  public :: least, largest, largest_size, mean, integral, changes, reversed, reversed_angle, impacts
+  public :: least, largest, largest_size, spread, mean, root_mean_square, integral, changes, reversed, reversed_angle, impacts
   public :: everywhere, of_run, of_cycle
 
   integer, parameter :: name_length = 40
   integer, parameter :: meaning_length = 160
   integer, parameter :: most_columns = 360
 
-  !> What is kept of a column: an extreme, that of its size, its mean or integral over the time; how often its sense changes, the
-  !> largest value in the sense opposite to that of the largest size, and the crank angle in that sense; or the number of contacts.
+  !> What is kept of a column: an extreme, that of its size, the spread, the mean, that of squares or the integral over the time;
+  !> how often its sense changes, the largest value in the sense opposite to that of the largest size, and the crank angle in that
+  !> sense; or the number of contacts.
   integer, parameter :: least = 1, largest = 2, largest_size = 3, mean = 4, integral = 5, changes = 6, reversed = 7, &
-    reversed_angle = 8, impacts = 9
+    reversed_angle = 8, impacts = 9, spread = 10, root_mean_square = 11
 
   integer, parameter :: everywhere = 0, of_run = 1, of_cycle = 2   !! where it is told: over the run and its last cycle, or over one
 
@@ -48,6 +49,7 @@ module trace_row
     logical, allocatable :: on_request(:)                 !! columns that are not standard
     integer, allocatable :: id(:)                         !! columns of the trace, as indices into the names
     type(kept_t), allocatable :: kept(:)                  !! of the columns of the scene
+    type(kept_t), allocatable :: asked(:)                 !! what a study asks to keep besides, if anything
   end type column_list_t
 
   !> A row, begun by `collect_names` or `choose`. No component has an initial value: with one, every new row would be filled by a

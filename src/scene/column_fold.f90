@@ -2,7 +2,8 @@
 module column_fold
   use kinds, only: dp
   use constants, only: degree
-  use trace_row, only: kept_t, least, largest, largest_size, mean, integral, changes, reversed, reversed_angle, impacts
+  use trace_row, only: kept_t, least, largest, largest_size, spread, root_mean_square, integral, changes, reversed, &
+    reversed_angle, impacts
   implicit none
   private
   public :: fold_t, found, set_found, is_searched, has_senses, sense_of
@@ -10,7 +11,7 @@ module column_fold
   type :: fold_t
     real(dp) :: most(2) = -huge(1.0_dp)                !! largest value, and negative of the smallest one
     real(dp) :: angle(2) = 0                           !! crank angles of these [rad]
-    real(dp) :: sum = 0                                !! integral over time, of a column that is sampled
+    real(dp) :: sum = 0, square = 0                    !! integrals over time of values and of their squares, where sampled
     real(dp) :: duration = 0                           !! that time [s]
     integer :: number = 0                              !! of changes of the sense, or of contacts that began
     real(dp) :: turned(2) = 0                          !! crank angle with values above 0, and below [rad]
@@ -38,6 +39,7 @@ contains
     both%most = max(one%most, other%most)
     both%angle = merge(other%angle, one%angle, other%most > one%most)
     both%sum = one%sum + other%sum
+    both%square = one%square + other%square
     both%duration = one%duration + other%duration
     both%number = one%number + other%number
     both%turned = one%turned + other%turned
@@ -55,8 +57,12 @@ contains
       if (kept%at_impacts) found = max(0.0_dp, found)   ! 0: no contact began
     case (largest_size)
       found = maxval(known%most)
+    case (spread)
+      found = sum(known%most)
     case (integral)
       found = known%sum
+    case (root_mean_square)
+      found = sqrt(known%square/max(known%duration, tiny(1.0_dp)))
     case (changes, impacts)
       found = known%number
     case (reversed)
@@ -81,8 +87,8 @@ contains
   pure function is_searched(kept)
     type(kept_t), intent(in) :: kept
     logical :: is_searched(2)
-    is_searched(1) = any(kept%what == [largest, largest_size]) .or. has_senses(kept)
-    is_searched(2) = any(kept%what == [least, largest_size]) .or. has_senses(kept)
+    is_searched(1) = any(kept%what == [largest, largest_size, spread]) .or. has_senses(kept)
+    is_searched(2) = any(kept%what == [least, largest_size, spread]) .or. has_senses(kept)
   end function is_searched
 
   !> Whether a result needs the senses of its column.

@@ -12,7 +12,6 @@ module cycle_watch
   use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt, most_parts
   use run_length, only: longest_period
   use machine_record, only: machine_record_t
-  use column_statistics, only: column_statistics_t
   implicit none
   private
   public :: cycle_watch_t
@@ -32,7 +31,6 @@ module cycle_watch
     integer :: most_strobes = 0                    !! largest number of samples, from the first revolution counted; 0: no limit
     integer :: strobes = 0                         !! number of samples taken; sample i is in revolution uncounted + i
     real(dp), allocatable :: strobe_values(:, :)   !! (columns, strobes)
-    type(column_statistics_t) :: columns           !! statistics of columns, if any are wanted
     real(dp) :: direction = 1                      !! sense in which the crank turns: 1 or -1
     type(cycle_t) :: recent(0:longest_period - 1)   !! revolution k in element mod(k, longest_period), for the last ones that ended
     real(dp) :: pin_turn = 0              !! of a floating pin in the revolutions followed [rad]
@@ -61,7 +59,6 @@ module cycle_watch
     procedure :: search_machine
     procedure :: has_cycle
     procedure :: last_cycle
-    procedure :: find_statistic
     procedure :: film_change
     procedure :: record_point
     procedure :: record_skirt
@@ -87,7 +84,6 @@ contains
     self%followed = 0
     self%pin_turn = 0
     if (in_domain .and. allocated(scene%chain%floating)) self%pin_angle = now%motion%pin_angle
-    call self%columns%begin(t, crank%ended)
     self%direction = crank%direction
     self%start_angle = crank%start_angle
     self%is_whole = abs(scene%crank_angle(t, y) - crank%angle(crank%ended)) <= rounding
@@ -175,15 +171,6 @@ contains
     end do
     cycle = sum%total
   end function last_cycle
-
-  !> Statistic number i of the columns over the last cycle of so many revolutions, or over the run if it does not have one.
-  subroutine find_statistic(self, i, revolutions, value, is_known)
-    class(cycle_watch_t), intent(in) :: self
-    integer, intent(in) :: i, revolutions
-    real(dp), intent(out) :: value
-    logical, intent(out) :: is_known
-    call self%columns%find(i, merge(revolutions, 0, self%has_cycle(revolutions)), value, is_known)
-  end subroutine find_statistic
 
   !> Change of the smallest film thickness of a pin from the last cycle but one to the last, relative to the former [-]; 0 before
   !> the end of the third cycle, since the first one begins anywhere, and where the surfaces touch.
@@ -311,7 +298,6 @@ contains
       self%present%pin(i)%heat = heat(:, i) - self%heat(:, i)
     end do
     self%ended = self%ended + 1
-    call self%columns%end_revolution()
     self%recent(mod(self%ended, longest_period)) = self%present
     if (self%is_whole) self%followed = self%followed + 1
     if (self%is_whole .and. self%ended > self%uncounted) then

@@ -18,6 +18,7 @@ module inside_step
     real(dp) :: t(n_inner) = 0               !! [s]
     real(dp) :: weight(n_inner) = 0          !! of a value in the integral [s]
     logical :: in_domain(n_inner) = .false.  !! the scene is defined there
+    real(dp) :: work(n_inner) = 0            !! of the non-conservative forces so far [J]
     type(evaluation_t) :: now(n_inner)
   contains
     procedure :: evaluate
@@ -44,6 +45,7 @@ contains
     self%weight = gauss_weights*span
     do i = 1, n_inner
       call evaluate_inside(scene, method, self%t(i), y, self%now(i), self%in_domain(i), evaluations)
+      self%work(i) = scene%work(y)
     end do
   end subroutine evaluate
 

@@ -52,6 +52,7 @@ module result_ledger
     real(dp), private :: t_before = 0, t = 0           !! beginning and end of the last interval [s]
     real(dp), private :: angle = 0                     !! crank angle at its end [rad]
     real(dp), private :: angle_inside = 0              !! of the values inside [rad]
+    real(dp), private :: initial_energy = 0            !! of the run [J]
     real(dp), allocatable, private :: before(:), last(:), last_rate(:)   !! values there, and rates at its end
     real(dp), allocatable, dimension(:), private :: values, rates, inside   !! at the end of the interval, and inside
     real(dp), allocatable, private :: samples(:, :)    !! values at the points of Gauss's rule in the interval
@@ -76,12 +77,12 @@ module result_ledger
 contains
 
   !> Prepare for the results that are kept of the columns of a scene.
-  subroutine prepare(self, list)
+  subroutine prepare(self, list, kept)
     class(ledger_t), intent(inout) :: self
     type(column_list_t), intent(in) :: list   !! the columns of a row
+    type(kept_t), intent(in) :: kept(:)       !! what is kept of the columns of the scene
     integer :: i, n, m
-    allocate (self%kept(0))
-    if (allocated(list%kept)) self%kept = list%kept
+    self%kept = kept
     self%list = list
     if (.not. allocated(list%names)) allocate (self%list%names(0))
     n = size(self%list%names)
@@ -155,18 +156,20 @@ contains
   end subroutine declare
 
   !> Begin at t, where the scene has been evaluated.
-  subroutine begin(self, scene, t, now)
+  subroutine begin(self, scene, t, y, now, initial_energy)
     class(ledger_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t
+    real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(in) :: now
+    real(dp), intent(in) :: initial_energy   !! of the run [J]
+    self%initial_energy = initial_energy
     self%t = t
     self%inner%to = t
     self%is_fresh = .false.
     self%has_before = .false.
     self%has_slopes = .false.
     self%angle = now%motion%crank_angle
-    call row_values(self%list, scene, t, now, 0.0_dp, 0.0_dp, self%last, self%last_rate)
+    call row_values(self%list, scene, t, now, scene%work(y), initial_energy, self%last, self%last_rate)
     call add_values(self, self%last, self%angle)
     self%sense = sense_of(self%last)
   end subroutine begin
@@ -258,11 +261,11 @@ contains
 
   !> Follow the columns from the end of the last interval to t, inside the last step of the method or at its end, where the scene
   !> has been evaluated.
-  subroutine follow(self, method, scene, t, now, evaluations)
+  subroutine follow(self, method, scene, t, y, now, evaluations)
     class(ledger_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t
+    real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(in) :: now
     integer, intent(inout) :: evaluations    !! of the scene so far
     logical :: has_slopes(2), has_samples   ! has_slopes: as above, at both ends of this interval
@@ -270,7 +273,7 @@ contains
     integer :: k
     if (size(self%last) == 0 .or. .not. t > self%t) return
     if (self%is_fresh) call begin_anew(self, method, scene, evaluations)
-    call row_values(self%list, scene, t, now, 0.0_dp, 0.0_dp, self%values, self%rates)
+    call row_values(self%list, scene, t, now, scene%work(y), self%initial_energy, self%values, self%rates)
     angle = self%angle
     self%angle = now%motion%crank_angle
     call add_values(self, self%values, self%angle)
@@ -435,11 +438,13 @@ contains
     do i = 1, self%inner%n
       is_whole = is_whole .and. self%inner%in_domain(i)
       if (.not. self%inner%in_domain(i)) cycle
-      call row_values(self%list, scene, self%inner%t(i), self%inner%now(i), 0.0_dp, 0.0_dp, self%samples(:, i))
+      call row_values(self%list, scene, self%inner%t(i), self%inner%now(i), self%inner%work(i), self%initial_energy, &
+        self%samples(:, i))
       call add_values(self, self%samples(:, i), self%inner%now(i)%motion%crank_angle)
       associate (known => self%present(:size(self%is_sampled)), weight => self%inner%weight(i))
         where (self%is_sampled)
           known%sum = known%sum + weight*self%samples(:, i)
+          known%square = known%square + weight*self%samples(:, i)**2
           known%duration = known%duration + weight
         end where
       end associate
@@ -460,7 +465,7 @@ contains
     evaluations = evaluations + 1
     call scene%evaluate(method%t_old, method%y_old, now, in_domain)
     if (.not. in_domain) return
-    call row_values(self%list, scene, method%t_old, now, 0.0_dp, 0.0_dp, self%last, self%last_rate)
+    call row_values(self%list, scene, method%t_old, now, scene%work(method%y_old), self%initial_energy, self%last, self%last_rate)
     call add_values(self, self%last, now%motion%crank_angle)
   end subroutine begin_anew
 
@@ -508,23 +513,24 @@ contains
     if (self%is_of_contact(k)) then
       there = at_end
       call look_at_contacts(scene, method, time, there)
-      call take(self%of_contact, self%contact_at)
+      call take(self%of_contact, self%contact_at, 0.0_dp)
     else
       call evaluate_inside(scene, method, time, y, there, in_domain, evaluations)
       if (.not. in_domain) return
       if (self%is_sampled(k)) then
-        call take(self%list, [(i, i=1, size(self%last))])
+        call take(self%list, [(i, i=1, size(self%last))], scene%work(y))
       else
-        call take(self%cheap, self%cheap_at)
+        call take(self%cheap, self%cheap_at, scene%work(y))
       end if
     end if
 
   contains
 
-    subroutine take(list, at)
+    subroutine take(list, at, work)
       type(column_list_t), intent(in) :: list
       integer, intent(in) :: at(:)
-      call row_values(list, scene, time, there, 0.0_dp, 0.0_dp, self%row(:size(at)))
+      real(dp), intent(in) :: work
+      call row_values(list, scene, time, there, work, self%initial_energy, self%row(:size(at)))
       self%angle_inside = there%motion%crank_angle
       do i = 1, size(at)
         self%inside(at(i)) = self%row(i)

@@ -31,6 +31,7 @@ module run_recorder
     type(row_times_t) :: rows         !! when they are due
     type(run_extremes_t) :: extremes
     type(ledger_t) :: ledger          !! results that are kept of columns
+    type(ledger_t), allocatable :: asked   !! those that a study asks for, by themselves: they change no other
     type(run_limits_t) :: limits
     type(film_snapshots_t), allocatable :: films   !! pressure fields, if they are requested
     type(history_record_t), allocatable :: histories(:)   !! of films with memory, if they are requested
@@ -63,7 +64,11 @@ contains
     class(recorder_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     call self%extremes%prepare(scene)
-    call self%ledger%prepare(self%list)
+    call self%ledger%prepare(self%list, self%list%kept)
+    if (allocated(self%list%asked)) then
+      allocate (self%asked)
+      call self%asked%prepare(self%list, self%list%asked)
+    end if
     allocate (self%y(scene%n), self%values(size(self%list%id)))
     if (self%periods%keeps_one_more) self%rows%first_sample = huge(1.0_dp)   ! no rows until the window begins
   end subroutine prepare
@@ -108,7 +113,8 @@ contains
     if (in_domain .and. .not. self%goes_on) call record_first_contacts(self, scene, t, now)
     call self%extremes%begin(scene, t, now, in_domain, self%cycles)
     if (self%goes_on) call self%extremes%resume_contacts(scene, self%ledger)
-    if (in_domain) call self%ledger%begin(scene, t, now)
+    if (in_domain) call self%ledger%begin(scene, t, y, now, self%initial_energy)
+    if (in_domain .and. allocated(self%asked)) call self%asked%begin(scene, t, y, now, self%initial_energy)
     call self%rows%begin(t, scene%crank_angle(t, y), is_due)
     call record_point(self, scene, t, y, now, in_domain, is_due)
   end subroutine begin
@@ -244,33 +250,30 @@ contains
     if (allocated(self%cycles)) then
       do k = 1, self%crank%n
         call evaluate_scene(self, scene, self%crank%t(k), self%crank%y(:, k), now, in_domain)
-        if (in_domain) call search(self, method, scene, self%crank%t(k), now, .false.)
-        if (self%cycles%columns%is_on()) call self%cycles%columns%record(method, scene, self%crank%t(k), self%initial_energy, &
-          self%extremes%figures%evaluations)
+        if (in_domain) call search(self, method, scene, self%crank%t(k), self%crank%y(:, k), now, .false.)
         call end_revolution(self, scene, self%crank%t(k), self%crank%y(:, k), now, in_domain)
       end do
       call self%cycles%record_strobes(method, scene, t, y)
-      if (self%cycles%columns%is_on()) call self%cycles%columns%record(method, scene, t, self%initial_energy, &
-        self%extremes%figures%evaluations)
     end if
     call evaluate_scene(self, scene, t, y, now, in_domain)
-    if (in_domain) call search(self, method, scene, t, now, .true.)
+    if (in_domain) call search(self, method, scene, t, y, now, .true.)
     call record_point(self, scene, t, y, now, in_domain, self%rows%every_step .and. t >= self%rows%first_sample)
   end subroutine record_end
 
-  !> Search extremes up to t, where the scene has been evaluated.
-  subroutine search(self, method, scene, t, now, is_end)
+  !> Search extremes up to (t, y), where the scene has been evaluated.
+  subroutine search(self, method, scene, t, y, now, is_end)
     class(recorder_t), intent(inout) :: self
     class(ode_method_t), intent(inout) :: method
     type(scene_t), intent(in) :: scene
-    real(dp), intent(in) :: t
+    real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(in) :: now
     logical, intent(in) :: is_end   !! of the step, or of its final part
     integer :: before
     call self%extremes%search(method, scene, t, now, is_end, self%cycles)
     associate (f => self%extremes%figures)
       before = f%evaluations
-      call self%ledger%follow(method, scene, t, now, f%evaluations)
+      call self%ledger%follow(method, scene, t, y, now, f%evaluations)
+      if (allocated(self%asked)) call self%asked%follow(method, scene, t, y, now, f%evaluations)
       f%peak_evaluations = f%peak_evaluations + (f%evaluations - before)
     end associate
   end subroutine search
@@ -285,6 +288,7 @@ contains
     call self%extremes%end_revolution(scene, self%ledger, self%cycles)
     call self%cycles%end_cycle(scene, t, y, now)
     call self%ledger%end_revolution(self%cycles%ended)
+    if (allocated(self%asked)) call self%asked%end_revolution(self%cycles%ended)
   end subroutine end_revolution
 
   !> Evaluate the scene for the trace or the summary. These evaluations are counted.
@@ -336,6 +340,7 @@ contains
     class is (scene_t)
       call self%extremes%change_phases()
       call self%ledger%change_phases()
+      if (allocated(self%asked)) call self%asked%change_phases()
       if (problem%reported_event(index) == event_none) return
       call evaluate_scene(self, problem, t, y, now, in_domain)
       associate (owner => problem%event_of(index))
@@ -397,6 +402,7 @@ contains
     call self%periods%restate(y, scene%crank_angle(t, y))
     call self%extremes%change_phases()
     call self%ledger%change_phases()
+    if (allocated(self%asked)) call self%asked%change_phases()
     self%wants_to_stop = .false.
   end subroutine jump
 

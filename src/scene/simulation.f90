@@ -393,6 +393,7 @@ contains
     call self%recorder%extremes%find_wear(self%scene, report%wear)
     call find_last_cycle(self%recorder, ended, revolutions)
     report%kept = self%recorder%ledger%results(ended, revolutions)
+    if (allocated(self%recorder%asked)) report%kept = [report%kept, self%recorder%asked%results(ended, revolutions)]
     allocate (report%answers(0))
     if (allocated(self%scene%parts)) report%answers = find_answers(self%scene, self%recorder%cycles, &
       self%recorder%periods, self%recorder%extremes, report%kept)

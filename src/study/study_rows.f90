@@ -8,7 +8,7 @@ module study_rows
   use trace_columns, only: column_list_t, column_name
   use cycle_statistics, only: cycle_t, cycle_statistics_t, skirt
   use cycle_watch, only: cycle_watch_t
-  use column_statistics, only: statistic_t, of_result
+  use study_statistics, only: statistic_t
   use simulation, only: run_report_t
   use result_notes, only: relative_residual
   use archard_wear, only: of_pin, of_bore
@@ -179,14 +179,13 @@ contains
     do i = 1, n_places
       if (row%has_wear .and. row%has_place(in_order(i))) call add_wear(row, report, in_order(i), is_done)
     end do
-    if (allocated(row%statistics)) call add_statistics(row, watch, report)
+    if (allocated(row%statistics)) call add_statistics(row, report)
     call row%end_row()
   end subroutine add_run
 
   !> Append the statistics of columns and results by name; a run that has reached its end has them, also without a whole revolution.
-  subroutine add_statistics(row, watch, report)
+  subroutine add_statistics(row, report)
     class(study_row_t), intent(inout) :: row
-    type(cycle_watch_t), intent(in) :: watch
     type(run_report_t), intent(in) :: report
     real(dp) :: value
     logical :: is_done, is_known
@@ -198,11 +197,7 @@ contains
         call row%add_text(trim(row%statistics(i)%name))
         cycle
       end if
-      if (row%statistics(i)%kind == of_result) then
-        call report%value_of(trim(row%statistics(i)%column), value, is_known)
-      else
-        call watch%find_statistic(i, report%periods%cycle_revolutions(), value, is_known)
-      end if
+      call row%statistics(i)%value_in(report, i, value, is_known)
       call row%add_number(row%numbers, value, is_done .and. is_known)
     end do
   end subroutine add_statistics

@@ -5,8 +5,7 @@ module study_sweep
   use text_tools, only: printable, integer_text, lowercase
   use checksums, only: checksum_t
   use version_number, only: program_version
-  use column_statistics, only: statistic_t, read_statistics
-  use study_results, only: name_results
+  use study_statistics, only: statistic_t, read_statistics
   use trace_columns, only: column_list_t, choose_columns
   use case_definition, only: case_t
   use case_file, only: read_case_values
@@ -102,7 +101,6 @@ contains
       end if
       if (allocated(error)) return
       call read_statistics(study%statistics, sweep%base%case, sweep%statistics, error)
-      if (.not. allocated(error)) call name_results(sweep%statistics, sweep%base%case, error)
       if (allocated(error)) error%message = at//'&study statistics = '//error%message
       if (.not. allocated(error)) call keep_inputs(sweep, error)
       sweep%has_strobes = study%strobe_columns /= ''

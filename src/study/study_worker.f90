@@ -4,9 +4,9 @@ module study_worker
   use error_handling, only: error_t
   use run_state, only: run_state_t
   use constants, only: degree
-  use trace_columns, only: column_list_t, choose_columns
+  use trace_columns, only: column_list_t, all_columns, choose_columns
   use cycle_watch, only: cycle_watch_t
-  use column_statistics, only: statistic_t, of_result
+  use study_statistics, only: statistic_t, keep_statistics
   use film_files, only: provide_tables
   use simulation, only: run_t, run_report_t
   use whole_run, only: go_to_end
@@ -66,8 +66,7 @@ contains
     self%watch%settle = study%settle_cycles
     self%watch%keeps_cycles = study%cycles
     self%watch%strobe_list = strobe_list
-    self%watch%columns%wanted = statistics
-    self%watch%wants_answers = any(statistics%kind == of_result)
+    self%watch%wants_answers = any(statistics%what == 0)
     self%watch%strobe_angle = study%strobe_angle_deg*degree
     self%watch%most_strobes = study%strobe_cycles
     allocate (self%no_columns%id(0))
@@ -134,12 +133,17 @@ contains
     type(run_report_t), intent(out) :: report
     type(error_t), allocatable, intent(out) :: error
     type(run_t) :: run
+    type(column_list_t) :: followed
     if (allocated(self%previous)) then
       self%base%case%initial%state = self%previous
       self%base%case%initial%goes_on = .false.
     end if
-    call self%watch%columns%prepare(self%base%case)
-    call run%begin(self%base%case, .false., list, sink, error, self%watch)
+    followed = list
+    if (size(self%run_row%statistics) > 0) then
+      if (.not. allocated(list%names)) call all_columns(self%base%case, .false., followed)
+      call keep_statistics(self%run_row%statistics, followed)
+    end if
+    call run%begin(self%base%case, .false., followed, sink, error, self%watch)
     if (allocated(error)) return
     call go_to_end(run, self%was_interrupted)
     call run%finish(report, error, self%watch)
