@@ -78,6 +78,17 @@ class Point:
     def stable(self) -> bool:
         return bool(abs(self.multipliers[0]) < 1)
 
+    def ahead(self, step: float, other: Point | None) -> tuple[np.ndarray, np.ndarray]:
+        """Where the branch is expected after a step of the arclength, and the derivatives there: tangent and derivatives are those of this
+        point, and change as they do to another one, before it or behind it."""
+        if other is None:
+            return self.w + step * self.tangent, self.jacobian
+        share = step / (other.arclength - self.arclength)
+        return (
+            self.w + step * (self.tangent + share / 2 * (other.tangent - self.tangent)),
+            self.jacobian + share * (other.jacobian - self.jacobian),
+        )
+
     def tests(self) -> dict[str, float | None]:
         """Functions that change their sign at special points; None where there is no such function."""
         multipliers = self.multipliers
@@ -113,23 +124,26 @@ class Shooting:
         return image.x / self.units[:-1] - w[:-1]
 
     def differences(self, w: np.ndarray, image: Image) -> tuple[np.ndarray, bool]:
-        """Derivatives of the image by w, and whether another pattern was met. Where it is met on one side the other side is used alone,
-        where on both a quarter of the difference. Raises Edge."""
+        """Derivatives of the image by w, and whether another pattern was met. Those by the state are central; where another pattern is met
+        on one side the other side is used alone, where on both a quarter of the difference. Of those by the parameter, of which no
+        multiplier depends, one side is enough: each time the other one. Raises Edge."""
         columns: list[np.ndarray | None] = [None] * len(w)
-        size, mixed = DIFFERENCE, False
+        size, side, mixed = DIFFERENCE, 1, False
         while left := [i for i, column in enumerate(columns) if column is None]:
             if size < LEAST_DIFFERENCE:
                 raise Edge("the sequence of contacts changes on both sides of the motion")
-            moves = [sign * size * np.eye(len(w))[i] for i in left for sign in (1, -1)]
-            found = list((self._pool.map if self._pool else map)(self._attempt, [w + move for move in moves]))
-            for i, plus, minus in zip(left, found[::2], found[1::2]):
-                good = [(its, side) for its, side in ((plus, 1), (minus, -1)) if its is not None and its.pattern == image.pattern]
-                mixed = mixed or len(good) < 2
+            sides = [(side,) if i == len(w) - 1 else (1, -1) for i in left]
+            moves = [sign * size * np.eye(len(w))[i] for i, signs in zip(left, sides) for sign in signs]
+            found = iter((self._pool.map if self._pool else map)(self._attempt, [w + move for move in moves]))
+            for i, signs in zip(left, sides):
+                its = [(next(found), sign) for sign in signs]
+                good = [(one.x, sign) for one, sign in its if one is not None and one.pattern == image.pattern]
+                mixed = mixed or len(good) < len(signs)
                 if len(good) == 2:
-                    columns[i] = (good[0][0].x - good[1][0].x) / (2 * size)
+                    columns[i] = (good[0][0] - good[1][0]) / (2 * size)
                 elif good:
-                    columns[i] = (good[0][0].x - image.x) / (good[0][1] * size)
-            size /= 4
+                    columns[i] = (good[0][0] - image.x) / (good[0][1] * size)
+            size, side = size / 4, -side
         return np.array(columns).T / self.units[:-1, None], mixed
 
     def edge_distance(self, point: Point) -> float:
@@ -147,7 +161,8 @@ class Shooting:
 
     def _correct(self, w: np.ndarray, normal: np.ndarray, jacobian: np.ndarray | None, most: int) -> tuple[np.ndarray, Image, float, int]:
         """Newton's method in the hyperplane through w with this normal: a periodic point, its image and residual, and how many corrections
-        it took. Derivatives are kept while a correction halves the residual; with new ones a correction is damped by halves."""
+        it took. Derivatives are kept while a correction halves the residual, with Broyden's update; with new ones a correction is damped
+        by halves."""
         anchor, image, fresh = w, self._image(w), False
         residual = self._residual(w, image)
         for correction in range(most):
@@ -171,6 +186,7 @@ class Shooting:
                 if share < 1 / 64:
                     raise Lost(f"the residual stays at {size:.1e}")
             if found and abs(after).max() < size:
+                jacobian = jacobian + np.outer(after - (1 - share) * residual, step) / (share * (step @ step))
                 w, image, residual = w + share * step, found, after
             if abs(after).max() > size / 2:
                 jacobian, fresh = None, False
@@ -214,22 +230,25 @@ class Shooting:
         if direction * start.tangent[-1] < 0:
             start = replace(start, tangent=-start.tangent)
         last, branch, step, count = start, [start], FIRST_STEP, 1
+        before: Point | None = None
         why = Lost("")
         while count < points:
-            w = last.w + step * last.tangent
             grazes = False
+            w, jacobian = last.ahead(step, before)
             try:
-                found = self._correct(w, last.tangent, last.jacobian, MOST_CORRECTIONS)
+                found = self._correct(w, last.tangent, jacobian, MOST_CORRECTIONS)
                 grazes = found[1].pattern != last.image.pattern
                 if grazes and step > LEAST_STEP:
                     step /= 2
                     continue
+                p = found[0][-1] * self.units[-1]
+                if is_over := not min(limits) <= p <= max(limits):
+                    share = (min(max(limits), max(min(limits), p)) - last.p) / (p - last.p)
+                    step *= share
+                    found = self._correct(last.w + share * (found[0] - last.w), np.eye(len(w))[-1], jacobian, MOST_CORRECTIONS)
                 new = self._point(*found, last.tangent, last.arclength + step)
                 if new.tangent @ last.tangent < LARGEST_TURN and not grazes:
                     raise Lost("the branch turns too sharply")
-                is_over = not min(limits) <= new.p <= max(limits)
-                if is_over:
-                    new = self._at_limit(last, new, min(limits) if new.p < min(limits) else max(limits))
             except Lost as error:
                 why = error
                 step /= 2
@@ -238,19 +257,13 @@ class Shooting:
                 continue
             branch += [replace(last, kind="grazing")] if grazes else self._special(last, new)
             branch.append(new)
-            last, count = new, count + 1
+            last, before, count = new, None if grazes else last, count + 1
             if tell:
                 tell(new)
             if is_over:
                 return branch, None
             step = min(1.6 * step, LARGEST_STEP) if new.corrections <= 5 else step / 1.6 if new.corrections > 7 else step
         return branch, None
-
-    def _at_limit(self, a: Point, b: Point, limit: float) -> Point:
-        """The point between neighbours at which the parameter is at its limit."""
-        share = (limit - a.p) / (b.p - a.p)
-        found = self._correct(a.w + share * (b.w - a.w), np.eye(len(a.w))[-1], a.jacobian, MOST_CORRECTIONS)
-        return self._point(*found, a.tangent, a.arclength + share * (b.arclength - a.arclength))
 
     def _special(self, a: Point, b: Point) -> list[Point]:
         """Folds, flips and Neimark-Sacker points between neighbours, by regula falsi over the arclength."""
@@ -264,7 +277,8 @@ class Shooting:
                 margin = 0.02 * (high - low)
                 step = min(max(low - at_low * (high - low) / (at_high - at_low), low + margin), high - margin)
                 try:
-                    best = self._point(*self._correct(a.w + step * a.tangent, a.tangent, a.jacobian, MOST_CORRECTIONS), a.tangent, a.arclength + step)
+                    w, jacobian = a.ahead(step, b)
+                    best = self._point(*self._correct(w, a.tangent, jacobian, MOST_CORRECTIONS), a.tangent, a.arclength + step)
                 except Lost:
                     break
                 test = best.tests()[kind]
