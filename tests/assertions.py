@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import collections
 import re
+from collections.abc import Callable
 
 MOST_PRINTED = 5   # failures of one assertion that are printed
 NUMBER = re.compile(r"(?<![A-Za-z_0-9])[-+.]*\d[\d.+\-eEdD]*")
@@ -33,6 +34,15 @@ class Assertions:
         self.failures[key] += 1
         if self.failures[key] <= MOST_PRINTED:
             print(f"FAILED: {name}" + (f": {found}" if found else ""), flush=True)
+
+    def refuses(self, kind: type | tuple[type, ...], words: str, action: Callable[[], object]) -> None:
+        """Check that an action raises an error of this kind whose text has these words."""
+        try:
+            action()
+        except kind as error:
+            self.check(words in str(error), f"{words!r} is in {str(error)!r}")
+        else:
+            self.check(False, f"{kind}: {words}")
 
     @property
     def failed(self) -> int:

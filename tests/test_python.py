@@ -34,6 +34,7 @@ import gudgeon
 import matplotlib
 import numpy as np
 import pandas as pd
+from assertions import Assertions
 from gudgeon import _fit
 from scipy import stats
 
@@ -44,24 +45,8 @@ CASES = [
     "sim_I", "sim_V", "sim_II_oscillating", "flores/friction_100", "friction/lugre", "gas/compressor", "gas/measured",
     "joints/both_pins", "joints/piston_slap", "elastic/engine_rod", "drive/motor", "drive/start_up", "wear/worn_bore",
 ]  # fmt: skip
-passed = failed = 0
-
-
-def check(holds: bool, what: str) -> None:
-    global passed, failed
-    passed, failed = passed + bool(holds), failed + (not holds)
-    if not holds:
-        print(f"FAILED: {what}")
-
-
-def refuses(kind: type, words: str, action) -> None:
-    """Check that an action raises an error whose text has these words."""
-    try:
-        action()
-    except kind as error:
-        check(words in str(error), f"{words!r} is in {str(error)!r}")
-    else:
-        check(False, f"{kind.__name__}: {words}")
+assertions = Assertions()
+check, refuses = assertions.check, assertions.refuses
 
 
 def case_of(name: str) -> gudgeon.Case:
@@ -653,6 +638,16 @@ def fits() -> None:
     spread = {name: 0.01 * summary[name] for name in names}
     known = gudgeon.fit(engine, {name: summary[name] for name in names}, {"combustion.heat": (250, 380), "combustion.compression_ratio": (6, 14)}, errors=spread)
     check(known.at_limits == ["combustion.heat"] and "At a limit" in repr(known), f"a key at its limit: {known}")
+    limits = {"mechanism.piston_mass": (-0.05, 0.5)}  # a negative mass is refused
+    force = {"max_pin_force": crank.run(columns="none").summary["max_pin_force"]}
+    shares = stats.qmc.Sobol(1, rng=1)
+    for found, tried in (
+        (gudgeon.fit(crank, force, limits, designs=[32, 16]), shares.random(32)), (gudgeon.fit(crank, force, limits), shares.reset().random(8)),
+    ):  # fmt: skip
+        lost = int((tried * 0.55 < 0.05).sum())
+        check(lost > 0 and list(found.failures.values()) == [lost] and "piston_mass" in list(found.failures)[0], f"runs that failed: {found.failures}")
+        check(abs(found.values["mechanism.piston_mass"] / 0.14 - 1) < 1e-4 and f"Runs left out: {lost}" in repr(found), f"they are left out: {found}")
+    refuses(RuntimeError, "8 of 8 runs of a design have failed: combustion.", lambda: gudgeon.fit(engine, {"cycle_imep": 1e6}, {"combustion.compression_ratio": (0.5, 0.9)}, designs=[8]))
     refuses(ValueError, "smaller than the second", lambda: gudgeon.fit(engine, {"cycle_imep": 1e6}, {"combustion.heat": (300, 300)}))
     refuses(ValueError, "give bands", lambda: gudgeon.fit(oiled, table, keys, designs=[8]))
     refuses(RuntimeError, "an answer is missing", lambda: gudgeon.fit(engine, {"cycle_nothing": 1.0}, {"combustion.heat": (300, 400)}))
@@ -730,8 +725,7 @@ def main() -> int:
             part()
         except Exception:
             check(False, traceback.format_exc())
-    print(f"{passed} passed, {failed} failed")
-    return failed > 0
+    return assertions.report()
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from ._keys import keys as declared
-from ._sweep import sweep
+from ._sweep import counted, sweep
 from ._table import Table, Unit, sheet, text_of
 from .case import Case, Value
 from .run import Page, Run, _label
@@ -122,6 +122,10 @@ class Levels:
         return [f"{name}, orders {a:g} to {b:g} [dB]" for name in self.names for a, b in zip(self.bands, self.bands[1:])]
 
 
+class Failed(RuntimeError):
+    """Runs on which a fit depends have failed."""
+
+
 class Answers:
     """Quantities of the summary, or what a function of the run returns."""
 
@@ -187,8 +191,8 @@ def fit(
 
     designs: numbers of Sobol points in ever smaller boxes, between whose answers a surface is drawn and searched: for chaotic motion,
     whose answers are not smooth (default with `bands`: 128, 64, 64; else none, least_squares runs the case itself). settle: revolutions
-    left out; starts: points from which the best start is taken; step: of the differences. Raises RuntimeError if runs cannot go on,
-    ValueError if traces cannot be compared.
+    left out; starts: points from which the best start is taken; step: of the differences. Runs that fail on designs or among the starts
+    are left out and counted; others raise RuntimeError. Raises ValueError if traces cannot be compared.
     """
     sought = [Key(name, *(float(case.set({name: limit})[name]) for limit in limits)) for name, limits in keys.items()]
     if wrong := [key.name for key in sought if not key.least < key.most]:
@@ -204,6 +208,7 @@ def fit(
             raise ValueError("traces are compared by themselves, not on designs: give bands")
     base = case if observed.columns is None else case._with(None, observed.columns)
     runs = 0
+    failed: list[tuple[str, str]] = []  # values of the keys, and the reason
 
     def model(points: np.ndarray) -> np.ndarray:
         nonlocal runs
@@ -220,11 +225,9 @@ def fit(
             )  # fmt: skip
             found = np.stack([row if np.ndim(row) else nothing for row in table.get("found", [math.nan] * len(table))])
         found[(table.status != "done").to_numpy()] = np.nan
-        if not designs and not np.isfinite(found).all():
-            row = int(np.flatnonzero(~np.isfinite(found).all(axis=1))[0])
-            values_of_row = ", ".join(f"{name} = {value:.6g}" for name, value in zip(keys, values[row]))
-            what = table.status[row] if table.status[row] != "done" else "an answer is missing, or the data go beyond the run"
-            raise RuntimeError(f"{values_of_row}: {what}")
+        reasons = table.status.where(table.status != "done", "an answer is missing, or the data go beyond the run")
+        for row in np.flatnonzero(~np.isfinite(found).all(axis=1)):
+            failed.append((", ".join(f"{name} = {value:.6g}" for name, value in zip(keys, values[row])), reasons[row]))
         return found
 
     def values_at(place: np.ndarray) -> dict[str, Value]:
@@ -235,37 +238,45 @@ def fit(
     inside = all(key.least <= value <= key.most for key, value in zip(sought, own))
     place = np.array([key.coordinate(value) for key, value in zip(sought, own)]) if inside else reach / 2
     scale = observed.scale(errors)
-    if designs:
-        place, residuals, jacobian = search_on_designs(model, observed.measured, scale, reach, designs, seed)
-    else:
-        for count in (starts, 0, 0):  # again where the certificate of the result ends earlier
-            if isinstance(observed, Traces):
-                run = base.set(values_at(place)).run(certify=until is None)
-                runs += 3 if until is None else 1
-                end = until if run.certificate is None else run.certificate.until
-                part = observed.until(run, end)
-                if len(part.data) * len(part.names) <= len(sought):
-                    raise ValueError(f"traces can be compared until {end:.3g} s alone, which is too short: give bands or answers")
-                if count == 0 and len(part.data) == len(observed.data):
+    try:
+        if designs:
+            place, residuals, jacobian = search_on_designs(model, observed.measured, scale, reach, designs, seed)
+        else:
+            for count in (starts, 0, 0):  # again where the certificate of the result ends earlier
+                if isinstance(observed, Traces):
+                    run = base.set(values_at(place)).run(certify=until is None)
+                    runs += 3 if until is None else 1
+                    end = until if run.certificate is None else run.certificate.until
+                    part = observed.until(run, end)
+                    if len(part.data) * len(part.names) <= len(sought):
+                        raise ValueError(f"traces can be compared until {end:.3g} s alone, which is too short: give bands or answers")
+                    if count == 0 and len(part.data) == len(observed.data):
+                        break
+                    observed, scale = part, part.scale(errors)
+                place, residuals, jacobian = search(model, observed.measured, scale, reach, place, count, step, seed)
+                if until is not None or not isinstance(observed, Traces):
                     break
-                observed, scale = part, part.scale(errors)
-            place, residuals, jacobian = search(model, observed.measured, scale, reach, place, count, step, seed)
-            if until is not None or not isinstance(observed, Traces):
-                break
+    except Failed as error:
+        raise RuntimeError(f"{error}: " + ": ".join(failed[-1])) from None
     last = float(observed.data["time"].iloc[-1]) if isinstance(observed, Traces) and observed.over == "time" else None
     found = observed.measured + scale * residuals
-    return Fit(case.set(values_at(place)), sought, place, observed, found, residuals, jacobian, errors is not None, runs, last)
+    return Fit(case.set(values_at(place)), sought, place, observed, found, residuals, jacobian, errors is not None, runs, last,
+               counted(reason for _, reason in failed))  # fmt: skip
 
 
 def search(
     model: Model, measured: np.ndarray, scale: np.ndarray, reach: np.ndarray, start: np.ndarray, starts: int, step: float, seed: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The coordinates whose answers are the measured ones, the residuals over `scale`, and their Jacobian, by central differences."""
+    """The coordinates whose answers are the measured ones, the residuals over `scale`, and their Jacobian, by central differences. Starts
+    whose runs fail are left out. Raises Failed."""
     from scipy.optimize import least_squares
     from scipy.stats import qmc
 
     def residuals(points: np.ndarray) -> np.ndarray:
-        return (model(points) - measured) / scale
+        found = (model(points) - measured) / scale
+        if not np.isfinite(found).all():
+            raise Failed("a run of the search has failed")
+        return found
 
     def jacobian(place: np.ndarray) -> np.ndarray:
         above, below = np.minimum(place + step, reach), np.maximum(place - step, 0)
@@ -275,7 +286,8 @@ def search(
 
     if starts:
         points = np.vstack([start, reach * qmc.Sobol(len(reach), rng=seed).random(starts)])
-        start = points[np.argmin((residuals(points) ** 2).sum(axis=1))]
+        sizes = ((model(points) - measured) ** 2 / scale**2).sum(axis=1)
+        start = points[np.argmin(np.where(np.isfinite(sizes), sizes, np.inf))]
     start = np.clip(start, 1e-6 * reach, (1 - 1e-6) * reach)
     found = least_squares(lambda x: residuals(x[None])[0], start, jacobian, (np.zeros_like(reach), reach), xtol=1e-7, ftol=1e-10, max_nfev=40)
     return found.x, found.fun, jacobian(found.x)
@@ -285,7 +297,7 @@ def search_on_designs(
     model: Model, measured: np.ndarray, scale: np.ndarray, reach: np.ndarray, designs: Sequence[int], seed: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The same on surfaces through the answers at Sobol points, in ever smaller boxes around the best place. Runs that fail are left
-    out."""
+    out. Raises Failed if too few are left."""
     from scipy.interpolate import RBFInterpolator
     from scipy.optimize import least_squares
     from scipy.stats import qmc
@@ -297,7 +309,7 @@ def search_on_designs(
         found = (model(points) - measured) / scale
         good = np.isfinite(found).all(axis=1)
         if good.sum() < 2 * len(reach) + 1:
-            raise RuntimeError(f"{(~good).sum()} of {runs} runs of a design have failed")
+            raise Failed(f"{(~good).sum()} of {runs} runs of a design have failed")
         places, found = ((points - centre) / half)[good], found[good]
         surface = RBFInterpolator(places, found, smoothing=SMOOTHING)
         nearest = places[(found**2).sum(axis=1).argsort()[:STARTS]]
@@ -327,6 +339,7 @@ class Fit:
     errors_known: bool
     runs: int
     until: float | None
+    failures: dict[str, int] = field(default_factory=dict)  # runs that were left out, by their reasons
 
     @property
     def keys(self) -> list[str]:
@@ -428,6 +441,7 @@ class Fit:
         found = [f"{len(self.residuals)} data, {self.runs} runs; root mean square residual {self.rms:.3g}; condition number {self.condition:.3g}."]
         if self.until is not None:
             found.append(f"Traces are compared until {self.until:.4g} s.")
+        found += [f"Runs left out: {count} ({reason})." for reason, count in self.failures.items()]
         for direction in self.free:
             found.append("Not fixed by the data: " + " · ".join(f"{key}^{part:.2g}" for key, part in direction.items()) + ".")
         if self.at_limits:

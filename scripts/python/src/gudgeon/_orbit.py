@@ -58,6 +58,9 @@ class Section:
         all_names = [number.name for number in self.numbers]
         found = []
         for i in self.states:
+            if all_names[i] == "guide_impact_speed":
+                found.append(_corner_or(self.numbers, i) + "impact_speed")
+                continue
             name, count = all_names[i], all_names.count(all_names[i])
             ends = ("_x", "_y") if "eccentricity" in name else [f"_{k + 1}" for k in range(count)]
             found.append(name + (ends[i - all_names.index(name)] if count > 1 else ""))
@@ -144,6 +147,8 @@ class Motion:
         library().case_start(case._handle, None)
         begun = _Owner(case._begin(False, None, True))
         library().case_start(case._handle, begun.number)
+        if library().states(case._handle) != len(self.section.numbers):
+            raise Lost("the case has other states there")
         for i, number in enumerate(self.section.numbers):
             if not (number.name.endswith("clearance") or number.name == "crank_speed" and i not in self.section.states):
                 library().state_set(case._handle, i, number.value)
@@ -164,7 +169,8 @@ class Motion:
         return case
 
     def scale(self) -> np.ndarray:
-        """Natural sizes: clearance and clearance times crank speed of a pin, the crank speed, else half of the range in one period."""
+        """Natural sizes: clearance and clearance times crank speed of a pin, and of a piston in its bore, whose tilt is the clearance over
+        the length of the skirt; the crank speed; else half of the range in one period."""
         of = {number.name: abs(number.value) for number in self.section.numbers}
         speed, found, swings = of["crank_speed"], [], None
         for k, i in enumerate(self.section.states):
@@ -172,6 +178,9 @@ class Motion:
             clearance = of.get(name.partition("eccentricity")[0].removesuffix("carried_") + "clearance", math.nan)
             if "eccentricity" in name:
                 found.append(clearance * (speed if name.endswith("rate") else 1))
+            elif name.startswith(("piston_offset", "piston_tilt")):
+                length = self.case["guide.skirt_top"] + self.case["guide.skirt_bottom"] if "tilt" in name else 1
+                found.append(of["bore_clearance"] / length * (speed if name.endswith("rate") else 1))
             elif name in ("crank_speed", "pin_speed"):
                 found.append(speed)
             elif name.endswith("impact_speed"):
@@ -296,15 +305,15 @@ def _settled(case: Case) -> tuple[Case, int]:
     it = case.copy()
     it["integrator.relative_tolerance"] = SETTLING
     it["integrator.crank_revolutions"] = None
-    it.add("run", until="periodic", most_revolutions=MOST_REVOLUTIONS, periodic_tolerance=1e-6)
+    it.add("run", until="periodic", most_revolutions=MOST_REVOLUTIONS)
     owner = _Owner(it._begin(False, None, True))
     advance(owner.number, 1e300, None, None)
     summary = summary_of(owner.number, {"status", "period_revolutions"})
     new = case.copy()
     library().case_start(new._handle, owner.number)
-    if "period_revolutions" not in summary:
+    if summary["status"] != "done":
         raise OrbitError(f"no orbit: {summary['status']}")
-    return new, summary["period_revolutions"]
+    return new, summary.get("period_revolutions", 0)
 
 
 def _repeats(case: Case, revolutions: int) -> bool:
@@ -331,8 +340,8 @@ def _turned(case: Case, revolutions: float) -> Case:
 class Orbit:
     """A periodic motion, by its state at a section; made by `gudgeon.orbit` and `Branch.orbit`."""
 
-    def __init__(self, motion: Motion, shooting: Shooting, point: Point) -> None:
-        self._motion, self._shooting, self._point = motion, shooting, point
+    def __init__(self, motion: Motion, shooting: Shooting, point: Point, is_moved: bool = False) -> None:
+        self._motion, self._shooting, self._point, self._is_moved = motion, shooting, point, is_moved
         self._case = motion.at(point.x, point.p)
         #: Residual of the state after one period, in units of the natural sizes.
         self.residual = point.residual
@@ -382,7 +391,7 @@ class Orbit:
     @cached_property
     def edge_distance(self) -> float:
         """How small a change of one state leads to another sequence of contacts, in units of the natural sizes (of a pin its clearance);
-        infinite: more than 1e-4."""
+        infinite: more than 3e-4."""
         return self._shooting.edge_distance(self._point)
 
     @property
@@ -408,6 +417,8 @@ class Orbit:
         text = f"orbit of {_revolutions(self.revolutions)}: {'stable' if self.stable else 'unstable'}, largest multiplier {size} ({self.exponent:.4f} a revolution)"
         for name, value in self.held.items():
             text += f"; contact of {_place(name.removesuffix('impact_speed'))} lasts, impact speed {value:.4g} m/s held"
+        if self._is_moved:
+            text += f"; section moved to {self.section_deg:.4g} degrees, away from the beginning or end of a contact"
         if self.edge_distance < math.inf:
             text += f"; edge: a push of {self.edge_distance:.0e} of the clearance leads to another motion"
         return text
@@ -441,8 +452,8 @@ def orbit(
     if start is None:
         case, period = _settled(case)
         if not (period or revolutions):
-            raise OrbitError(f"no orbit: the motion of the case does not repeat within {MOST_REVOLUTIONS} revolutions; give start=, "
-                             "or follow a branch from a parameter where it does")  # fmt: skip
+            raise OrbitError(f"no orbit: the motion of the case does not repeat within {MOST_REVOLUTIONS} revolutions; give start= or "
+                             "revolutions=, or follow a branch from a parameter where it does")  # fmt: skip
         periods = [revolutions] if revolutions else [k for k in range(1, period + 1) if period % k == 0 and _repeats(case, k)]
     else:
         case = case.start_from(start.state if isinstance(start, Orbit) else start)
@@ -451,6 +462,7 @@ def orbit(
         raise OrbitError(f"no orbit of {_revolutions(periods[-1])}: the gas takes more to repeat")
     angle = math.degrees(float(case.start["crank_angle"]))  # pyright: ignore
     case = _turned(case, 0.0 if section_deg is None else (section_deg - angle) / 360 % 1)
+    is_moved = not _fits(case)
     for _ in range(7):
         if _fits(case):
             break
@@ -472,7 +484,7 @@ def orbit(
             why = error
             continue
         if point.stable or k == periods[-1]:
-            return Orbit(motion, shooting, point)
+            return Orbit(motion, shooting, point, is_moved)
     raise OrbitError(f"no orbit: {why}")
 
 

@@ -104,6 +104,13 @@ def sweep(
     return result()
 
 
+def counted(reasons: Iterable[str]) -> dict[str, int]:
+    """How often runs failed for each reason, in which `...` stands for the value of a key."""
+    import pandas as pd
+
+    return pd.Series(list(reasons), dtype=str).str.replace(r"= [-+.\deE]+:", "= ...:", regex=True).value_counts().to_dict()
+
+
 def _table(design: Any, names: Sequence[str] | None) -> pd.DataFrame:
     import pandas as pd
 

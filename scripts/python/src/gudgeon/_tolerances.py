@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from ._keys import keys as declared
-from ._sweep import sweep
+from ._sweep import counted, sweep
 from ._table import Table, Unit, sheet, text_of
 from .case import Case
 from .run import Page, Run
@@ -108,8 +108,7 @@ class Tolerances:
     @property
     def failures(self) -> dict[str, int]:
         """The number of runs that failed for each reason, in which `...` stands for the value of a key."""
-        reasons = self.table.status[self.table.status != "done"]
-        return reasons.str.replace(r"= [-+.\deE]+:", "= ...:", regex=True).value_counts().to_dict()
+        return counted(self.table.status[self.table.status != "done"])
 
     def samples(self, name: str) -> np.ndarray:
         """The values of a quantity in the runs that are done and have it."""

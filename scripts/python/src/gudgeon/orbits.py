@@ -16,7 +16,7 @@ from typing import TypeAlias
 import numpy as np
 
 #: Difference of a state or of the parameter, and the least one beside a change of the pattern.
-DIFFERENCE, LEAST_DIFFERENCE = 1e-4, 1e-6
+DIFFERENCE, LEAST_DIFFERENCE = 3e-4, 1e-6
 #: Largest residual of a periodic point, and the most corrections from one prediction.
 RESIDUAL, MOST_CORRECTIONS = 1e-9, 12
 #: First, largest and least step along a branch, and the cosine of the largest turn of its tangent in a step.
