@@ -650,7 +650,11 @@ def fits() -> None:
     refuses(RuntimeError, "8 of 8 runs of a design have failed: combustion.", lambda: gudgeon.fit(engine, {"cycle_imep": 1e6}, {"combustion.compression_ratio": (0.5, 0.9)}, designs=[8]))
     refuses(ValueError, "smaller than the second", lambda: gudgeon.fit(engine, {"cycle_imep": 1e6}, {"combustion.heat": (300, 300)}))
     refuses(ValueError, "give bands", lambda: gudgeon.fit(oiled, table, keys, designs=[8]))
-    refuses(RuntimeError, "an answer is missing", lambda: gudgeon.fit(engine, {"cycle_nothing": 1.0}, {"combustion.heat": (300, 400)}))
+    refuses(RuntimeError, "no imep; did you mean cycle_imep?", lambda: gudgeon.fit(engine, {"imep": 1.0}, {"combustion.heat": (300, 400)}))
+    refuses(ValueError, "the least and the largest value", lambda: gudgeon.fit(engine, {"cycle_imep": 1e6}, {"combustion.heat": 300}))  # type: ignore[arg-type]
+    refuses(ValueError, "errors: none for cycle_imep", lambda: gudgeon.fit(engine, {"cycle_imep": 1e6}, {"combustion.heat": (300, 400)}, errors={"imep": 1}))
+    refuses(ValueError, "not finite numbers", lambda: gudgeon.fit(engine, {"cycle_imep": math.nan}, {"combustion.heat": (300, 400)}))
+    refuses(ValueError, "a column time [s] or crank_angle", lambda: gudgeon.fit(engine, pd.DataFrame({"t": [0.0]}), {"combustion.heat": (300, 400)}))
     refuses(RuntimeError, "compression_ratio", lambda: gudgeon.fit(engine, {"cycle_imep": 1e6}, {"combustion.compression_ratio": (0.5, 0.9)}))
 
 
@@ -682,6 +686,9 @@ def tolerances() -> None:
     check(chance.value == 1 and chance.high == 1 and chance.low < 1 - lost / 64, f"they widen the interval: {chance}")
     check("Runs that failed" in repr(found) and "piston_mass" in repr(found), "and are said")
     refuses(ValueError, "power of 2", lambda: gudgeon.tolerances(crank, {"mechanism.piston_mass": mass}, ["max_pin_force"], runs=100))
+    refuses(ValueError, "did you mean max_pin_force?", lambda: gudgeon.tolerances(crank, {"mechanism.piston_mass": mass}, ["max_pin_forse"], runs=2))
+    refuses(ValueError, "give quantities", lambda: gudgeon.tolerances(crank, {"mechanism.piston_mass": mass}, runs=2))
+    refuses(ValueError, "piston_mass: give a distribution", lambda: gudgeon.tolerances(crank, {"mechanism.piston_mass": ["140 g"]}, ["max_pin_force"], runs=2))
     refuses(ValueError, "no run has nothing", lambda: gudgeon.tolerances(crank, {"mechanism.piston_mass": mass}, ["nothing"], runs=2))
     refuses(TypeError, "below or above", lambda: found.probability("max_pin_force"))
 

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from ._keys import keys as declared
+from ._library import meant
 from ._sweep import counted, sweep
 from ._table import Table, Unit, sheet, text_of
 from .case import Case, Value
@@ -194,6 +195,8 @@ def fit(
     left out; starts: points from which the best start is taken; step: of the differences. Runs that fail on designs or among the starts
     are left out and counted; others raise RuntimeError. Raises ValueError if traces cannot be compared.
     """
+    if wrong := [name for name, limits in keys.items() if not isinstance(limits, Sequence) or isinstance(limits, str) or len(limits) != 2]:
+        raise ValueError(f"{', '.join(wrong)}: give the least and the largest value, such as (1e-5, 5e-5)")
     sought = [Key(name, *(float(case.set({name: limit})[name]) for limit in limits)) for name, limits in keys.items()]
     if wrong := [key.name for key in sought if not key.least < key.most]:
         raise ValueError(f"{', '.join(wrong)}: the first limit must be smaller than the second")
@@ -203,9 +206,15 @@ def fit(
         observed: Any = Answers(data, answers)
     else:
         frame = pd.DataFrame(data)
+        if "time" not in frame and "crank_angle" not in frame:
+            raise ValueError("a table of measured data needs a column time [s] or crank_angle [rad]")
         observed = Traces(frame) if bands is None else Levels(frame, bands, settle)
         if designs and bands is None:
             raise ValueError("traces are compared by themselves, not on designs: give bands")
+    if not np.isfinite(observed.measured).all():
+        raise ValueError("the data have values that are not finite numbers")
+    if errors is not None and (missing := [name for name in observed.names if name not in errors]):
+        raise ValueError(f"errors: none for {', '.join(missing)}")
     base = case if observed.columns is None else case._with(None, observed.columns)
     runs = 0
     failed: list[tuple[str, str]] = []  # values of the keys, and the reason
@@ -225,9 +234,11 @@ def fit(
             )  # fmt: skip
             found = np.stack([row if np.ndim(row) else nothing for row in table.get("found", [math.nan] * len(table))])
         found[(table.status != "done").to_numpy()] = np.nan
-        reasons = table.status.where(table.status != "done", "an answer is missing, or the data go beyond the run")
+        beyond = ", or the data go beyond the run" if isinstance(observed, Traces) else ""
         for row in np.flatnonzero(~np.isfinite(found).all(axis=1)):
-            failed.append((", ".join(f"{name} = {value:.6g}" for name, value in zip(keys, values[row])), reasons[row]))
+            missing = dict.fromkeys(label for label, value in zip(observed.labels, found[row]) if not np.isfinite(value))
+            reason = table.status[row] if table.status[row] != "done" else f"the run has no {', '.join(missing)}{beyond}"
+            failed.append((", ".join(f"{name} = {value:.6g}" for name, value in zip(keys, values[row])), reason))
         return found
 
     def values_at(place: np.ndarray) -> dict[str, Value]:
@@ -257,8 +268,12 @@ def fit(
                 if until is not None or not isinstance(observed, Traces):
                     break
     except Failed as error:
-        raise RuntimeError(f"{error}: " + ": ".join(failed[-1])) from None
-    last = float(observed.data["time"].iloc[-1]) if isinstance(observed, Traces) and observed.over == "time" else None
+        its, reason = failed[-1]
+        if isinstance(observed, Answers) and not observed.function and reason.startswith("the run has no"):
+            summary = case.run(columns="none").summary
+            reason += next((meant(name, list(summary)) for name in observed.names if name not in summary), "")
+        raise RuntimeError(f"{error}: {its}: {reason}") from None
+    last = float(observed.data[observed.over].iloc[-1]) if isinstance(observed, Traces) else None
     found = observed.measured + scale * residuals
     return Fit(case.set(values_at(place)), sought, place, observed, found, residuals, jacobian, errors is not None, runs, last,
                counted(reason for _, reason in failed))  # fmt: skip
@@ -440,7 +455,7 @@ class Fit:
         """What has to be known of the result."""
         found = [f"{len(self.residuals)} data, {self.runs} runs; root mean square residual {self.rms:.3g}; condition number {self.condition:.3g}."]
         if self.until is not None:
-            found.append(f"Traces are compared until {self.until:.4g} s.")
+            found.append(f"Traces are compared until {self.until:.4g} {'s' if self.observed.over == 'time' else 'rad'}.")
         found += [f"Runs left out: {count} ({reason})." for reason, count in self.failures.items()]
         for direction in self.free:
             found.append("Not fixed by the data: " + " · ".join(f"{key}^{part:.2g}" for key, part in direction.items()) + ".")

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from ._keys import keys as declared
+from ._library import meant
 from ._sweep import counted, sweep
 from ._table import Table, Unit, sheet, text_of
 from .case import Case
@@ -65,25 +66,31 @@ def tolerances(
     limits = {name: None for chosen in (below, above) for name in chosen or {}}
     kept = list(dict.fromkeys([*keep, *(limits if reduce is None else {})]))
     shares = np.clip(qmc.Sobol(len(distributions), rng=seed).random(runs), LEAST_SHARE, 1 - LEAST_SHARE)
-    values = np.column_stack([_values(of, share) for of, share in zip(distributions.values(), shares.T)])
+    if not kept and reduce is None:
+        raise ValueError("give quantities of the summary in keep, below or above, or a function reduce")
+    values = np.column_stack([_values(name, of, share) for (name, of), share in zip(distributions.items(), shares.T)])
     names = list(distributions)
     table = sweep(case, values, names=names, keep=kept, reduce=reduce, workers=workers, progress=progress)
     quantities = [name for name in table.columns if name not in names and name != "status"]
     if unknown := [name for name in [*limits, *keep] if name not in quantities or table[name].isna().all()]:
-        reasons = "; ".join(dict.fromkeys(table.status[table.status != "done"]))
-        raise ValueError(f"no run has {', '.join(dict.fromkeys(unknown))}" + (f" ({reasons})" if reasons else ""))
+        reasons = "; ".join(counted(table.status[table.status != "done"]))
+        near = "" if reasons or reduce is not None else meant(unknown[0], list(case.run(columns="none").summary))
+        raise ValueError(f"no run has {', '.join(dict.fromkeys(unknown))}" + (f" ({reasons})" if reasons else "") + near)
     given = {name: case[name] for name in names}
     nominal = sweep(case, pd.DataFrame([given]), keep=kept, reduce=reduce).iloc[0]
     return Tolerances(case, names, quantities, table, nominal, dict(below or {}), dict(above or {}), tuple(percentiles))
 
 
-def _values(of: Any, shares: np.ndarray) -> np.ndarray:
-    """The values of a distribution that are above these shares of it."""
+def _values(name: str, of: Any, shares: np.ndarray) -> np.ndarray:
+    """The values of the distribution of a key that are above these shares of it."""
     if hasattr(of, "ppf"):
         return np.asarray(of.ppf(shares), dtype=float)
     if callable(of):
         return np.array([float(of(share)) for share in shares])
-    return np.quantile(np.asarray(of, dtype=float), shares)
+    try:
+        return np.quantile(np.asarray(of, dtype=float), shares)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: give a distribution of scipy.stats, a function of the share below, or numbers in SI units") from None
 
 
 @dataclass(frozen=True)

@@ -36,11 +36,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_output(parser, "results")
 
 
+def require(table: pd.DataFrame, *names: str) -> None:
+    """Refuse columns that a table does not have."""
+    for name in names:
+        if name not in table:
+            raise Refused(f"no column {name}; there are: {', '.join(table.columns)}")
+
+
 def run(options: argparse.Namespace) -> int:
     limits = (options.start, options.end)
     over = None
     if options.over is not None:
         over = read_strobe(options.over, Runs.read(Path(str(options.over).replace(".strobe.csv", ".runs.csv"))))
+        require(over, options.column, options.key)
     try:
         case = gudgeon.read(options.case)
         at_start = case if options.key.startswith("held.") else case.set({options.key: options.start})
@@ -52,17 +60,15 @@ def run(options: argparse.Namespace) -> int:
             branches.append(branches[-1].doubled(0, points=options.points))
             print(branches[-1])
     except (gudgeon.OrbitError, gudgeon.CaseError, KeyError) as problem:
-        raise Refused(problem.args[0]) from None
+        raise Refused(problem.args[0].replace("give start= or revolutions=", "give --revolutions")) from None
     table = pd.concat([branch.points for branch in branches])
-    for name, columns in ((options.column, table), *([(options.column, over), (options.key, over)] if over is not None else [])):
-        if name not in columns:
-            raise Refused(f"no column {name}; there are: {', '.join(columns)}")
     language.current.keep(options.case.stem)
     folder = options.out if options.out and not options.out.suffix else options.out.parent if options.out else Path("results")
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{options.case.stem}.branch.csv"
     table.to_csv(path, index=False)
     print(path)
+    require(table, options.column)
     drawing, axes = plt.subplots(figsize=(WIDTH, 3.6))
     for i, branch in enumerate(branches):
         branch.plot(options.column, over if i == 0 else None, axes)
