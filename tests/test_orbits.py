@@ -384,6 +384,8 @@ def refusals() -> None:
     refuses(gudgeon.OrbitError, "&wear", lambda: gudgeon.orbit(case_of("wear/worn_bore")))
     refuses(gudgeon.OrbitError, "ramp_time", lambda: gudgeon.orbit(case_of("flores/friction_100", drive__ramp_time=0.1)))
     refuses(gudgeon.OrbitError, "impact speeds that can be held: none", lambda: gudgeon.orbit(case_of("flores/lubricated_400cP"), held=0.1))
+    fed = _orbit._prepared(case_of("film/sim_I_fed"))
+    check("film_history" not in fed and fed.check() is not None, "a film with memory is left out")
     rocks = gudgeon.template("dry").set({"drive.kind": "free", "initial.crank_speed": 5.0, "mechanism.gravity_angle_deg": 90.0})
     refuses(gudgeon.OrbitError, "the crank stopped or turned back", lambda: gudgeon.orbit(rocks))
     refuses(gudgeon.OrbitError, "the gas takes more", lambda: gudgeon.orbit(case_of("sim_IV", drive__kind="constant_speed"), 1, start={}))

@@ -292,6 +292,9 @@ def _prepared(case: Case) -> Case:
     case = case.copy()
     for group in [group for group in groups() if group.endswith(("film_history", "supply", "bore")) and group in case]:
         case.remove(group)
+    for group in [group for group in groups() if group.endswith("lubrication") and group in case]:
+        if case[f"{group}.cavitation"] == "mass_conserving":  # of that film; during a run it is as reynolds
+            case[f"{group}.cavitation"] = "reynolds"
     case.remove("run")
     case.add("output", columns="none", ideal_twin=False, answers=False, film_times="")
     case.add("integrator", method="auto", relative_tolerance=TOLERANCE, absolute_tolerance=None)
