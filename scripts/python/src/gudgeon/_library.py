@@ -173,5 +173,5 @@ def meant(word: str, words: Sequence[str]) -> str:
     """What is said after a word that is not there."""
     from difflib import get_close_matches
 
-    near = get_close_matches(word, words, 1)
+    near = get_close_matches(word, words, 1) or [name for name in words if name.endswith((f"_{word}", f".{word}"))]
     return f"; did you mean {near[0]}?" if near else ""
