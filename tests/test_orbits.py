@@ -6,6 +6,8 @@
 With --all also orbits that take longer. Ends with `N passed, N failed`; the exit status is 0 if nothing failed.
 """
 
+import contextlib
+import io
 import itertools
 import math
 import os
@@ -24,6 +26,7 @@ import matplotlib
 import numpy as np
 from assertions import Assertions
 from gudgeon import _orbit, orbits
+from gudgeon.cli import main as main_of_plots
 from gudgeon.orbits import Image, Shooting
 from scipy.optimize import brentq
 
@@ -349,6 +352,10 @@ def branches() -> None:
     flips = branch.special[branch.special["kind"] == "flip"]["initial.crank_speed"].tolist()
     check(len(flips) == 1 and abs(flips[0] - 710.22148) < 2e-3, f"flip: {flips}")
     check("flip at initial.crank_speed = 710.22" in repr(branch) and "below it the motion of 1 revolution is unstable" in repr(branch), repr(branch))
+    axes = branch.plot("eccentricity_y", over=branch.points)
+    drawn = {line.get_linestyle(): line.get_xdata() for line in axes.lines}
+    check(drawn["-"].min() == drawn["--"].max() == flips[0], f"stable orbits are full lines, unstable ones dashed: {drawn}")
+    check(list(drawn["None"]) == flips and len(axes.collections) == 1, "a flip is a circle, over the points of brute force")
     doubled = branch.doubled(0)
     check(doubled.revolutions == 2 and (doubled.points["revolutions"] == 2).all(), "twice the period")
     flips = doubled.special[doubled.special["kind"] == "flip"]["initial.crank_speed"].tolist()
@@ -373,6 +380,36 @@ def branches() -> None:
     near = family.points.iloc[(family.points["held.impact_speed"] - 0.08).abs().argmin()]
     want = np.interp(near["held.impact_speed"], [0.0642440770632365, 0.08], [-0.38313188, -0.37471722])
     check(abs(near["multiplier_1_re"] - want) < 1e-3, f"family over the impact speed: {near['multiplier_1_re']} {want}")
+
+
+def command(program: str) -> None:
+    """gudgeon-plot branch over the strobes of a study: a table, a picture, and what it says of wrong arguments."""
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder)
+        case_of("flores/dry_0100um", contact__dissipation=3.55).to_nml(place / "flores.nml")
+        (place / "speeds.nml").write_text("""
+            &study case = 'flores.nml', settle_cycles = 1, strobe_angle_deg = 0.0, strobe_columns = 'eccentricity_y' /
+            &parameter key = 'initial.crank_speed', from = 890, to = 900, count = 2 /""")
+        subprocess.run([program, "sweep", "-q", "-j", "1", "-o", folder, place / "speeds.nml"], check=True)
+        words = ["branch", f"{place}/flores.nml", "initial.crank_speed", "900", "890", "--points", "3", "--over", f"{place}/speeds.strobe.csv", "-o", folder]
+
+        def run(*more: str) -> tuple[object, str]:
+            said = io.StringIO()
+            with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+                try:
+                    return main_of_plots([*words, *more]), said.getvalue()
+                except SystemExit as stopped:
+                    return stopped.code, said.getvalue()
+
+        status, said = run()
+        rows = (place / "flores.branch.csv").read_text().splitlines()
+        check(status == 0 and "orbit of 1 revolution: stable, largest multiplier -0.537" in said and len(rows) == 4, f"the command: {status} {said}")
+        check(rows[0].startswith("initial.crank_speed,arclength,kind,stable,multiplier_1_re") and (place / "flores.branch.png").stat().st_size > 5000, rows[0])
+        status, said = run("--column", "nothing")
+        check(status == 2 and "no column nothing; there are: run, " in said, f"a column that strobes do not have: {said}")
+        words[2] = "crank_speed"
+        status, said = run()
+        check(status == 2 and "initial.crank_speed" in said, f"a key that there is not: {said}")
 
 
 def refusals() -> None:
@@ -412,7 +449,7 @@ def longer() -> None:
 
 def main() -> int:
     program = os.path.abspath(sys.argv[1])
-    for part in (closed_forms, lambda: one_period(program), flights, skirts, without_loss, branches, refusals, *([longer] if "--all" in sys.argv else [])):
+    for part in (closed_forms, lambda: one_period(program), flights, skirts, without_loss, branches, lambda: command(program), refusals, *([longer] if "--all" in sys.argv else [])):
         try:
             part()
         except Exception:
