@@ -9,6 +9,7 @@
 #   scripts/setup.sh --manual   also MkDocs and FORD, which scripts/manual.sh needs
 #   scripts/setup.sh --lint     also the linters of Fortran and Python
 #   scripts/setup.sh --embedding  also what the tests of the library, the Python package and functional mock-up units need
+#   scripts/setup.sh --python --manual ...   several of these
 #
 # Root or sudo is needed only to install Debian packages. fpm and gudgeon-plot are installed in .venv, with links to them in
 # /usr/local/bin or ~/.local/bin. This file is POSIX sh; if it is sourced, it changes no option of the calling shell.
@@ -93,21 +94,24 @@ gudgeon_status=$?
 case "${0##*/} $#" in
   "setup.sh 0") ;;
   setup.sh*)
-    case "$*" in
-      --python) gudgeon_packages="-r scripts/python/requirements.txt" ;;
-      --browser)
-        gudgeon_packages="-r scripts/python/requirements.txt"
-        if ! { command -v chromium && command -v chromedriver; } >/dev/null 2>&1; then
-          gudgeon_apt chromium chromium-driver || gudgeon_status=1
-        fi
-        ;;
-      --studies | --embedding) gudgeon_packages="-r scripts/python/requirements.txt -r scripts/python/requirements-${1#--}.txt" ;;
-      --manual | --lint) gudgeon_packages="-r scripts/python/requirements-${1#--}.txt" ;;
-      *)
-        echo "setup: usage: scripts/setup.sh [--python | --browser | --studies | --manual | --lint | --embedding]" >&2
-        gudgeon_status=2
-        ;;
-    esac
+    gudgeon_packages="-r scripts/python/requirements.txt"
+    for gudgeon_option; do
+      case "$gudgeon_option" in
+        --python) ;;
+        --browser)
+          if ! { command -v chromium && command -v chromedriver; } >/dev/null 2>&1; then
+            gudgeon_apt chromium chromium-driver || gudgeon_status=1
+          fi
+          ;;
+        --studies | --embedding | --manual | --lint)
+          gudgeon_packages="$gudgeon_packages -r scripts/python/requirements-${gudgeon_option#--}.txt"
+          ;;
+        *)
+          echo "setup: usage: scripts/setup.sh [--python] [--browser] [--studies] [--manual] [--lint] [--embedding]" >&2
+          gudgeon_status=2
+          ;;
+      esac
+    done
     if [ "$gudgeon_status" = 0 ]; then
       # shellcheck disable=SC2086  # options and their values
       gudgeon_python $gudgeon_packages || gudgeon_status=1
@@ -115,6 +119,6 @@ case "${0##*/} $#" in
     ;;
 esac
 unset -f gudgeon_apt gudgeon_link gudgeon_venv gudgeon_pip gudgeon_python gudgeon_sources gudgeon_setup
-unset gudgeon_sudo gudgeon_dir gudgeon_packages gudgeon_list gudgeon_file
+unset gudgeon_sudo gudgeon_dir gudgeon_packages gudgeon_option gudgeon_list gudgeon_file
 # the status of the last command is that of the set-up, whether this file is sourced or run
 [ "$gudgeon_status" = 0 ]

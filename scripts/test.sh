@@ -64,7 +64,7 @@ run_stages() { tr '\n' '\0' | xargs -0 -n 1 -P 2 scripts/test.sh --stage "$work"
 # Programs are built and packages are installed first, so that later stages find them.
 run_stages <<'END'
 programs|scripts/build.sh && fpm @strict --runner true && fpm build --no-prune && echo "1 passed, 0 failed"
-Python packages, browser|for kind in python browser studies manual lint embedding; do scripts/setup.sh --$kind || exit 1; done; echo "1 passed, 0 failed"
+Python packages, browser|scripts/setup.sh --python --browser --studies --manual --lint --embedding && echo "1 passed, 0 failed"
 END
 
 stages() {   # the longest first

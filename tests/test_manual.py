@@ -404,6 +404,21 @@ def check_reference(program: Path) -> None:
             check(results and not missing, f"the manual describes the results of {case.stem}, with their units", str(missing))
 
 
+def check_answers_table(program: Path) -> None:
+    """Every name in the table of answers of the manual's first page is in the reference of results, every row of the page of a run in its
+    source, every group in that of cases."""
+    rows = [line.split("|")[1:-1] for line in (ROOT / "data/manual/index.md").read_text(encoding="utf-8").split("| I want |")[1].split("\n\n")[0].splitlines()[2:]]
+    known = subprocess.run([program, "--reference", "results"], capture_output=True, text=True, check=False).stdout
+    known += subprocess.run([program, "--reference", "case"], capture_output=True, text=True, check=False).stdout
+    page = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "scripts/python/src/gudgeon/report").glob("*.py"))
+    check(len(rows) > 12, "answers: the table")
+    for wanted, shown, *others in rows:
+        names = [name.strip("&") for cell in others for name in re.findall(r"`(&?[a-z]\w*)", cell)]
+        missing = [name for name in names if not re.search(rf"\b{name}\b", known)]
+        check(not missing, f"answers: {wanted}: {missing}")
+        check(shown.strip() in page, f"answers: {wanted}: {shown}")
+
+
 def check_study(program: Path) -> None:
     """The study of the page "Studies" can be run, and the page describes every column of its results."""
     page = (ROOT / "data/manual/studies.md").read_text(encoding="utf-8")
@@ -529,6 +544,7 @@ def main() -> int:
     check_results_in_python(program)
     check_keys(program)
     check_reference(program)
+    check_answers_table(program)
     check_study(program)
     check_built(program)
     check_read()

@@ -258,6 +258,93 @@ class Comparison(unittest.TestCase):
         self.assertEqual(compare.different_names(Path("/x/a.csv"), Path("/x/b.csv")), ("a.csv", "b.csv"))
 
 
+class RigTables(unittest.TestCase):
+    """Pressures as rigs write them, against the curve from which the files are made."""
+
+    def setUp(self) -> None:
+        work = tempfile.TemporaryDirectory()
+        self.addCleanup(work.cleanup)
+        self.work = Path(work.name)
+
+    @staticmethod
+    def curve(angle: np.ndarray) -> np.ndarray:
+        """Pressure [bar] in a four-stroke cycle."""
+        return 1 + 40 * np.exp(-(((np.mod(angle, 720) - 370) / 20) ** 2))
+
+    def made(self, text: str, encoding: str = "utf-8") -> Path:
+        path = self.work / "rig.csv"
+        path.write_bytes(text.encode(encoding))
+        return path
+
+    def rows(self, angles: np.ndarray, separator: str, mark: str, shift: float = 0, scale: float = 1) -> str:
+        return "\n".join(f"{a:.2f}{separator}{p:.6f}".replace(".", mark) for a, p in zip(angles - shift, scale * self.curve(angles), strict=True))
+
+    def compare(self, table: pd.DataFrame, points: int) -> None:
+        self.assertEqual(list(table.columns), ["crank_angle[deg]", "pressure[bar]"])
+        angles, bar = table.to_numpy().T
+        self.assertEqual((len(table), angles[0], angles[-1]), (points, 0, 720))
+        np.testing.assert_allclose(bar, self.curve(angles), atol=2e-5)   # the digits of the files
+
+    def test_notations(self) -> None:
+        angles = np.arange(0, 720, 0.5)
+        german = "Prüfstand 7;\r\nKurbelwinkel;Zylinderdruck\r\n°KW;bar\r\n" + self.rows(angles, ";", ",").replace("\n", "\r\n") + "\r\n"
+        self.compare(gudgeon.read_pressure(self.made(german, "cp1252")), 1441)
+        self.compare(gudgeon.read_pressure(self.made("\ufeff" + german)), 1441)
+        self.compare(gudgeon.read_pressure(self.made("CA[deg]\tp_cyl[MPa]\n" + self.rows(angles, "\t", ".", scale=0.1)), save=self.work / "x.csv"), 1441)
+        self.compare(pd.read_csv(self.work / "x.csv"), 1441)
+        self.compare(gudgeon.read_pressure(self.made(self.rows(angles, " ", ".")), unit="bar"), 1441)
+        self.compare(gudgeon.read_pressure(self.made("angle,pressure (kPa)\n" + self.rows(angles, ",", ".", shift=360, scale=100)), shift_deg=360), 1441)
+        self.compare(gudgeon.read_pressure(self.made("angle,pressure (kPa)\n" + self.rows(angles + 0.25, ",", ".", scale=100))), 1442)
+
+    def test_cycles(self) -> None:
+        angles = np.arange(0, 3 * 720)
+        text = "a;p\ndeg;bar\n" + "\n".join(f"{a % 720};{self.curve(a) + a // 720 - 1:.6f}" for a in angles)
+        self.compare(gudgeon.read_pressure(self.made(text)), 721)   # of pressures 1 bar below, right, 1 bar above
+        first = gudgeon.read_pressure(self.made(text), average=False)
+        np.testing.assert_allclose(first["pressure[bar]"], self.curve(first["crank_angle[deg]"]) - 1, atol=2e-5)
+
+    def test_refused(self) -> None:
+        angles = np.arange(0, 720)
+        two = "angle;p in;p out\ndeg;bar;bar\n" + "\n".join(f"{a};1;2" for a in angles)
+        for text, options, said in (
+            ("hello\nworld", {}, "no rows of at least two numbers"),
+            (two, {}, "which column is the pressure is not clear: give pressure=, one of 'angle', 'p in', 'p out'\nunderstood as\n  angle \\[deg\\]"),
+            (two, {"pressure": "oil"}, "no column 'oil'"),
+            (self.rows(angles, ";", ","), {}, "give unit="),
+            ("a;p\ndeg;bar\n" + self.rows(angles[:400], ";", ","), {}, "less than a cycle of 720"),
+            ("a;p\ndeg;bar\n" + self.rows(angles[::-1], ";", ","), {}, "does not increase"),
+        ):
+            with self.assertRaisesRegex(gudgeon.RigFileError, said):
+                gudgeon.read_pressure(self.made(text), **options)
+
+    def test_export(self) -> None:
+        (self.work / "x.csv").write_text("time[s],crank_angle[rad]\n0.0,1.5\n0.25,-2.5E-03\n")
+        (self.work / "x.summary.csv").write_text("quantity,value,unit\nstatus,done,\nversion,0.3.0,\nsimulated_time,2.5E-01,s\n")
+        for words, trace, summary in (
+            ([], "time[s];crank_angle[rad]\n0,0;1,5\n0,25;-0,0025\n", "quantity;value;unit\nstatus;done;\nversion;0.3.0;\nsimulated_time;2,5E-01;s\n"),
+            (["--decimal", "point", "--columns", "crank_angle"], "crank_angle[rad]\n1.5\n-0.0025\n", None),
+        ):
+            with contextlib.redirect_stdout(io.StringIO()):
+                self.assertEqual(cli.main(["export", str(self.work / "x.csv"), *words]), 0)
+            self.assertEqual((self.work / "x.export.csv").read_text("utf-8-sig"), trace)
+            self.assertIn((self.work / "x.export.summary.csv").read_text("utf-8-sig"), [summary] if summary else [summary, (self.work / "x.summary.csv").read_text()])
+
+
+class WithoutLibrary(unittest.TestCase):
+    """Results are read where the library of the program is not built, and what needs it says how to build it."""
+
+    def test_results(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([release_program(), "-q", "-o", folder, "-s", "integrator.revolutions=2", TOP / "cases" / "sim_I.nml"], check=True)
+            code = ("import gudgeon; run = gudgeon.load('sim_I'); print(len(run['time']), run.summary['status'], run.case, "
+                    "len(run.report()._repr_html_()) > 1000)\ntry: gudgeon.template('dry')\nexcept ImportError as error: print(error)")
+            environment = os.environ | {"GUDGEON_LIBRARY": f"{folder}/none.so", "PYTHONPATH": str(TOP / "scripts" / "python" / "src")}
+            done = subprocess.run([sys.executable, "-c", code], cwd=folder, env=environment, capture_output=True, text=True, check=False)
+        self.assertEqual(done.stdout.split("\n")[0], "1441 done None True", done.stderr)
+        self.assertIn("none.so", done.stdout)
+        self.assertIn("pip install ./scripts/python", done.stdout)
+
+
 class Tables(unittest.TestCase):
     """Answers of runs side by side. Units and per cents by hand."""
 

@@ -104,6 +104,8 @@ contains
         if (message == '') call close_load(curve, period, lines, message, line)
       else
         call parse_curve(text, x_is, y_is, curve%x, curve%y, lines, message, line)
+        if (message /= '' .and. y_is%name == pressure%name) message = message// &
+          '; gudgeon.read_pressure of the Python package makes such a table of a rig''s file'
         if (message == '' .and. present(period)) call close_period(curve, period, lines, message, line)
       end if
       if (message /= '') then

@@ -114,10 +114,17 @@ def path() -> Path:
     return Path(os.environ.get("GUDGEON_LIBRARY") or next(found, own))
 
 
+class LibraryMissing(ImportError):
+    """The library with the program is not there, or not for this machine. Results can be read without it."""
+
+
 @cache
 def library() -> Any:
     """The functions of the library. Those that may take long leave other threads of Python free."""
-    free, held = c.CDLL(str(path())), c.PyDLL(str(path()))
+    try:
+        free, held = c.CDLL(str(path())), c.PyDLL(str(path()))
+    except OSError as error:
+        raise LibraryMissing(f"{error}; 'pip install ./scripts/python' in the checkout compiles it") from None
 
     class Functions:
         """Functions by their names without gudgeon_."""

@@ -10,6 +10,7 @@ WHAT = {
     "columns": "columns of runs over time or crank angle",
     "compare": "two runs in one picture, their difference, and how long they agree",
     "table": "answers of runs side by side in readable units, or the rows of a study (draws nothing)",
+    "export": "the trace and the summary of runs for a spreadsheet, with decimal commas (draws nothing)",
     "report": "an HTML page about one run: animation, plots, case, summary, warnings",
     "figure": "figures of the dissertation",
     "orders": "settled cycles of a run: orders, means and scatter, work, loads on the bearings",

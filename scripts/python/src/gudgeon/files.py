@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from ._library import Column
+from ._library import Column, LibraryMissing
 from .case import Case
 from .run import EVENT_COLUMNS, Run
 
 
 def load(path: str | Path, folder: str | Path | None = None) -> Run:
     """A run from its files: `load("results/sim_I")`, or a name that is looked for in `results/`. Its case may read the tables that it
-    names in the folder of the files, or in `folder`; "/": anywhere. Raises ValueError with the name of a file that is damaged."""
+    names in the folder of the files, or in `folder`; "/": anywhere. Without the library of the program `case` is None. Raises
+    ValueError with the name of a file that is damaged."""
     import numpy as np
     import pandas as pd
 
@@ -39,10 +40,10 @@ def load(path: str | Path, folder: str | Path | None = None) -> Run:
             events = _events_of_file(path)
     case, resolved = None, Path(f"{base}.resolved.nml")
     if resolved.is_file():
-        with _reading(f"{resolved}"):
+        with _reading(f"{resolved}"), suppress(LibraryMissing):
             case = Case.from_text(resolved.read_text(), base.name, folder or base.parent)
     run = Run(case, columns, rows, events, table.values.tolist(), base.name)
-    run._resolved = resolved.read_text() if case else None
+    run._resolved = resolved.read_text() if resolved.is_file() else None
     run._files = base
     if Path(f"{base}.ideal.csv").is_file():
         run.twin = load(f"{base}.ideal.csv", folder)

@@ -222,7 +222,8 @@ def load_run(path: Path) -> Run:
 def drawable(run: Any) -> Run:
     """A run of `gudgeon.Case.run` or `gudgeon.load`, as pictures and pages need it."""
     summary = {name: (str(value), run.summary.units[name]) for name, value in run.summary.items()}
-    case = parse_case(run._resolved or run.case.to_nml(complete=True)) if run.case is not None else {}
+    text = run._resolved or (run.case.to_nml(complete=True) if run.case is not None else "")
+    case = parse_case(text)
     return Run(run.name, run.to_pandas(), run.units, events_of("piston_pin", run.events), summary, case)
 
 

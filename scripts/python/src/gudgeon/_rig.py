@@ -1,0 +1,189 @@
+"""Pressures as test rigs and indicating systems write them, made the table that the program reads."""
+
+from __future__ import annotations
+
+import io
+import re
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+#: Units of pressures in Pa; of gauge pressures nothing is known here: the table is absolute.
+PRESSURES = {"pa": 1.0, "hpa": 1e2, "mbar": 1e2, "kpa": 1e3, "bar": 1e5, "bara": 1e5, "mpa": 1e6, "psi": 6894.757293168361, "psia": 6894.757293168361}
+#: Units of crank angles in degrees.
+ANGLES = {"deg": 1.0, "degree": 1.0, "degrees": 1.0, "°": 1.0, "grad": 1.0, "°ca": 1.0, "ca": 1.0, "degca": 1.0, "cad": 1.0, "deg ca": 1.0, "°kw": 1.0, "kw": 1.0,
+          "grad kw": 1.0, "graus": 1.0, "rad": 180 / np.pi}  # fmt: skip
+#: What names of these columns have in them.
+ANGLE_NAMES = re.compile(r"angle|winkel|[âa]ngulo|\bkw\b|\bca\b|\bcad\b|crank|kurbel|theta|phi", re.IGNORECASE)
+PRESSURE_NAMES = re.compile(r"press|druck|\bp(_|\b|zyl|cyl|\d)", re.IGNORECASE)
+
+
+class RigFileError(ValueError):
+    """A file is not such a table; the message has its first rows as they were understood."""
+
+
+def read_pressure(
+    path: str | Path,
+    *,
+    angle: str | int | None = None,
+    pressure: str | int | None = None,
+    unit: str | None = None,
+    shift_deg: float = 0.0,
+    period_deg: float = 720.0,
+    average: bool = True,
+    save: str | Path | None = None,
+) -> pd.DataFrame:
+    """Read the pressure in a cylinder over the crank angle from a text file of a rig.
+
+    Columns may be separated by semicolons, tabulators, commas or blanks, decimals by a point or a comma; before the rows there may be
+    any lines, of which the last ones name the columns and their units. `angle` and `pressure` choose columns by their names, or a part
+    of them, or by their numbers from 0 on; without them they are found by unit and name. `unit` is that of the pressure where the
+    file has none. `shift_deg` is added to the angles, for files that count from another dead centre than the case.
+
+    With `average` the cycles of `period_deg` degrees (720, or 360 of a two-stroke or compressor) become their mean, at the angles
+    of the samples; without it the first whole cycle is taken. The result has the columns crank_angle[deg], from 0 to the period, and
+    pressure[bar], absolute as in the file; `save` writes it as the table of `&cylinder_pressure`.
+
+    Raises RigFileError for a file without rows of numbers, a column that is not there or not clear, a unit that is not known, an
+    angle that does not increase, or less than one cycle.
+    """
+    text = _decoded(Path(path).read_bytes())
+    names, units, values = _table(text, str(path))
+    shown = _shown(names, units, values)
+    first = _column(names, units, angle, ANGLES, ANGLE_NAMES, "angle", str(path), shown)
+    second = _column(names, units, pressure, PRESSURES, PRESSURE_NAMES, "pressure", str(path), shown, other=first)
+    factor = ANGLES.get(_plain(units[first]), 1.0 if not units[first] else np.nan)
+    per_pa = PRESSURES.get(_plain(unit if unit is not None else units[second]), np.nan)
+    if np.isnan(factor):
+        raise RigFileError(f"{path}: the angle's unit '{units[first]}' is not known, but deg and rad are{shown}")
+    if np.isnan(per_pa):
+        raise RigFileError(f"{path}: the pressure's unit '{unit or units[second]}' is not known: give unit=, one of bar, mbar, kPa, MPa, Pa, hPa, psi{shown}")
+    rows = values[:, [first, second]]
+    rows = rows[np.isfinite(rows).all(axis=1)]
+    degrees, bar = _unrolled(rows[:, 0] * factor, period_deg), rows[:, 1] * per_pa / 1e5
+    if len(degrees) < 3 or not np.all(np.diff(degrees) > 0):
+        at = 0 if len(degrees) < 3 else int(np.argmin(np.diff(degrees)))
+        raise RigFileError(f"{path}: the angle does not increase at row {at + 1} of the numbers{shown}")
+    step = float(np.median(np.diff(degrees)))
+    if degrees[-1] - degrees[0] < period_deg - 1.5 * step:
+        raise RigFileError(f"{path}: the angles span {degrees[-1] - degrees[0]:.4g} degrees, less than a cycle of {period_deg:g}: see period_deg{shown}")
+    table = _one_cycle(degrees + shift_deg, bar, period_deg, step, average)
+    if save is not None:
+        table.to_csv(save, index=False, float_format="%.10g")
+    return table
+
+
+def _decoded(raw: bytes) -> str:
+    for encoding in ("utf-8-sig", "utf-16") if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig", "cp1252"):
+        try:
+            return raw.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
+        except UnicodeError:
+            continue
+    return raw.decode("latin-1")
+
+
+def _table(text: str, path: str) -> tuple[list[str], list[str], np.ndarray]:
+    """Names, units and rows of the table of a text: pandas reads it with the separators that give the most rows of numbers."""
+    lines = [line for line in text.split("\n") if line.strip()]
+    best: tuple[int, int, int, pd.DataFrame, str] | None = None
+    for separator, decimal in ((";", ","), (";", "."), ("\t", ","), ("\t", "."), (",", "."), (r"\s+", ","), (r"\s+", ".")):
+        fields = [len(re.split(separator, line.strip())) for line in lines]
+        width = int(np.median(fields))
+        if width < 2:
+            continue
+        first = next((i for i, line in enumerate(lines) if fields[i] == width and _are_numbers(re.split(separator, line.strip()), decimal)), None)
+        if first is None:
+            continue
+        rows = pd.read_csv(io.StringIO("\n".join(lines[first:])), sep=separator, decimal=decimal, header=None, names=range(width), engine="python",
+                           on_bad_lines="skip", skipinitialspace=True)  # fmt: skip
+        rows = rows.apply(pd.to_numeric, errors="coerce").dropna(thresh=2)
+        score = (len(rows) * width, width)
+        if best is None or score > best[:2]:
+            best = (*score, first, rows, separator)
+    if best is None:
+        raise RigFileError(f"{path}: no rows of at least two numbers are found; its first lines are\n" + "\n".join("  " + line[:100] for line in lines[:5]))
+    _, width, first, rows, separator = best
+    heads = [[field.strip().strip('"') for field in re.split(separator, line.strip())] for line in lines[:first]]
+    heads = [head for head in heads if len(head) == width]
+    names, units = [f"column {i}" for i in range(width)], [""] * width
+    if heads and len(heads) > 1 and all(not field or _plain(field) in PRESSURES or _plain(field) in ANGLES or _is_unit(field) for field in heads[-1]):
+        units = [_bare(field) for field in heads[-1]]
+        names = heads[-2]
+    elif heads:
+        names = heads[-1]
+    for i, name in enumerate(names):
+        inside = re.search(r"[\[(](.*?)[\])]", name)
+        if inside and not units[i]:
+            units[i], names[i] = inside[1].strip(), name[: inside.start()].strip()
+    return names, units, rows.to_numpy(float)
+
+
+def _are_numbers(fields: list[str], decimal: str) -> bool:
+    pattern = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
+    return all(not field.strip() or pattern.match(field.strip().replace(decimal, ".")) for field in fields) and sum(bool(field.strip()) for field in fields) > 1
+
+
+def _bare(unit: str) -> str:
+    return unit.strip().strip("[]()").strip()
+
+
+def _plain(unit: str) -> str:
+    return " ".join(_bare(unit).lower().split())
+
+
+def _is_unit(field: str) -> bool:
+    return bool(re.fullmatch(r"[\[(].*[\])]|-|%|s|ms|°c|k|v|mv|a|n ?m|rpm|1/min|u/min|l|cm3|cm³|m3|m³|kw|j", field.strip().lower()))
+
+
+def _column(
+    names: list[str], units: list[str], wanted: str | int | None, known: dict[str, float], pattern: re.Pattern[str], what: str, path: str, shown: str,
+    other: int | None = None,
+) -> int:  # fmt: skip
+    if isinstance(wanted, int):
+        if 0 <= wanted < len(names):
+            return wanted
+        raise RigFileError(f"{path}: {what}={wanted}: there are {len(names)} columns{shown}")
+    if wanted is not None:
+        found = [i for i, name in enumerate(names) if name == wanted] or [i for i, name in enumerate(names) if wanted.lower() in name.lower()]
+    else:
+        found = [i for i, unit in enumerate(units) if _plain(unit) in known and i != other]
+        named = [i for i, name in enumerate(names) if pattern.search(name) and i != other and (i in found or not found)]
+        in_cylinder = [i for i in named if re.search(r"zyl|cyl|cil", names[i], re.IGNORECASE)]
+        found = in_cylinder or named or found
+        if not found and len(names) == 2:
+            found = [1 if other == 0 else 0]
+    if len(found) == 1:
+        return found[0]
+    say = f"no column '{wanted}'" if wanted is not None and not found else f"which column is the {what} is not clear"
+    raise RigFileError(f"{path}: {say}: give {what}=, one of {', '.join(repr(name) for name in names)}{shown}")
+
+
+def _shown(names: list[str], units: list[str], values: np.ndarray) -> str:
+    """The first rows as they were understood."""
+    head = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, units, strict=True)]
+    return "\nunderstood as\n" + "\n".join("  " + " | ".join(row) for row in [head, *([f"{value:g}" for value in row] for row in values[:3])])
+
+
+def _unrolled(degrees: np.ndarray, period: float) -> np.ndarray:
+    """Angles that begin anew with each cycle, counted on."""
+    falls = np.concatenate([[False], np.diff(degrees) < -0.5 * period])
+    return degrees + period * np.cumsum(falls)
+
+
+def _one_cycle(degrees: np.ndarray, bar: np.ndarray, period: float, step: float, average: bool) -> pd.DataFrame:
+    """One cycle from 0 to the period: the mean over the cycles by straight lines between samples, or the first one."""
+    cycles = max(1, int((degrees[-1] - degrees[0] + 1.5 * step) // period)) if average else 1
+    points = round(period / step)
+    grid = degrees[0] + step * np.arange(points) if abs(points * step - period) < 1e-6 * period else degrees[degrees < degrees[0] + period - 0.5 * step]
+    several = np.mean([np.interp(grid + k * period, degrees, bar) for k in range(cycles)], axis=0)
+    inside = np.mod(grid, period)
+    inside[np.isclose(inside, period, atol=1e-6 * step)] = 0.0
+    order = np.argsort(inside)
+    table = pd.DataFrame({"crank_angle[deg]": np.round(inside[order], 9), "pressure[bar]": several[order]})
+    if table.iloc[0, 0] > 0:  # the table spans the period, whose ends are the same point
+        before, after = table.iloc[-1], table.iloc[0]
+        share = (period - before.iloc[0]) / (after.iloc[0] + period - before.iloc[0])
+        table = pd.concat([pd.DataFrame([[0.0, before.iloc[1] + share * (after.iloc[1] - before.iloc[1])]], columns=table.columns), table], ignore_index=True)
+    end = pd.DataFrame([[period, table.iloc[0, 1]]], columns=table.columns)
+    return pd.concat([table, end], ignore_index=True)
