@@ -334,6 +334,82 @@ def test_no_gas(program: Path, work: Path) -> None:
     check(not any("cylinder_pressure" in name or "gas_force" in name for name in rows[0]), "no column of a gas that does not act")
 
 
+# An engine of 488 cm3 with four piston rings, and the FMEP of these at speeds [rpm] and viscosities [Pa s]: that of the same closed form, to
+# the last of its digits, and that of rings with a film that squeezes and a state each, over settled cycles, both by an independent program [kPa].
+RINGED = """&mechanism crank_length=0.043, crank_mass=2.0, crank_inertia=0.1, rod_length=0.138, rod_mass=0.55, rod_inertia=0.0022, rod_com=0.038,0.0,
+  piston_mass=0.5, gravity=9.80665 /
+&drive kind='constant_speed' /
+&initial crank_angle_deg=180, crank_speed=314.1592653589793 /
+&ring height=1.2e-3, crown=6e-6, tension=8, gas_below=0.15 /
+&ring height=1.2e-3, crown=8e-6, tension=7, gas_above=0.15, gas_behind=0.15, gas_below=0.02 /
+&ring height=0.4e-3, crown=3e-6, tension=10, gas_above=0.02, gas_behind=0.02 /
+&ring height=0.4e-3, crown=3e-6, tension=10 /
+&lubrication place='rings', law='reynolds', viscosity=0.008 /
+&asperities place='rings', roughness=0.4e-6, coefficient=0.1, transition_speed=0.01 /
+&combustion bore=0.085, compression_ratio=10, heat_capacity_ratio=1.33, heat=750.0, wiebe_efficiency=5.0, wiebe_form=2.0,
+  start_deg=345.0, duration_deg=60.0, intake_pressure=101325.0, crankcase_pressure=101325.0 /
+&integrator revolutions=2, relative_tolerance=1e-8 /
+"""
+RING_FMEP = ((3000, 0.008, 10.87, 11.61), (3000, 0.004, 7.94, 8.49), (2000, 0.008, 9.00, 9.5557))
+RINGS = ((1.2e-3, 6e-6, 8.0, 1.0, 1.0, 0.15), (1.2e-3, 8e-6, 7.0, 0.15, 0.15, 0.02), (0.4e-3, 3e-6, 10.0, 0.02, 0.02, 0.0), (0.4e-3, 3e-6, 10.0, 0.0, 0.0, 0.0))
+
+
+def ring_friction(ring: tuple[float, ...], speed: float, pressure: float) -> float:
+    """The equation of the manual."""
+    height, crown, tension, above, behind, below = ring
+    load = max(2*tension/0.085 + height*(behind - (above + below)/2)*pressure, 0.2*tension/0.085)
+    film = 2.446*0.008*abs(speed)*height**2/(8*crown)/load
+    return -math.pi*0.085*(3.18*math.sqrt(0.008*load)*speed/(speed**2 + 1e-4)**0.25 + 0.1*load*math.tanh(speed/0.01)*math.exp(-film/0.4e-6))
+
+
+def test_rings(program: Path, work: Path) -> None:
+    """Friction of piston rings: each row, its losses, and what they are over."""
+    case = work / "rings.nml"
+    case.write_text(RINGED)
+    swept = math.pi/4*0.085**2*0.086
+    for rpm, viscosity, closed, film in RING_FMEP:
+        summary, rows = run(program, work, case, f"initial.crank_speed={math.pi*rpm/30}", f"rings.lubrication.viscosity={viscosity}")
+        if not rows:
+            return
+        name = f"rings at {rpm} rpm, {viscosity} Pa s"
+        fmep = summary["cycle_ring_fmep"]*1e-3
+        check(abs(fmep - closed) <= 0.006, f"{name}: FMEP", f"{fmep} kPa, not {closed}")
+        check(0.9 < fmep/film < 1, f"{name}: within a tenth of rings with a film", f"{fmep/film}")
+        parts = [summary[f"cycle_ring_{number}_fmep"] for number in range(1, 5)]
+        check(close(sum(parts), summary["cycle_ring_fmep"], 1e-9) and "cycle_ring_5_fmep" not in summary, f"{name}: sum of the rings")
+        lost = summary["cycle_ring_fmep"]*swept
+        check(close(-summary["cycle_work_guide"], lost, 5e-4) and close(summary["cycle_fmep"], lost/swept, 5e-4), f"{name}: nothing else loses work",
+              f"{-summary['cycle_work_guide']} J, not {lost}")
+        check(close(summary["cycle_mean_ring_power"]*summary["cycle_duration"], lost, 1e-9), f"{name}: loss in W")
+        if (rpm, viscosity) != (3000, 0.008):
+            continue
+        for row in rows:
+            wanted = [ring_friction(ring, row["piston_velocity"], row["cylinder_pressure"] - 101325) for ring in RINGS]
+            found = [row[f"ring_{number}_friction_force"] for number in range(1, 5)]
+            check(all(abs(a - b) <= 1e-8*abs(b) + 1e-6 for a, b in zip(found, wanted)), "friction of each ring in a row", f"{found}, not {wanted}")
+            check(abs(row["guide_friction_force"] - sum(wanted)) <= 1e-8*sum(map(abs, wanted)) + 1e-5, "they are all of the friction of the guide")
+        mirrored, _ = run(program, work, case, f"initial.crank_speed={-math.pi*rpm/30}")
+        check(close(mirrored["cycle_ring_fmep"], summary["cycle_ring_fmep"], 1e-6), "an engine that turns the other way loses as much")
+        smooth, _ = run(program, work, case, "rings.asperities=none")
+        check(0.8*fmep < smooth["cycle_ring_fmep"]*1e-3 < fmep, "smooth rings have less friction")
+    loose, _ = run(program, work, case, *(f"guide.{key}" for key in ("kind=clearance", "bore_clearance=35e-6", "skirt_top=0.012", "skirt_bottom=0.033",
+        "piston_radius=0.0424", "piston_inertia=4.5e-4", "piston_com=0.006,0.0005", "stiffness=5e7", "restitution=0.4", "coefficient=0")))
+    check(close(loose["cycle_ring_fmep"], 10870, 1e-3) and loose["max_energy_residual_relative"] < 1e-5, "rings of a piston that slaps",
+          f"{loose['cycle_ring_fmep']}, {loose['max_energy_residual_relative']}")
+    twin, _ = run(program, work, case, "output.ideal_twin=T", "guide.kind=clearance", "guide.bore_clearance=35e-6", "guide.skirt_top=0.012", "guide.skirt_bottom=0.033",
+                  "guide.piston_radius=0.0424", "guide.piston_inertia=4.5e-4", "guide.stiffness=5e7", "guide.coefficient=0")
+    with (work / "rings.ideal.csv").open() as file:
+        check("ring_friction_force[N]" in file.readline(), "the ideal twin has the rings, which are no clearance")
+    study = work / "tension.nml"
+    study.write_text(f"&study case = '{case}', statistics = 'cycle_ring_fmep, cycle_ring_2_fmep, max abs ring_friction_force' /\n"
+                     "&parameter key = 'ring_2.tension', values = '7, 14' /\n&parameter key = 'rings.lubrication.viscosity', values = '0.008, 0.004' /\n")
+    ran = subprocess.run([program, "sweep", "-q", "-o", work, study], capture_output=True, text=True, check=False)
+    check(ran.returncode == 0, "a study of tension and oil", ran.stderr)
+    with (work / "tension.runs.csv").open() as file:
+        found = [float(row["cycle_ring_fmep[Pa]"]) for row in csv.DictReader(file)]
+    check(len(found) == 4 and abs(max(found) - found[2]) + abs(min(found) - found[1]) == 0 and close(found[0], 10870, 1e-3), "more with tension, less with thinner oil", str(found))
+
+
 def test_wear(program: Path, work: Path) -> None:
     """The wear of an hour of the last cycle against the difference of two runs, which are a revolution apart; at a tolerance at which
     the motion, which amplifies differences, is that of both."""
@@ -383,7 +459,7 @@ def main() -> int:
             sys.exit(f"{built.stderr}\n0 passed, 1 failed")
         program = ROOT / built.stdout.strip()
     with tempfile.TemporaryDirectory(prefix="answers") as work:
-        for test in (test_engine, test_ledger, test_reversals, test_slap, test_rows, test_extremes, test_no_gas, test_wear, test_scope):
+        for test in (test_engine, test_ledger, test_reversals, test_slap, test_rows, test_extremes, test_no_gas, test_rings, test_wear, test_scope):
             folder = Path(work) / test.__name__
             folder.mkdir()
             test(program.resolve(), folder)

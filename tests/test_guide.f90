@@ -1,7 +1,7 @@
 !> Runs with a piston guide with friction, or with clearance of the piston in its bore.
 module test_guide
   use kinds, only: dp
-  use constants, only: two_pi, degree
+  use constants, only: pi, two_pi, degree
   use text_tools, only: replaced
   use checks, only: checks_t
   use number_text, only: short_text
@@ -23,6 +23,7 @@ module test_guide
   use guide_events, only: inward_acceleration
   use piston_guide, only: piston_guide_t, guide_loads_t, corner_t, n_corners
   use laws, only: contact_law_of, friction_law_of
+  use case_checks, only: expect
   use data_tables, only: load_table
   implicit none
   private
@@ -59,8 +60,88 @@ contains
     call narrow_bore_is_an_ideal_guide(check)
     call compare_with_siconos(check)
     call follow_siconos(check)
+    call rings_shear_their_film(check)
+    call ring_refusals(check)
     call refusals(check)
   end subroutine run_test_guide
+
+  !> The friction of a smooth ring against the exact one of a parabolic face full of oil with Reynolds' condition: load over
+  !> 6 mu U L^2/h^2 and friction over mu U L/h, with L half of the height and h the film, for crowns c h; by integrals in closed
+  !> form. The constant coefficient of the ring is within 5 % of them.
+  subroutine rings_shear_their_film(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: crown(3) = [1, 5, 10], load(3) = [0.0421218110261_dp, 0.0265285719526_dp, 0.0162521081081_dp], &
+      friction(3) = [1.66463978413_dp, 1.26533435766_dp, 1.04465722465_dp]
+    real(dp), parameter :: bore = 0.08_dp, mu = 0.01_dp, speed = 7, half = 1e-3_dp, film = 2e-6_dp
+    real(dp) :: exact, tension
+    integer :: i
+    do i = 1, size(crown)
+      exact = -pi*bore*mu*speed*half/film*friction(i)
+      tension = 0.5_dp*bore*6*mu*speed*half**2/film**2*load(i)
+      call check%close_to(friction_of(crown(i)*film, tension, 0.0_dp, speed), exact, 0.05_dp*abs(exact), 'ring: its friction')
+      call check%close_to(friction_of(crown(i)*film, tension, 0.0_dp, -speed), -exact, 0.05_dp*abs(exact), 'ring: on the way back')
+      call check%close_to(friction_of(crown(i)*film, 0.5_dp*tension, 0.25_dp*tension*pi*bore/half, speed), exact, &
+        0.05_dp*abs(exact), 'ring: half of its load by gas above and behind')
+    end do
+
+  contains
+
+    !> Friction of a ring with this crown [m] and tension [N] under this force of the gas on the piston [N].
+    real(dp) function friction_of(height_of_crown, pull, gas, u)
+      real(dp), intent(in) :: height_of_crown, pull, gas, u
+      type(guide_case_t) :: wanted
+      type(piston_guide_t) :: guide
+      type(motion_t) :: motion
+      type(guide_loads_t) :: now
+      type(loads_t) :: all
+      real(dp) :: y(1)
+      wanted%kind = 'friction'
+      wanted%bore = bore
+      wanted%rings%oil%given_viscosity = mu
+      allocate (wanted%rings%rings(1))
+      wanted%rings%rings(1)%height = 2*half
+      wanted%rings%rings(1)%crown = height_of_crown
+      wanted%rings%rings(1)%tension = pull
+      wanted%rings%rings(1)%gas_above = 1
+      wanted%rings%rings(1)%gas_behind = 1
+      call build_guide(wanted, guide)
+      y = 0
+      motion%piston_velocity = u
+      all%axial_force = gas
+      call guide%find_loads(motion, y, now, all)
+      friction_of = now%friction_force
+    end function friction_of
+  end subroutine rings_shear_their_film
+
+  !> Rings without oil or bore, and gas whose pressure rises from ring to ring, are refused.
+  subroutine ring_refusals(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: ring = '&ring height=1e-3 crown=5e-6 tension=8 ', oil = '&lubrication place=''rings'' ', &
+      gas = '&combustion bore=0.08 compression_ratio=9 heat_capacity_ratio=1.4 heat=100 wiebe_efficiency=5 wiebe_form=3 '// &
+      'start_deg=340 duration_deg=40 / &lubrication viscosity=0.01 /'
+    call expect(check, ring//'/ '//oil//'viscosity=0.01 / '//gas, '', 'a ring with oil')
+    call expect(check, ring//'/ '//gas, '&ring_1: needs the group lubrication with place = ''rings'', its oil', &
+      'a ring without oil')
+    call expect(check, ring//'/ '//oil//'/ '//gas, '&lubrication of rings viscosity: required', 'oil without viscosity')
+    call expect(check, ring//'/ '//oil//'oil=''SAE 30'' temperature=380 / '//gas, '', 'a named oil')
+    call expect(check, ring//'/ '//oil//'oil=''SAE 30'' temperature=380 thinning_ratio=0.5 thinning_rate=1e5 / '//gas, &
+      'thinning_ratio = 0.5: must be 1 in the oil of piston rings', 'shear thinning')
+    call expect(check, ring//'/ '//oil//'viscosity=0.01 / &lubrication viscosity=0.01 /', &
+      '&ring_1: needs the bore of &combustion or &cylinder_pressure', 'a ring without a bore')
+    call expect(check, oil//'viscosity=0.01 / '//gas, '&lubrication of rings: needs the group ring', 'oil without a ring')
+    call expect(check, '&asperities place=''rings'' roughness=1e-6 / '//gas, '&asperities of rings: needs the group ring', &
+      'roughness without a ring')
+    call expect(check, ring//'gas_behind=0.5 gas_below=0.6 / '//oil//'viscosity=0.01 / '//gas, &
+      'gas_below = 0.6: must be <= gas_behind = 0.5', 'gas that rises below the ring')
+    call expect(check, ring//'gas_above=0.5 / '//oil//'viscosity=0.01 / '//gas, 'gas_behind: must be <= gas_above = 0.5', &
+      'gas that rises behind the ring')
+    call expect(check, ring//'gas_below=0.1 / '//ring//'gas_above=0.2 / '//oil//'viscosity=0.01 / '//gas, &
+      '&ring_2 gas_above = 0.2: must be <= gas_below of the ring above it = 0.1', 'gas that rises from ring to ring')
+    call expect(check, repeat(ring//'/ ', 7)//oil//'viscosity=0.01 / '//gas, '&ring: at most 6 of these groups', 'seven rings')
+    call expect(check, ring//'/ '//oil//'law=''pinkus_sternlicht'' viscosity=0.01 / '//gas, 'must be one of reynolds', &
+      'a film of a joint')
+    call expect(check, ring//'/ &lubrication place=''ring'' viscosity=0.01 / '//gas, 'did you mean rings?', 'a misspelt place')
+  end subroutine ring_refusals
 
   !> A rod without mass is a bar with a force S along it. With friction mu |N| against the motion and N = S sin A, the equation of
   !> the piston is m x'' = S cos A - mu |S sin A| sign x'. The crank speed is constant, so that x'' is known.

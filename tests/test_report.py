@@ -30,7 +30,7 @@ from measured import use_virtual_environment
 
 use_virtual_environment()
 
-from gudgeon.report.answers import lines, warnings
+from gudgeon.report.answers import Answers, lines, losses_of, section, warnings
 
 TOP = Path(__file__).resolve().parents[1]
 
@@ -277,6 +277,15 @@ def check_answers(checks: Assertions) -> None:
     checks.check(places == ["piston pin", "crank pin"], f"bearings with answers: {places}")
     checks.check(said == wanted, f"answers: {said}")
     checks.check(len(ours) + len(others) <= 10, "ten lines at most")
+    of_losses = {"cycle_work_gas": ("200", "J"), "cycle_imep": ("8e5", "Pa"), "cycle_fmep": ("2.5e4", "Pa"), "cycle_indicated_power": ("8e3", "W"), "cycle_work_guide": ("-4", "J"),
+                 "cycle_ring_fmep": ("1e4", "Pa"), "cycle_ring_1_fmep": ("7e3", "Pa"), "cycle_ring_2_fmep": ("3e3", "Pa"), "crank_pin_cycle_joint_fmep": ("6e3", "Pa"),
+                 "cycle_joint_fmep": ("2e3", "Pa"), "cycle_work_contact": ("-0.25", "J")}
+    parts = losses_of(Answers(SimpleNamespace(summary=of_losses)))
+    wanted = [("Ring 1", 7e3), ("Ring 2", 3e3), ("Piston pin", 3e3), ("Crank pin", 6e3), ("Piston in its bore", 6e3)]
+    checks.check([name for name, _ in parts] == [name for name, _ in wanted] and all(abs(a - b) < 1e-6 for (_, a), (_, b) in zip(parts, wanted)), f"parts of FMEP: {parts}")
+    checks.check(abs(sum(value for _, value in parts) - 2.5e4) < 1e-6, "they are all of it")
+    text = section(SimpleNamespace(summary=of_losses))
+    checks.check("<td>Crank pin</td><td>6 kPa</td><td>60 W</td><td>24 %</td>" in text and "<td>All losses (FMEP)</td><td>25 kPa</td><td>250 W</td>" in text, f"table of losses: {text}")
     said = warnings(SimpleNamespace(summary=rows))
     checks.check(len(said) == 2 and "piston pin changes by 65 %" in said[0] and "run.until=periodic" in said[0], f"a motion that has not settled: {said}")
     checks.check(said[1].startswith("50 of 51 contacts at the crank pin are faster"), f"contacts beyond the theory: {said}")

@@ -1,12 +1,16 @@
-!> Rules that the values of a case with a guide that is not ideal, or with elastic members, must obey together.
+!> Rules that the values of a case with a guide that is not ideal, with piston rings or elastic members must obey together.
 module body_rules
   use kinds, only: dp
   use constants, only: pi, two_pi
   use number_text, only: short_text
+  use text_tools, only: integer_text
   use case_definition, only: case_t
+  use case_schema, only: find_group
   use case_values, only: case_values_t
+  use film_rules, only: check_oil
   use friction_law, only: friction_law_t
   use piston_skirt, only: skirt_t, corner_t, n_corners
+  use ring_case, only: most_piston_rings
   use chain_motion, only: tilting_t, motion_t, accelerations_t, turn_crank, piston_pin, n_pins
   use chain_bodies, only: rod_t, crank_t, piston_t, bodies_t, new_bodies, drive_t
   use chain_loads, only: loads_t, unloaded
@@ -15,7 +19,7 @@ module body_rules
   use assembled_chain, only: accelerate_assembled
   implicit none
   private
-  public :: check_guide, check_elastic, bore_reach
+  public :: check_guide, check_rings, check_elastic, bore_reach
 
 contains
 
@@ -58,6 +62,48 @@ contains
     if (.not. allocated(c%guide)) return
     if (allocated(c%guide%friction)) call check_guide_friction(c, values)
   end subroutine check_guide
+
+  !> Check that rings have oil and a bore, and that the pressure of the gas does not rise from ring to ring.
+  subroutine check_rings(c, values)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(inout) :: values
+    character(len=*), parameter :: oil = 'rings.lubrication', surfaces = 'rings.asperities'
+    character(len=6) :: group, first   ! names of groups
+    real(dp) :: above
+    integer :: i, n
+    if (.not. allocated(c%rings%rings)) then
+      if (values%is_present(find_group(values%groups, oil))) call values%refuse_group(oil, 'needs the group ring')
+      if (values%is_present(find_group(values%groups, surfaces))) call values%refuse_group(surfaces, 'needs the group ring')
+      return
+    end if
+    above = 1
+    n = 0
+    first = ''
+    do i = 1, most_piston_rings
+      group = 'ring_'//integer_text(i)
+      if (find_group(values%groups, group) == 0) exit
+      if (.not. values%is_present(find_group(values%groups, group))) cycle
+      if (n == 0) first = group
+      n = n + 1
+      associate (ring => c%rings%rings(n))
+        call values%forbid(ring%gas_above > above, group, 'gas_above', 'must be <= gas_below of the ring above it = '// &
+          short_text(above))
+        call values%forbid(ring%gas_behind > ring%gas_above, group, 'gas_behind', 'must be <= gas_above = '// &
+          short_text(ring%gas_above))
+        call values%forbid(ring%gas_below > ring%gas_behind, group, 'gas_below', 'must be <= gas_behind = '// &
+          short_text(ring%gas_behind))
+        above = ring%gas_below
+      end associate
+    end do
+    if (.not. (allocated(c%combustion) .or. allocated(c%measured))) &
+      call values%refuse_group(first, 'needs the bore of &combustion or &cylinder_pressure')
+    if (.not. values%is_present(find_group(values%groups, oil))) then
+      call values%refuse_group(first, 'needs the group lubrication with place = ''rings'', its oil')
+      return
+    end if
+    call check_oil(c%rings%oil%oil, oil, values)
+    call values%forbid(c%rings%oil%oil%thinning_ratio < 1, oil, 'thinning_ratio', 'must be 1 in the oil of piston rings')
+  end subroutine check_rings
 
   !> Check that the friction law has no sticking, which the guide does not support, and that friction does not jam a piston with an
   !> ideal pin: an axial force causes a side force of at most tan A times its size, where A is at most arcsin (R + |d|)/L.

@@ -53,6 +53,9 @@ contains
       end associate
     end do
     if (allocated(case%guide)) call add('guide', guide_text(case))
+    if (allocated(case%rings%rings)) call add('rings', integer_text(size(case%rings%rings))//', tension '// &
+      quantity_text(sum(case%rings%rings%tension), 'N', digits)//' together; oil '// &
+      quantity_text(case%rings%oil%viscosity(), 'Pa s', digits))
     call add('run', run_text(case))
     call add('results', results_text(case, columns, has_twin, base))
     call add('film table', tables)

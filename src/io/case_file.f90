@@ -6,7 +6,7 @@ module case_file
   use text_file, only: read_text_file
   use joint_places, only: places, n_places, in_order, joint_group
   use case_definition, only: case_t
-  use case_schema, only: key_table_t, case_schema_of, find_group, shown_group, name_in_file
+  use case_schema, only: key_table_t, case_schema_of, find_group, shown_group, name_in_file, is_apart
   use case_values, only: case_values_t
   use case_loader, only: load_case
   use case_rules, only: check_rules
@@ -227,6 +227,7 @@ contains
     integer, intent(in) :: number   !! number of the group in the file
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: wanted, place, found
+    character(len=100) :: allowed   ! places
     integer :: i
     if (find_group(values%groups, list%groups(number)%name//'_1') > 0) then
       call number_group(values, list, number, error)
@@ -243,8 +244,10 @@ contains
           wanted = ''
           place = lowercase(entry%tokens(1)%text)
           if (found /= '') wanted = 'given twice'
-          if (.not. any(places%name == place)) &
-            wanted = 'must be one of '//joined(places(in_order)%name)//likely_word(place, joined(places(in_order)%name))
+          if (.not. (any(places%name == place) .or. find_group(values%groups, place//'.'//list%groups(number)%name) > 0)) then
+            allowed = places_of(values, list%groups(number)%name)
+            wanted = 'must be one of '//trim(allowed)//likely_word(place, trim(allowed))
+          end if
         end if
         if (wanted /= '') then
           call fail(error, list%at(entry%line)//'&'//entry%group//' place = '//printable(place, 48)//': '//wanted, &
@@ -278,6 +281,19 @@ contains
         status_case_file)
     end if
   end subroutine number_group
+
+  !> The places that a group may name, separated by a comma and a blank: those of joints, and those with keys of their own.
+  pure function places_of(values, name) result(list)
+    type(case_values_t), intent(in) :: values
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: list
+    integer :: i
+    list = joined(places(in_order)%name)
+    do i = 1, size(values%groups)
+      if (is_apart(values%groups(i)) .and. name_in_file(values%groups(i)) == name) &
+        list = list//', '//values%groups(i)%name(:index(values%groups(i)%name, '.') - 1)
+    end do
+  end function places_of
 
   !> Whether a group may appear once for each joint.
   pure logical function has_places(values, name)

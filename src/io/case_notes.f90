@@ -52,6 +52,7 @@ contains
       call note_defaults(c%joints(in_order(i)), in_order(i))
     end do
     call note_guide()
+    call note_rings()
     call note_gas()
     call note_firing()
     call note_rod()
@@ -333,6 +334,13 @@ contains
           'guide.piston_radius')
       end associate
     end subroutine note_guide
+
+    !> Rings of one cylinder of several.
+    subroutine note_rings()
+      if (.not. (allocated(c%rings%rings) .and. allocated(c%cylinders))) return
+      if (size(c%cylinders) > 1) call add_line('&ring: these are the rings of the full cylinder; the others have none, so that '// &
+        'FMEP has the rings of one cylinder over the displacement of all')
+    end subroutine note_rings
 
     !> Heat for the volume of the cylinder, and pressures and work of a cycle.
     subroutine note_gas()

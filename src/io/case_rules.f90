@@ -13,7 +13,7 @@ module case_rules
   use pin_rules, only: check_piston_pin
   use joint_rules, only: check_joints
   use train_builder, only: inertia_beside
-  use body_rules, only: check_guide, check_elastic, bore_reach
+  use body_rules, only: check_guide, check_rings, check_elastic, bore_reach
   use chain_motion, only: crank_pin, piston_pin, n_pins
   use joint_places, only: n_places, in_order, name_prefix, joint_group
   implicit none
@@ -41,6 +41,7 @@ contains
     call check_start(c, values)
     if (.not. allocated(c%load)) then
       call check_guide(c, values)
+      call check_rings(c, values)
       call check_elastic(c, values)
       call check_gas(c, values)
       call check_drive(c, values)
@@ -114,8 +115,8 @@ contains
     type(case_t), intent(in) :: c
     type(case_values_t), intent(inout) :: values
     character(len=*), parameter :: only = 'is for a mechanism; this case has &bearing_load', &
-      groups(7) = [character(len=17) :: 'mechanism', 'pin', 'guide', 'elastic_rod', 'crankshaft', 'combustion', &
-      'cylinder_pressure'], &
+      groups(9) = [character(len=17) :: 'mechanism', 'pin', 'guide', 'elastic_rod', 'crankshaft', 'combustion', &
+      'cylinder_pressure', 'rings.lubrication', 'rings.asperities'], &
       of_drive(4) = [character(len=16) :: 'torque', 'damping', 'flywheel_inertia', 'torque_table'], &
       of_initial(5) = [character(len=18) :: 'pin_speed', 'piston_offset', 'piston_offset_rate', 'piston_tilt', &
       'piston_tilt_rate']

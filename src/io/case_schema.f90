@@ -10,7 +10,8 @@ module case_schema
   implicit none
   private
   public :: key_t, group_definition_t, key_table_t, schema_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases
-  public :: group_names, shown_group, name_in_file, is_first_of_name, real_kind, integer_kind, logical_kind, word_kind, text_kind
+  public :: group_names, shown_group, name_in_file, is_first_of_name, is_apart, real_kind, integer_kind, logical_kind, word_kind, &
+    text_kind
 
   !> A group. The group of an optional model may be missing in a case; its model is then absent from the scene.
   type :: group_definition_t
@@ -68,7 +69,7 @@ contains
   !> Initialise the visitor.
   subroutine begin(self)
     class(schema_t), intent(inout) :: self
-    allocate (self%groups(100), self%keys(1400))
+    allocate (self%groups(110), self%keys(1500))
     self%law_name = ''
     self%difference = ''
   end subroutine begin
@@ -137,6 +138,12 @@ contains
     type(group_definition_t), intent(in) :: group
     is_first_of_name = index(group%name, '.') == 0 .and. group%number <= 1
   end function is_first_of_name
+
+  !> Whether a group has the name of another one but keys of its own: it belongs to a place that is no joint, rings.lubrication.
+  pure logical function is_apart(group)
+    type(group_definition_t), intent(in) :: group
+    is_apart = group%place == '' .and. index(group%name, '.') > 0
+  end function is_apart
 
   !> The names of groups as in a case file, each once.
   pure function group_names(groups) result(names)

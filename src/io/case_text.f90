@@ -4,7 +4,7 @@ module case_text
   use text_tools, only: integer_text, quoted
   use number_text, only: exact_text
   use model_parameters, only: key_t, real_kind, integer_kind, logical_kind
-  use case_schema, only: group_definition_t, key_table_t, find_key, is_listed, name_in_file, is_first_of_name
+  use case_schema, only: group_definition_t, key_table_t, find_key, is_listed, name_in_file, is_first_of_name, is_apart
   use value_reader, only: n_values
   use case_values, only: case_values_t, value_t
   implicit none
@@ -25,7 +25,7 @@ contains
     text = '! '//first_line//newline
     do group = 1, size(table%groups)
       associate (it => table%groups(group))
-        if (.not. is_first_of_name(it)) cycle
+        if (.not. (is_first_of_name(it) .or. is_apart(it))) cycle
         out = ''
         text = text//newline//'! '//trim(it%description)//newline
         if (it%instead_of /= '') then
@@ -36,7 +36,12 @@ contains
           text = text//'! (a group for each one, therefore commented out here)'//newline
           out = '! '
         end if
+        if (is_apart(it)) then
+          text = text//'! (beside another group of this name, therefore commented out here)'//newline
+          out = '! '
+        end if
         text = text//out//'&'//name_in_file(it)//newline
+        if (is_apart(it)) text = text//out//'  place = '''//it%name(:index(it%name, '.') - 1)//''''//newline
         if (it%place /= '' .or. it%is_law) text = text//'  ! place = ''crank_pin''                   '// &
           'in a second group of this name: '//trim(merge('the joint of crank and rod', 'laws for that joint alone ', &
           it%place /= ''))//newline

@@ -2,6 +2,7 @@
 module film_rules
   use kinds, only: dp
   use joint_case, only: joint_case_t
+  use oil_viscosity, only: oil_t
   use case_values, only: case_values_t
   use history_rules, only: check_history
   use number_text, only: short_text
@@ -14,8 +15,8 @@ module film_rules
 contains
 
   !> Check that the viscosity of the film is given by one source.
-  subroutine check_oil(joint, group, values)
-    type(joint_case_t), intent(in) :: joint
+  subroutine check_oil(oil, group, values)
+    type(oil_t), intent(in) :: oil
     character(len=*), intent(in) :: group   !! group of the film
     type(case_values_t), intent(inout) :: values
     character(len=*), parameter :: names(2) = [character(len=19) :: 'viscosity', 'kinematic_viscosity']
@@ -25,18 +26,19 @@ contains
     do i = 1, size(names)
       key = trim(names(i))
       place = values%place_of(group, key)
+      if (place == 0) cycle
       is_said = values%is_said(place)
-      if (joint%oil%is_known()) then
-        call values%forbid(is_said, group, key, 'must not be given: viscosity_law = '''//joint%oil%law//''' computes it')
+      if (oil%is_known()) then
+        call values%forbid(is_said, group, key, 'must not be given: viscosity_law = '''//oil%law//''' computes it')
       else if (values%is_used(place)) then
         call values%demand(is_said, group, key, adjustl(values%by_law(values%keys(place))))
       end if
     end do
-    if (joint%oil%is_known()) then
-      call joint%oil%conflict(key, wanted)
+    if (oil%is_known()) then
+      call oil%conflict(key, wanted)
       call values%forbid(key /= '', group, key, wanted)
     else
-      call values%forbid(joint%oil%temperature > 0 .and. .not. values%is_given(group, 'viscosity_law'), group, 'temperature', &
+      call values%forbid(oil%temperature > 0 .and. .not. values%is_given(group, 'viscosity_law'), group, 'temperature', &
         'needs viscosity_law = ''walther'' or ''vogel''; the default is given')
     end if
   end subroutine check_oil

@@ -56,7 +56,7 @@ contains
       call check_ideal(group, values)
       return
     end if
-    if (allocated(joint%film)) call check_oil(joint, film, values)
+    if (allocated(joint%film)) call check_oil(joint%oil, film, values)
     if (allocated(joint%heat)) call check_heat(joint, film, values%law_group('heat', place), values)
     call values%demand(joint%clearance > 0, group, 'clearance', 'with kind = '''//joint%kind//'''')
     call values%demand(joint%bearing_radius > 0, group, 'bearing_radius', 'with kind = '''//joint%kind//'''')

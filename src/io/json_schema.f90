@@ -2,7 +2,7 @@
 !> each an object of keys. A group that a case may have several times is one object or an array of objects.
 module json_schema
   use text_tools, only: replaced, integer_text
-  use case_schema, only: key_t, group_definition_t, key_table_t, find_group, name_in_file, is_first_of_name, &
+  use case_schema, only: key_t, group_definition_t, key_table_t, find_group, name_in_file, is_first_of_name, is_apart, &
     real_kind, integer_kind, logical_kind, word_kind
   use joint_places, only: places, in_order
   implicit none
@@ -33,7 +33,7 @@ contains
     text = text//n//'},'//n//'"required": ['//required(3:)//']'//n//'}'//n
   end function json_schema_text
 
-  function group_schema(table, group) result(text)
+  recursive function group_schema(table, group) result(text)
     type(key_table_t), intent(in) :: table
     type(group_definition_t), intent(in) :: group
     character(len=:), allocatable :: text, required
@@ -44,15 +44,22 @@ contains
     do i = group%first, group%last
       associate (key => table%keys(i))
         text = text//'  '//string(trim(key%name))//': '//key_schema(key)
-        if (i < group%last .or. has_places(table, group)) text = text//','
+        if (i < group%last .or. has_places(table, group) .or. is_apart(group)) text = text//','
         text = text//n
         if (key%required .and. .not. (allocated(key%laws) .or. group%is_model)) required = required//', '//string(trim(key%name))
       end associate
     end do
     if (has_places(table, group)) text = text//'  "place": {"enum": ['//place_names()//']}'//n
+    if (is_apart(group)) text = text//'  "place": {"const": '//string(group%name(:index(group%name, '.') - 1))//'}'//n
     text = text//'}'
     if (required /= '') text = text//', "required": ['//required(3:)//']'
     text = text//'}'
+    if (has_places(table, group)) then
+      do i = 1, size(table%groups)
+        if (is_apart(table%groups(i)) .and. name_in_file(table%groups(i)) == group%name) &
+          text = text//','//n//group_schema(table, table%groups(i))
+      end do
+    end if
     if (has_places(table, group) .or. group%number > 0) &
       text = '{"anyOf": ['//text//','//n//'{"type": "array", "items": {"type": "object"}}]}'
   end function group_schema

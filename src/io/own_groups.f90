@@ -3,7 +3,7 @@
 module own_groups
   use error_handling, only: error_t, fail, status_case_file
   use joint_places, only: places, n_places, in_order, joint_group
-  use case_schema, only: find_group
+  use case_schema, only: find_group, is_apart
   use case_values, only: case_values_t
   implicit none
   private
@@ -36,7 +36,7 @@ contains
         call fail(error, at//'&'//name//': the case has this group for '//has(6:)//': write '//write(5:), status_case_file)
         return
       end if
-    else if (.not. values%is_present(group) .and. has_group(values, name(dot + 1:))) then
+    else if (.not. (values%is_present(group) .or. is_apart(values%groups(group))) .and. has_group(values, name(dot + 1:))) then
       common = find_group(values%groups, name(dot + 1:))
       if (values%groups(common)%is_law) then
         do i = values%groups(group)%first, values%groups(group)%last

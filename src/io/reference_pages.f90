@@ -4,7 +4,7 @@ module reference_pages
   use kinds, only: dp
   use error_handling, only: error_t
   use model_parameters, only: key_t, logical_kind
-  use case_schema, only: group_definition_t, key_table_t, find_key, name_in_file, is_first_of_name
+  use case_schema, only: group_definition_t, key_table_t, find_key, name_in_file, is_first_of_name, is_apart, shown_group
   use case_definition, only: case_t
   use case_file, only: parse_case, template
   use trace_columns, only: choose_columns, unit_in
@@ -26,10 +26,13 @@ module reference_pages
   end type scene_kind_t
 
   character(len=*), parameter :: play = 'joint.kind=clearance ', contact = 'contact.law=hertz ', &
-    film = 'lubrication.viscosity=0.0117 lubrication.report=T '
+    film = 'lubrication.viscosity=0.0117 lubrication.report=T ', &
+    engine = 'combustion.bore=0.07 combustion.compression_ratio=9 combustion.heat_capacity_ratio=1.4 '// &
+    'combustion.heat=165 combustion.wiebe_efficiency=5 combustion.wiebe_form=3 combustion.start_deg=340 '// &
+    'combustion.duration_deg=40'
 
   !> Kinds of scenes that together have every column.
-  type(scene_kind_t), parameter :: kinds(18) = [ &
+  type(scene_kind_t), parameter :: kinds(19) = [ &
     scene_kind_t('Every scene', 'drive.kind=constant_speed'), &
     scene_kind_t('Joint with clearance (the last three columns only with `&contact`)', play//contact), &
     scene_kind_t('Contact with `geometry = ''conformal''`', play//contact//'contact.geometry=conformal'), &
@@ -51,9 +54,9 @@ module reference_pages
     scene_kind_t('Guide (`kind = ''friction''` has the first column alone)', 'guide.kind=clearance '// &
       'guide.bore_clearance=1e-4 guide.skirt_top=0.02 guide.skirt_bottom=0.02 guide.piston_radius=0.035 '// &
       'guide.piston_inertia=1e-3 guide.stiffness=1e8 guide.coefficient=0'), &
-    scene_kind_t('Gas', 'combustion.bore=0.07 combustion.compression_ratio=9 combustion.heat_capacity_ratio=1.4 '// &
-      'combustion.heat=165 combustion.wiebe_efficiency=5 combustion.wiebe_form=3 combustion.start_deg=340 '// &
-      'combustion.duration_deg=40'), &
+    scene_kind_t('Gas', engine), &
+    scene_kind_t('Piston rings (the numbers are those of the case)', 'ring_1.height=1.2e-3 ring_1.crown=6e-6 ring_1.tension=8 '// &
+      'rings.lubrication.viscosity=0.008 '//engine), &
     scene_kind_t('Elastic rod', 'elastic_rod.section_area=3e-4 elastic_rod.section_inertia=1.5e-8'), &
     scene_kind_t('Elastic crankshaft', 'crankshaft.flywheel_inertia=0.02 crankshaft.torsional_stiffness=2e4'), &
     scene_kind_t('Several cylinders (the numbers are those of the case)', 'crankshaft.flywheel_inertia=0 '// &
@@ -72,8 +75,13 @@ contains
     do group = 1, size(table%groups)
       associate (it => table%groups(group))
         if (only_group /= '' .and. it%name /= only_group .and. .not. (it%number == 1 .and. name_in_file(it) == only_group)) cycle
-        if (only_group == '' .and. .not. is_first_of_name(it)) cycle
-        text = text//'## &'//name_in_file(it)//newline//newline//sentence(trim(it%description))//newline
+        if (only_group == '' .and. .not. (is_first_of_name(it) .or. is_apart(it))) cycle
+        if (is_apart(it)) then
+          text = text//'## '//shown_group(trim(it%name))//newline//newline//sentence(trim(it%description))//newline// &
+            '`place = '''//it%name(:index(it%name, '.') - 1)//'''` in the group makes it this one.'//newline
+        else
+          text = text//'## &'//name_in_file(it)//newline//newline//sentence(trim(it%description))//newline
+        end if
         if (it%instead_of /= '') text = text//'Cannot be combined with `&'//trim(it%instead_of)//'`.'//newline
         if (it%place /= '' .or. it%is_law) &
           text = text//'`place = ''crank_pin''` in a second group of this name makes it that of the crank pin.'//newline

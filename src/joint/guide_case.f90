@@ -5,6 +5,7 @@ module guide_case
   use contact_law, only: contact_law_t
   use friction_law, only: friction_law_t
   use piston_skirt, only: skirt_t
+  use ring_case, only: ring_pack_t
   implicit none
   private
   public :: guide_case_t
@@ -19,8 +20,11 @@ module guide_case
     real(dp) :: stiffness = 0, exponent = 1
     class(friction_law_t), allocatable :: friction
     class(contact_law_t), allocatable :: contact
+    type(ring_pack_t) :: rings   !! those of the case, with the bore, set when the guide is built
+    real(dp) :: bore = 0         !! of the cylinder [m]
   contains
     procedure :: parameters
+    procedure :: lose_clearance
     procedure :: has_clearance
     procedure :: skirt
     procedure :: most_friction
@@ -35,7 +39,7 @@ contains
     call list%word('kind', self%kind, guide_friction//', '//guide_clearance, guide_friction, &
       'friction: piston on the cylinder axis; clearance: piston moves across its bore and tilts (slap)')
     call list%add('viscous', self%viscous, &
-      'viscous friction force per piston velocity, such as that of piston rings', 'N s/m', '>= 0', default='0.0', usual='0 to 1e4')
+      'viscous friction force per piston velocity, in addition to that of &ring', 'N s/m', '>= 0', default='0.0', usual='0 to 1e4')
     call list%add('bore_clearance', self%bore_clearance, &
       'half of bore diameter minus piston diameter; required with kind = ''clearance'', as the next five keys', &
       'm', '> 0', default='0.0', usual='1e-6 to 1e-3')
@@ -72,6 +76,16 @@ contains
       speed = speed/1.1_dp
     end do
   end function most_friction
+
+  !> Become an ideal guide, except for the rings, if the piston has clearance in its bore or nothing is known of the guide.
+  subroutine lose_clearance(self)
+    class(guide_case_t), intent(inout) :: self
+    if (.not. allocated(self%kind)) self%kind = guide_clearance
+    if (.not. self%has_clearance()) return
+    self%kind = guide_friction
+    self%viscous = 0
+    if (allocated(self%friction)) deallocate (self%friction)
+  end subroutine lose_clearance
 
   !> Whether the piston has clearance in its bore.
   pure logical function has_clearance(self)

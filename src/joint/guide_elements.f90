@@ -5,6 +5,7 @@ module guide_elements
   use piston_guide, only: piston_guide_t
   use bore_friction, only: bore_friction_t
   use skirt_corners, only: skirt_corners_t
+  use ring_friction, only: ring_friction_t
   implicit none
   private
   public :: build_guide
@@ -18,6 +19,7 @@ contains
     guide%skirt_t = wanted%skirt()
     call add(bore_friction_t())
     if (wanted%has_clearance()) call add(skirt_corners_t())
+    if (allocated(wanted%rings%rings)) call add(ring_friction_t())
 
   contains
 

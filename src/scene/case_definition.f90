@@ -16,6 +16,7 @@ module case_definition
   use joint_case, only: joint_case_t
   use pin_case, only: pin_case_t, pin_floating, pin_of_piston
   use guide_case, only: guide_case_t
+  use ring_case, only: ring_pack_t
   use elastic_rod, only: elastic_rod_t
   use elastic_crankshaft, only: elastic_crankshaft_t
   use train_case, only: cylinder_case_t, shaft_case_t, damper_case_t
@@ -99,6 +100,7 @@ module case_definition
     type(joint_case_t) :: joints(n_places)   !! by place
     type(pin_case_t), allocatable :: pin       !! not allocated: the piston pin is fixed in the rod
     type(guide_case_t), allocatable :: guide   !! not allocated: the guide is ideal
+    type(ring_pack_t) :: rings               !! of the piston
     type(elastic_rod_t), allocatable :: elastic_rod          !! not allocated: the rod is rigid
     type(elastic_crankshaft_t), allocatable :: crankshaft    !! not allocated: the crankshaft is rigid, or has stations
     type(shaft_case_t), allocatable :: shaft                 !! a crankshaft of several stations

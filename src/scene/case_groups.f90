@@ -6,6 +6,7 @@ submodule (case_definition) case_groups
   use joint_case, only: visit_joint, drop_laws, select_contact, select_friction
   use gas_laws, only: offer_gas_cycles
   use train_case, only: most_rings, most_cylinders
+  use ring_case, only: visit_rings
   implicit none
 
 contains
@@ -48,6 +49,7 @@ contains
       end do
     end if
     call visit_guide(case%guide, list)
+    call visit_rings(case%rings, list)
     call list%group('elastic_rod', 'Elastic connecting rod. Without this group the rod is rigid', .true.)
     call rod%parameters(list)
     if (list%sets) case%elastic_rod = rod

@@ -14,6 +14,8 @@ module cycle_answers
   use period_watch, only: period_watch_t
   use run_extremes, only: run_extremes_t
   use piston_skirt, only: n_corners, corner_names
+  use ring_case, only: most_piston_rings
+  use text_tools, only: integer_text
   use result_ledger, only: kept_result_t, find_result, degrees_in_cycle
   use archard_wear, only: of_pin, of_bore
   use gas_cycle, only: released_share
@@ -94,6 +96,13 @@ module cycle_answers
     quantity_t('cycle_fmep', 'Pa', 'the same of the losses in joints, guide and elastic members'), &
     quantity_t('cycle_one_way_fmep', 'Pa', &
       'the part of it in bearings of kind quasi_static, which is not fed back: the motion does not feel it'), &
+    quantity_t('cycle_ring_fmep', 'Pa', 'the part of FMEP by the friction of the piston rings'), &
+    quantity_t('cycle_ring_1_fmep', 'Pa', 'that of the first piston ring from the top'), &
+    quantity_t('cycle_ring_2_fmep', 'Pa', 'that of the second one'), &
+    quantity_t('cycle_ring_3_fmep', 'Pa', 'that of the third one'), &
+    quantity_t('cycle_ring_4_fmep', 'Pa', 'that of the fourth one'), &
+    quantity_t('cycle_ring_5_fmep', 'Pa', 'that of the fifth one'), &
+    quantity_t('cycle_ring_6_fmep', 'Pa', 'that of the sixth one'), &
     quantity_t('cycle_work_gas', 'J', 'work of the gas on the piston in the cycle'), &
     quantity_t('cycle_work_drive', 'J', 'work of the driving torque, or of the moment that holds the speed'), &
     quantity_t('cycle_work_damping', 'J', 'work of the damping of the drive'), &
@@ -101,7 +110,8 @@ module cycle_answers
     quantity_t('cycle_work_friction', 'J', 'work of the friction of the contact'), &
     quantity_t('cycle_work_film', 'J', 'work of the film'), &
     quantity_t('cycle_work_asperities', 'J', 'work of the asperities, with their friction'), &
-    quantity_t('cycle_work_guide', 'J', 'work of the guide: friction of the bore and loads of the corners of the skirt'), &
+    quantity_t('cycle_work_guide', 'J', &
+      'work of the guide: friction of the bore and of piston rings, loads of the corners of the skirt'), &
     quantity_t('cycle_work_elastic', 'J', 'work of the damping of rod and crankshaft'), &
     quantity_t('cycle_energy_change', 'J', 'change of kinetic, potential and elastic energy in the cycle'), &
     quantity_t('cycle_work_rest', 'J', 'that change less all work in the cycle: the error of the integration')]
@@ -252,7 +262,20 @@ contains
       call add('cycle_fmep', loss/displacement)
       if (scene%n_works < size(scene%parts)) &
         call add('cycle_one_way_fmep', one_way/displacement)
+      call add_ring_fmep('ring')
+      do i = 1, most_piston_rings
+        call add_ring_fmep('ring_'//integer_text(i))
+      end do
     end subroutine add_machine
+
+    !> The mean effective pressure of the friction of a ring, or of all rings, if there is one.
+    subroutine add_ring_fmep(name)
+      character(len=*), intent(in) :: name   !! of the ring
+      real(dp) :: power
+      logical :: is_known
+      call find_result(kept_results, 'cycle_mean_'//name//'_power', power, is_known)
+      if (is_known) call add('cycle_'//name//'_fmep', power*cycle%duration/displacement)
+    end subroutine add_ring_fmep
 
     !> The hardest impact of the skirt in the cycle.
     subroutine add_slap()

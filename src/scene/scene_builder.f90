@@ -11,6 +11,7 @@ module scene_builder
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
   use joint_events, only: may_touch, may_pass_static
   use load_elements, only: add_elements
+  use guide_case, only: guide_case_t
   use guide_elements, only: build_guide
   use train_builder, only: build_train, build_other_gas, axis_gravity
   use film_heat, only: film_heat_t
@@ -153,15 +154,8 @@ contains
     if (scene%n_joints > 0) scene%chain%is_loose = case%loose_pins()
     if (case%has_floating_pin() .and. .not. ideal_joint) call float_pin(case, scene)
     if (allocated(case%load) .and. .not. ideal_joint) call give_load(case%load, scene)
-    if (allocated(case%guide) .and. .not. (ideal_joint .and. case%has_loose_guide())) then
-      allocate (scene%guide)
-      call build_guide(case%guide, scene%guide)
-      scene%guide%start = [case%initial%piston_offset, case%initial%piston_tilt]
-      scene%guide%start_rate = [case%initial%piston_offset_rate, case%initial%piston_tilt_rate]
-      do n = 1, size(scene%joints)
-        if (scene%joints(n)%site%bearing == body_piston) scene%joints(n)%bearing_turns = scene%guide%is_loose
-      end do
-    end if
+    if (allocated(case%guide) .and. .not. (ideal_joint .and. case%has_loose_guide()) .or. allocated(case%rings%rings)) &
+      call add_guide(case, ideal_joint, scene)
     if (case%is_elastic() .and. .not. ideal_joint) then
       allocate (scene%chain%elastic)
       if (allocated(case%elastic_rod)) allocate (scene%chain%elastic%rod, source=case%elastic_rod)
@@ -173,6 +167,27 @@ contains
     if (allocated(scene%chain%train) .and. allocated(case%cylinders)) &
       scene%gas%has_force = case%cylinders(scene%chain%train%full_number)%gas
   end subroutine assemble_scene
+
+  !> Add the guide of the piston, with its rings.
+  subroutine add_guide(case, ideal_joint, scene)
+    type(case_t), intent(in) :: case
+    logical, intent(in) :: ideal_joint
+    type(scene_t), intent(inout) :: scene
+    type(guide_case_t) :: wanted
+    integer :: n
+    if (allocated(case%guide)) wanted = case%guide
+    if (ideal_joint .or. .not. allocated(case%guide)) call wanted%lose_clearance()
+    wanted%rings = case%rings
+    if (allocated(case%combustion)) wanted%bore = case%combustion%bore
+    if (allocated(case%measured)) wanted%bore = case%measured%bore
+    allocate (scene%guide)
+    call build_guide(wanted, scene%guide)
+    scene%guide%start = [case%initial%piston_offset, case%initial%piston_tilt]
+    scene%guide%start_rate = [case%initial%piston_offset_rate, case%initial%piston_tilt_rate]
+    do n = 1, size(scene%joints)
+      if (scene%joints(n)%site%bearing == body_piston) scene%joints(n)%bearing_turns = scene%guide%is_loose
+    end do
+  end subroutine add_guide
 
   !> Let the piston pin turn in both of its joints.
   subroutine float_pin(case, scene)

@@ -4,6 +4,7 @@ from __future__ import annotations
 import bisect
 import dataclasses
 import math
+import re
 
 from .contact import Contact
 from .laws import LANDING, ROUNDING, Friction
@@ -20,8 +21,9 @@ class Guide:
     def __init__(self, run: Run) -> None:
         n = run.number
         self.viscous = n("guide.viscous")
+        self.rings = [name for name in run.columns if re.fullmatch(r"ring_\d_friction_force", name)]
         case = {key.replace("guide.", "friction."): value for key, value in run.case.items() if key.startswith("guide.")}
-        self.friction = Friction(dataclasses.replace(run, case=case))
+        self.friction = Friction(dataclasses.replace(run, case={"friction.law": ["ambrosio"]} | case))   # without &guide: of no coefficient
         self.is_loose = run.has_loose_guide
         if not self.is_loose:
             return
@@ -53,7 +55,7 @@ class Guide:
         get, v = row.get, row.com_velocity[0]
         if not self.is_loose:
             return get["guide_friction_force"] * v
-        total = -self.viscous * v**2
+        total = get.get("ring_friction_force", 0.0) * v - self.viscous * v**2
         for k in range(1, 5):
             rate, along = self.rates(k, row)
             total += get[f"guide_{k}_friction"] * along - get[f"guide_{k}_force"] * rate
@@ -78,14 +80,18 @@ class Guide:
         """Check one row; `checks` records the errors."""
         get, v = row.get, row.com_velocity[0]
         give = 10 * ROUNDING * (row.speed_size + abs(row.tilt_rate) * math.hypot(*row.com))
+        rings = get.get("ring_friction_force", 0.0)
+        one_by_one = [get[name] for name in self.rings]
+        checks.take("friction of the rings", abs(sum(one_by_one) - rings), SUM * abs(rings) + 1e-300, t)
+        checks.take("friction of a ring drives", max(0.0, *(force * v for force in one_by_one)) if one_by_one else 0.0, 1e-300, t)
         if not self.is_loose:
             low, high = self.friction.range(v, give)
-            normal, got = abs(get["guide_force"]), get["guide_friction_force"] + self.viscous * v
+            normal, got = abs(get["guide_force"]), get["guide_friction_force"] + self.viscous * v - rings
             low, high = low * normal, high * normal
-            slack = LAW * (abs(low) + abs(high)) / 2 + SUM * abs(self.viscous * v) + row.noise() * max(abs(low), abs(high)) / (normal or 1.0)
+            slack = LAW * (abs(low) + abs(high)) / 2 + SUM * (abs(self.viscous * v) + abs(rings)) + row.noise() * max(abs(low), abs(high)) / (normal or 1.0)
             checks.take("friction on the guide", max(low - got, got - high, 0.0), slack + 1e-300, t)
             return
-        total, moment, size = -self.viscous * v, 0.0, 0.0
+        total, moment, size = rings - self.viscous * v, 0.0, 0.0
         for k in range(1, 5):
             depth, (rate, along) = self.depth(k, row), self.rates(k, row)
             checks.take("gap of a corner", abs(get[f"guide_{k}_gap"] + depth), 1e-15 * (self.radius + abs(row.offset_y)) * 4, t)
@@ -114,7 +120,7 @@ class Guide:
             side = math.copysign(1.0, 2.5 - k)
             moment += -side * x * normal - y * friction
             size += abs(x * normal) + abs(y * friction)
-        checks.take("friction on the piston", abs(total - get["guide_friction_force"]), SUM * (abs(total) + abs(self.viscous * v)) + 1e-300, t)
+        checks.take("friction on the piston", abs(total - get["guide_friction_force"]), SUM * (abs(total) + abs(self.viscous * v) + abs(rings)) + 1e-300, t)
         pressing = sum(math.copysign(get[f"guide_{k}_force"], 2.5 - k) for k in range(1, 5))
         forces = sum(abs(get[f"guide_{k}_force"]) for k in range(1, 5)) + math.hypot(*row.force)
         checks.take("force of the corners on the guide", abs(pressing - get["guide_force"]), SUM * forces + 10 * row.noise(), t)

@@ -54,7 +54,7 @@ class Run:
 
     @property
     def has_guide(self) -> bool:
-        return "guide.kind" in self.case
+        return "guide.kind" in self.case or "ring_friction_force" in self.columns
 
     @property
     def has_loose_guide(self) -> bool:

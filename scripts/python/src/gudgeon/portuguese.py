@@ -2,7 +2,7 @@
 
 #: Words that are the same, symbols of units, and names.
 UNTRANSLATED = {
-    "rad", "mm", "cm", "cm³", "µs", "µm", "nm", "ms", "kN", "MPa", "GPa", "Pa", "mPa", "nJ", "MJ", "bar", "kg", "mJ", "µJ", "kJ", "mrad", "Hz", "rpm", "deg", "min",
+    "rad", "mm", "cm", "cm³", "µs", "µm", "nm", "ms", "kN", "MPa", "GPa", "kPa", "Pa", "mPa", "nJ", "MJ", "bar", "kg", "mJ", "µJ", "kJ", "mrad", "Hz", "rpm", "deg", "min",
     "II", "III", "IV", "VI", "Pinkus", "Sternlicht", "Neimark", "Sacker", "Hertz", "Lankarani", "Nikravesh", "Flores", "Coulomb", "Ambrosio", "Morris", "Sobol",
     "hertz", "sphere", "johnson", "conformal", "pereira", "winkler", "lankarani", "nikravesh", "hunt", "crossley", "herbert", "mcwhannell",
     "zhiying", "qishao", "gonthier", "flores", "carvalho", "martins", "csv", "sim", "Reynolds", "Lyapunov", "gudgeon", "plotly", "js", "adams", "radau", "auto", "SciPy", "DOP", "Radau", "LSODA", "CVODE", "RADAU", "Adams", "BDF",
@@ -279,6 +279,7 @@ TEXTS = {
     "Crankshaft: twist": "Virabrequim: torção",
     "guide force": "força da guia",
     "Friction of the piston on its guide": "Atrito do pistão na guia",
+    "Friction of the piston rings": "Atrito dos anéis do pistão",
     "Piston across its bore": "Pistão através do cilindro",
     "Tilt of the piston": "Inclinação do pistão",
     "energy residual": "resíduo de energia",
@@ -323,6 +324,11 @@ TEXTS = {
     "{} at {}°": "{} a {}°",
     "{} at the end": "{} no fim",
     "Deepest penetration": "Maior penetração",
+    "Where the losses go": "Para onde vão as perdas",
+    "All losses (FMEP)": "Todas as perdas (FMEP)",
+    "Ring {}": "Anel {}",
+    "Piston in its bore": "Pistão no cilindro",
+    "Elastic members": "Corpos elásticos",
     "{} of {} contacts at the {} are faster than the theory holds.": "{} de {} contatos no {} são mais rápidos do que a teoria admite.",
     "{} of {} contacts at the {} are deeper than the theory holds.": "{} de {} contatos no {} são mais profundos do que a teoria admite.",
     "{} rpm, fluctuates by {} %": "{} rpm, oscila {} %",

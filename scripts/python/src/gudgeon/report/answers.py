@@ -141,6 +141,32 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
     return found
 
 
+def losses_of(rows: Answers) -> list[tuple[str, float]]:
+    """The parts of FMEP with their values [Pa]: each piston ring, each bearing, the piston in its bore without its rings, elastic members."""
+    work, imep = rows("cycle_work_gas"), rows("cycle_imep")
+    if not work or not imep or not rows("cycle_fmep"):
+        return []
+    found = [(f"Ring {number}", rows(f"cycle_ring_{number}_fmep") or 0.0) for number in range(1, 7)]
+    for pre, name in PLACES.values():
+        found.append((name.capitalize(), (rows(f"{pre}cycle_joint_fmep") or 0.0) - (rows(f"{pre}cycle_work_contact") or 0.0) * imep / work))
+    found.append(("Piston in its bore", -(rows("cycle_work_guide") or 0.0) * imep / work - (rows("cycle_ring_fmep") or 0.0)))
+    found.append(("Elastic members", -(rows("cycle_work_elastic") or 0.0) * imep / work))
+    return [(name, value) for name, value in found if abs(value) > 1e-3 * abs(rows("cycle_fmep") or 0.0)]
+
+
+def losses_section(rows: Answers, say: Callable[[str], str]) -> str:
+    """Where the losses go, as a table with bars; empty if there are none."""
+    found = losses_of(rows)
+    if not found:
+        return ""
+    largest, total, power = max(abs(value) for _, value in found), rows("cycle_fmep") or 1.0, rows("cycle_indicated_power") or 0.0
+    line = '<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td class="bar"><i style="width: {:.1f}%"></i></td></tr>'
+    body = "".join(line.format(html.escape(say(name)), say(f"{number(1e-3 * value)} kPa"), say(f"{number(value * power / (rows('cycle_imep') or 1.0))} W"),
+                               say(f"{100 * value / total:.3g} %".replace("-", "−")), 100 * max(value, 0.0) / largest) for name, value in found)
+    body += line.format(html.escape(say("All losses (FMEP)")), say(f"{number(1e-3 * total)} kPa"), say(f"{number(total * power / (rows('cycle_imep') or 1.0))} W"), "", 0.0)
+    return f'<section id="losses"><h2>{html.escape(say("Where the losses go"))}</h2><table>{body}</table></section>'
+
+
 def lines(run: Run) -> tuple[list[str], list[tuple[str, list[str]]], list[tuple[str, str]]]:
     """Names of the bearings; the lines of the bearings, with a text for each; and those of the machine. There are ten at most."""
     rows = Answers(run)
@@ -163,7 +189,7 @@ def section(run: Run, language: Language | None = None) -> str:
     bearings = f"<table><tr><th></th>{head}</tr>{body}</table>" if ours else ""
     of_machine = "".join(f"<tr><td>{cell(say(name))}</td><td>{cell(say(text))}</td></tr>" for name, text in others)
     return (f'<section id="answers"><h2>{cell(say(title(run)))}</h2><div class="answers">{bearings}'
-            f"<table>{of_machine}</table></div></section>")
+            f"<table>{of_machine}</table></div></section>") + losses_section(Answers(run), say)
 
 
 def warnings(run: Run) -> list[str]:

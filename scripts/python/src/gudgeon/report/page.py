@@ -89,6 +89,7 @@ OVER_TIME = (
     ("engine_force_x", "Force on the engine along the cylinder", "kN", 1e-3),
     ("guide_force", "Guide force", "kN", 1e-3),
     ("guide_friction_force", "Friction of the piston on its guide", "N", 1.0),
+    ("ring_friction_force", "Friction of the piston rings", "N", 1.0),
     ("piston_offset", "Piston across its bore", "µm", 1e6),
     ("piston_tilt", "Tilt of the piston", "mrad", 1e3),
     ("gas_force", "Gas force", "kN", 1e-3),
