@@ -394,6 +394,8 @@ def refusals(run: Runner) -> None:
         (four, ["cylinder_2.throw=1", "cylinder_2.crank_mass=1"], "another cylinder has the crank of this throw"),
         (four, ["damper_1.station=1", "damper_1.inertia=0.01", "damper_1.stiffness=1e4"], "needs the lists inertia and stiffness"),
         (four, ["cylinder_7.phase_deg=10"], "there is no cylinder_5 before it"),
+        (four, [*COMPRESSOR, "cylinder_2.heat_scale=0.5"], "a compressor or a measured pressure has none"),
+        (six, ["cylinder_2.heat_scale=0"], "a compressor or a measured pressure has none"),
         (four, ["crankshaft.flywheel_inertia=1", "crankshaft.torsional_stiffness=1e5"], "needs one cylinder"),
         (engine("&cylinder /\n" * 17), [], "at most 16 of these groups"),
         (SMALL, ["mechanism.axis_offset=0.07"], "axis_offset = 0.07: must be shorter than rod_length - crank_length, less clearances, = 0.0615: the crank could not turn"),
@@ -414,6 +416,37 @@ def refusals(run: Runner) -> None:
     moved.write_text(text.replace(gas, "").replace("&cylinder station = 3", gas.replace("mwm_pressure.csv", str(CASES / "mwm_pressure.csv")) + "&cylinder station = 3", 1))
     found = subprocess.run([run.program, "--check", moved], capture_output=True, text=True, check=False)
     check(found.returncode == 0 and "cylinders: 6" in found.stdout, "a gas group before the cylinders", found.stderr[:200])
+
+
+def misfire(run: Runner) -> None:
+    """A cylinder without heat compresses its charge without loss, p V^g constant, and does no work in a cycle; the others do what they did."""
+    angles = ("output.sampling=crank_angle", "output.samples_per_revolution=720", "output.columns=standard, cylinder_3_gas_force, cylinder_4_gas_force")
+    fired, of_four = run(CASES / "inline_four.nml", *FINE, *angles)
+    found, of_three = run(CASES / "misfire.nml", *FINE, *angles)
+    same, _ = run(CASES / "inline_four.nml", *FINE, *angles, *(f"cylinder_{k}.heat_scale=1" for k in range(1, 5)))
+    check(same.equals(fired), "heat_scale = 1 is no factor at all")
+    fired, found = bare(fired), bare(found)
+    check((found["cylinder_4_gas_force"] - fired["cylinder_4_gas_force"]).abs().max() < 1e-9 * fired["cylinder_4_gas_force"].abs().max(),
+          "a misfire: the other cylinders fire as before")
+    q = (np.degrees(found["crank_angle"].to_numpy()) - 180) % 720   # of cylinder 3, from its own gas-exchange dead centre
+    area, bottom = np.pi / 4 * 0.08**2, 0.08 * (1 + 1 / 9)
+    depth = 0.08 / 9 + 0.175 - 0.04 * np.cos(np.radians(q)) - np.sqrt(0.135**2 - (0.04 * np.sin(np.radians(q))) ** 2)
+    closed = (q > 180.1) & (q < 539.9)
+    wanted = (95000 * (bottom / depth[closed]) ** 1.35 - 101325) * area
+    off = np.abs(found["cylinder_3_gas_force"].to_numpy()[closed] - wanted).max() / wanted.max()
+    check(closed.sum() > 700 and off < 1e-9, "a misfire: the charge is compressed without heat", f"{off:.2g}")
+    ratio = float(of_three["cycle_work_gas"]) / float(of_four["cycle_work_gas"])
+    check(abs(ratio - 0.75) < 1e-8, "a misfire: three cylinders of four do work", f"{ratio!r}")
+    moment = found["crank_moment"].to_numpy()[:1440]
+    check(order(moment, 0.5) > 0.1 * abs(moment.mean()), "a misfire: the moment has the order 0.5")
+    full, dead = run(CASES / "misfire.nml", *FINE, *angles, "cylinder_1.full=F", "cylinder_3.full=T", "output.columns=standard, cylinder_1_gas_force")
+    full = bare(full)
+    at = (np.degrees(full["crank_angle"].to_numpy())) % 720
+    depth = 0.08 / 9 + 0.175 - 0.04 * np.cos(np.radians(at)) - np.sqrt(0.135**2 - (0.04 * np.sin(np.radians(at))) ** 2)
+    closed = (at > 180.1) & (at < 539.9)
+    off = np.abs(full["cylinder_pressure"].to_numpy()[closed] / (95000 * (bottom / depth[closed]) ** 1.35) - 1).max()
+    check(closed.sum() > 700 and off < 1e-9, "a full cylinder that misfires", f"{off:.2g}")
+    check(float(dead["cycle_heat_released"]) == 0, "a full cylinder that misfires releases no heat", dead["cycle_heat_released"])
 
 
 def resumes(run: Runner) -> None:
@@ -441,7 +474,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         run = Runner(options.program or str(release_program()), Path(folder))
         for part in (references, facts, programs_of_others, another_cylinder, equalities, limits, energies, offset_linkage, offset_of_the_pin,
-                     offset_chains, refusals, resumes):
+                     offset_chains, misfire, refusals, resumes):
             part(run)
     return assertions.report()
 

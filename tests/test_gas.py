@@ -350,6 +350,17 @@ def said(program: Path, case: Path, *settings: str) -> str:
     return made.stdout + made.stderr
 
 
+def pegging(program: Path) -> None:
+    """An offset of a table is added to each of its pressures, and must leave them above 0."""
+    case = GAS / "measured.nml"
+    plain, pegged = (run(program, case, *CLOSE, *HELD, "output.samples_per_revolution=90", f"cylinder_pressure.pressure_offset={offset}", name="pegging")
+                     for offset in ("0", "0.2 bar"))
+    off = worst(pegged.column("cylinder_pressure[Pa]") - plain.column("cylinder_pressure[Pa]") - 2e4)
+    check(off < 1e-6, "a table with an offset of its pressures", f"{off:.2g} Pa")
+    made = subprocess.run([str(program), "--check", "--set", "cylinder_pressure.pressure_offset=-2e5", str(case)], capture_output=True, text=True, check=False)
+    check(made.returncode == 3 and "must be > 0: absolute" in made.stderr, "an offset that leaves a negative pressure is refused", made.stderr[:200])
+
+
 def what_check_says(program: Path) -> None:
     """Pressures, work and firing of a case that is only read, and the note on a table in another unit, against the table itself."""
     text = (GAS / "indicator.csv").read_text()
@@ -422,6 +433,7 @@ def main() -> int:
     pressure_of_the_angle(program)
     measured_pressure(program)
     offset_axis(program)
+    pegging(program)
     what_check_says(program)
     return assertions.report()
 

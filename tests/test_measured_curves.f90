@@ -20,7 +20,26 @@ contains
     call straight_lines(check)
     call periodic_cubic(check)
     call work_of_a_sine(check)
+    call offset_of_a_table(check)
   end subroutine run_test_measured_curves
+
+  !> An offset is added to every pressure of a table.
+  subroutine offset_of_a_table(check)
+    class(checks_t), intent(inout) :: check
+    type(measured_pressure_t) :: table
+    type(working_gas_t) :: gas
+    type(error_t), allocatable :: error
+    integer :: i
+    table%bore = 0.07_dp
+    table%period_deg = 360
+    table%curve%x = [(30.0_dp*i, i=0, 11)]
+    table%curve%y = [(1e5_dp + 2e4_dp*i, i=0, 11)]
+    table%pressure_offset = -3e4_dp
+    call table%prepare(linkage_t(0.04_dp, 0.13_dp), 1.0_dp, 1e-9_dp, gas, error)
+    do i = 0, 11
+      call check%close_to(gas%pressure(30*i*degree), 7e4_dp + 2e4_dp*i, 1e-6_dp, 'a table with an offset of its pressures')
+    end do
+  end subroutine offset_of_a_table
 
   !> Steffen's slopes computed by hand: for the points (0,0) (1,1) (3,2) (4,2) they are 5/6 at 1 and 0 at 3.
   subroutine known_cubic(check)

@@ -95,6 +95,8 @@ module test_notes
     mistake_t('sim_VI', 'combustion.bore=0.040 combustion.heat=1000', 'the radius instead of the diameter?'), &
     mistake_t('gas/measured', 'cylinder_pressure.offset_deg=180', 'has its largest pressure at 547 degrees, far from the dead '// &
       'centres at 0 and 360: offset_deg?'), &
+    mistake_t('gas/measured', 'cylinder_pressure.pressure_offset=-2e4', 'is compressed with the exponent 1.49, usually 1.15 to '// &
+      '1.45: pressure_offset, offset_deg, compression_ratio or unit?'), &
     mistake_t('gas/measured', 'initial.crank_speed=-250', 'crank_speed < 0 turns the engine backwards?'), &
     mistake_t('sim_IV', 'drive.kind=constant_speed drive.torque=1', '&drive torque has no effect with kind = ''constant_speed''')]
 

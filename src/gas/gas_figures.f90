@@ -18,6 +18,7 @@ module gas_figures
     real(dp) :: peak_angle = 0      !! crank angle then, from 0 to the length of the cycle [degrees]
     real(dp) :: least = 0           !! least pressure [Pa]
     real(dp) :: imep = 0            !! work on the piston in a cycle over the displacement [Pa]
+    real(dp) :: exponent = 0        !! n of p V^n over the compression before the peak; 0: not known [-]
   contains
     procedure :: are_usual
     procedure :: likely_unit
@@ -53,8 +54,28 @@ contains
       work = work + pressure*gas%cylinder%volume_slope(angle - gas%cylinder%dead_centre)
     end do
     figures%imep = gas%sense*work*step*degree/gas%cylinder%displacement
+    figures%exponent = compression_exponent(gas, figures)
     figures%is_known = .true.
   end subroutine find_gas_figures
+
+  !> Exponent between 100 and 40 degrees before the dead centre next to the peak, if the volumes are known and the pressure there is
+  !> still far below the peak: neither does the gas burn then nor is it delivered.
+  real(dp) function compression_exponent(gas, figures) result(exponent)
+    type(working_gas_t), intent(inout) :: gas
+    type(gas_figures_t), intent(in) :: figures
+    real(dp), parameter :: before(2) = [100, 40]*degree, early = 0.5_dp
+    real(dp) :: pressure(2), volume(2), angle
+    integer :: i
+    exponent = 0
+    if (.not. gas%cylinder%dead_volume > 0) return
+    do i = 1, 2
+      angle = 360*nint(figures%peak_angle/360)*degree - gas%sense*before(i)
+      call gas%start(gas%cylinder%dead_centre + angle, gas%sense)
+      pressure(i) = gas%pressure(gas%cylinder%dead_centre + angle)
+      volume(i) = gas%cylinder%volume(angle)
+    end do
+    if (pressure(2) < early*figures%peak) exponent = log(pressure(2)/pressure(1))/log(volume(1)/volume(2))
+  end function compression_exponent
 
   !> Whether the pressures are of usual sizes, or would be in another unit: factor times pressure plus offset.
   pure logical function are_usual(self, factor, offset)

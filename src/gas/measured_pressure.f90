@@ -24,6 +24,7 @@ module measured_pressure
     type(measured_curve_t) :: curve          !! crank angle [degrees], pressure [Pa], within one period
     integer :: period_deg = 720
     real(dp) :: offset_deg = 0               !! crank angle for angle 0 of the table [degrees]
+    real(dp) :: pressure_offset = 0          !! added to the pressures of the table [Pa]
     real(dp) :: compression_ratio = 0        !! ratio of largest to smallest volume; 0: unknown
   contains
     procedure :: parameters
@@ -48,7 +49,11 @@ contains
     call list%add('period_deg', self%period_deg, &
       'period of the table: 720 (four-stroke) or 360 degrees', '>= 360 and <= 720', '720')
     call list%add('offset_deg', self%offset_deg, &
-      'crank angle from the dead centre at angle 0 of the table', 'degrees', '>= -1080 and <= 1080', '0.0', usual='0 to 1080')
+      'crank angle from the dead centre at angle 0 of the table; also corrects the dead centre of an encoder: 1 degree is '// &
+      'some 10 % of the mean effective pressure', 'degrees', '>= -1080 and <= 1080', '0.0', usual='0 to 1080')
+    call list%add('pressure_offset', self%pressure_offset, &
+      'added to the pressures of the table (pegging), which must then be > 0', 'Pa', '>= -1e7 and <= 1e7', '0.0', &
+      usual='1e2 to 5e5')
     call self%add_bore(list)
     call list%add('compression_ratio', self%compression_ratio, &
       'largest over smallest volume, for the column cylinder_volume only; 0: it shows the swept volume', &
@@ -70,7 +75,8 @@ contains
     gas%held_pressure = self%pressure
     if (self%is_external()) return
     gas%revolutions = self%revolutions()
-    allocate (gas%curve, source=new_periodic_cubic((self%curve%x + self%offset_deg)*degree, self%curve%y, self%period_deg*degree))
+    allocate (gas%curve, source=new_periodic_cubic((self%curve%x + self%offset_deg)*degree, self%curve%y + self%pressure_offset, &
+      self%period_deg*degree))
   end subroutine prepare
 
   pure integer function revolutions(self)

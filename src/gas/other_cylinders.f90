@@ -1,10 +1,12 @@
-!> The gas in the other cylinders of an engine than that of the mechanism. All have the same cycle, valves or measured pressure, a
-!> function of the crank angle from their own axis; each has its own part of the cycle or its own state of the valves.
+!> The gas in the other cylinders of an engine than that of the mechanism. All have the same cycle, but perhaps
+!> another heat, the same valves or measured pressure, a function of the crank angle from their own axis; each has its own part of
+!> the cycle or its own state of the valves.
 module other_cylinders
   use kinds, only: dp
   use text_tools, only: integer_text
   use run_state, only: run_state_t
   use valve_gas, only: valve_gas_t, n_valve_events
+  use gas_cycle, only: gas_cycle_t
   use working_gas, only: working_gas_t
   implicit none
   private
@@ -24,6 +26,7 @@ module other_cylinders
     integer, allocatable :: part(:)              !! present part of the cycle
     real(dp), allocatable :: cycle_start(:)      !! angle at which the present cycle began [rad]
     type(valve_gas_t), allocatable :: valves(:)
+    type(gas_cycle_t), allocatable :: cycles(:)  !! where cylinders have different heats; else all have the gas's own
   contains
     procedure :: start
     procedure :: declare
@@ -80,7 +83,9 @@ contains
     integer :: i
     do i = 1, size(self%has_gas)
       if (.not. self%has_gas(i)) cycle
-      if (allocated(gas%cycle)) then
+      if (allocated(self%cycles)) then
+        pressure = self%cycles(i)%pressure(gas%sense*gas%angle(angle(i)), self%part(i), self%cycle_start(i))
+      else if (allocated(gas%cycle)) then
         pressure = gas%cycle%pressure(gas%sense*gas%angle(angle(i)), self%part(i), self%cycle_start(i))
       else if (allocated(gas%valves)) then
         pressure = self%valves(i)%pressure(gas%angle(angle(i)))

@@ -48,7 +48,8 @@ contains
     if (.not. allocated(into%measured)) return
     associate (gas => into%measured)
       if (gas%is_external() .or. all(gas%period_deg /= measured_pressure_periods)) return   ! without table, or refused by the rules
-      call provide(values, into%file, 'cylinder_pressure', 'table', crank_angle, pressure, gas%curve, gas%period_deg)
+      call provide(values, into%file, 'cylinder_pressure', 'table', crank_angle, pressure, gas%curve, gas%period_deg, &
+        gas%pressure_offset)
     end associate
   end subroutine provide_curves
 
@@ -87,12 +88,13 @@ contains
   end subroutine provide_compliances
 
   !> Read one curve. A curve with a period is a pressure or a load; a load may have two components.
-  subroutine provide(values, case_file, group, key, x_is, y_is, curve, period)
+  subroutine provide(values, case_file, group, key, x_is, y_is, curve, period, offset)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: case_file, group, key
     type(quantity_t), intent(in) :: x_is, y_is
     type(measured_curve_t), intent(inout) :: curve
     integer, intent(in), optional :: period   !! [degrees]
+    real(dp), intent(in), optional :: offset   !! added to a pressure when it acts [Pa]
     character(len=:), allocatable :: text, message
     type(error_t), allocatable :: error
     integer, allocatable :: lines(:)
@@ -106,7 +108,7 @@ contains
         call parse_curve(text, x_is, y_is, curve%x, curve%y, lines, message, line)
         if (message /= '' .and. y_is%name == pressure%name) message = message// &
           '; gudgeon.read_pressure of the Python package makes such a table of a rig''s file'
-        if (message == '' .and. present(period)) call close_period(curve, period, lines, message, line)
+        if (message == '' .and. present(period)) call close_period(curve, period, offset, lines, message, line)
       end if
       if (message /= '') then
         call fail(error, printable(curve%path, 200)//':'//integer_text(line)//': '//message, status_case_file)
@@ -176,14 +178,15 @@ contains
 
   !> Check a measured pressure over one period and remove a last point that repeats the first one. If it is wrong, `message` says
   !> what is wrong and `line` where.
-  subroutine close_period(curve, period, lines, message, line)
+  subroutine close_period(curve, period, offset, lines, message, line)
     type(measured_curve_t), intent(inout) :: curve
     integer, intent(in) :: period   !! [degrees]
+    real(dp), intent(in) :: offset  !! [Pa]
     integer, intent(in) :: lines(:)
     character(len=:), allocatable, intent(out) :: message
     integer, intent(out) :: line
     integer :: n, at
-    call period_fault(curve%x, curve%y, period, message, at)
+    call period_fault(curve%x, curve%y + offset, period, message, at)
     line = lines(at)
     if (message /= '') return
     n = size(curve%x)

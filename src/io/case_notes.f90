@@ -388,6 +388,9 @@ contains
         hint = ': offset_deg, or not fired?'
         if (c%initial%crank_speed < 0) hint = ': crank_speed < 0 turns the engine backwards?'
         call remark(group, key, 'takes power instead of giving it: IMEP '//quantity_text(gas%imep, 'Pa')//hint, '')
+      else if (abs(gas%exponent) > 0 .and. (gas%exponent < 1.15_dp .or. gas%exponent > 1.45_dp)) then
+        call remark(group, key, 'is compressed with the exponent '//short_text(gas%exponent, 3)// &
+          ', usually 1.15 to 1.45: pressure_offset, offset_deg, compression_ratio or unit?', '')
       end if
     end subroutine note_table
 

@@ -238,6 +238,11 @@ contains
       'must be table with &run until = ''periodic'': a pressure from outside need not repeat')
     call values%forbid(all(c%measured%period_deg /= measured_pressure_periods), 'cylinder_pressure', 'period_deg', &
       'must be 360 or 720')
+    call values%forbid(c%measured%is_external() .and. abs(c%measured%pressure_offset) > 0, 'cylinder_pressure', &
+      'pressure_offset', 'is for a table alone')
+    if (values%problems%concerns('cylinder_pressure') .or. .not. allocated(c%measured%curve%y)) return
+    call values%forbid(.not. minval(c%measured%curve%y) + c%measured%pressure_offset > 0, 'cylinder_pressure', &
+      'pressure_offset', 'must be > '//short_text(-minval(c%measured%curve%y))//': the pressures of the table are absolute with it')
   end subroutine check_gas
 
   !> Check that the keys of a variable drive match its kind, and that there is one flywheel at most.

@@ -159,6 +159,8 @@ contains
             integer_text(j)//': both must have one station')
           if (.not. any(throw == max(1, throw(k) - 1))) call values%refuse(group, 'throw', 'throws must be numbered from 1 '// &
             'without a gap: there is no throw '//integer_text(throw(k) - 1))
+          call values%forbid(abs(it%heat_scale - 1) > 0 .and. has_no_heat(c), group, 'heat_scale', &
+            'is a factor on the heat of an engine: a compressor or a measured pressure has none')
           call check_bodies(c, values, k, group, k == full, has_crank(k))
         end associate
       end do
@@ -175,6 +177,13 @@ contains
       end do
     end subroutine check_inertias
   end subroutine check_train
+
+  !> Whether the gas is that of a compressor or measured.
+  pure logical function has_no_heat(c)
+    type(case_t), intent(in) :: c
+    has_no_heat = allocated(c%measured)
+    if (allocated(c%combustion)) has_no_heat = c%combustion%filling_pressure() > 0
+  end function has_no_heat
 
   !> Check that a full cylinder has the bodies of the mechanism, and that a crank is given once for each throw.
   subroutine check_bodies(c, values, k, group, is_full, has_crank)

@@ -91,7 +91,8 @@ module cycle_answers
     quantity_t('cycle_brake_power', 'W', &
       'power through the shaft, by drive and damping, less the losses of quasi-static bearings; negative: it is driven'), &
     quantity_t('cycle_imep', 'Pa', 'work of the gas in a cycle of the gas over the displacement'), &
-    quantity_t('cycle_heat_released', 'J', 'heat that combustion releases in one cylinder in a cycle of the gas'), &
+    quantity_t('cycle_heat_released', 'J', &
+      'heat that combustion releases in the cylinder of the mechanism in a cycle of the gas'), &
     quantity_t('cycle_bmep', 'Pa', 'the same of the brake power'), &
     quantity_t('cycle_fmep', 'Pa', 'the same of the losses in joints, guide and elastic members'), &
     quantity_t('cycle_one_way_fmep', 'Pa', &

@@ -243,7 +243,8 @@ contains
     call scene%gas%start(scene%start_angle, merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
     if (.not. allocated(scene%chain%train)) return
     associate (train => scene%chain%train)
-      call build_other_gas(case, scene%gas, train, scene%other_gas)
+      call build_other_gas(case, tolerance, scene%gas, train, scene%other_gas, error)
+      if (allocated(error)) return
       call scene%other_gas%start(scene%gas, scene%start_angle + train%cylinders%shift, &
         merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
     end associate

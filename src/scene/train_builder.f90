@@ -11,6 +11,8 @@ module train_builder
   use crank_train, only: crank_train_t, ring_t
   use other_cylinders, only: other_cylinders_t
   use working_gas, only: working_gas_t
+  use gas_cycle, only: gas_cycle_t, new_gas_cycle
+  use error_handling, only: error_t
   implicit none
   private
   public :: build_train, build_other_gas, axis_gravity, inertia_beside, least_inertia, mean_inertias
@@ -116,12 +118,14 @@ contains
   end subroutine make_rigid
 
   !> The gas in the other cylinders, whose states `start` finds. The pressure of the mechanism's own gas gets the factor of its
-  !> cylinder.
-  subroutine build_other_gas(case, gas, train, other)
+  !> cylinder, and so does the heat of its cycle. Error: a cycle cannot be integrated.
+  subroutine build_other_gas(case, tolerance, gas, train, other, error)
     type(case_t), intent(in) :: case
+    real(dp), intent(in) :: tolerance   !! allowed relative error of the pressure
     type(working_gas_t), intent(inout) :: gas
     type(crank_train_t), intent(in) :: train
     type(other_cylinders_t), allocatable, intent(out) :: other
+    type(error_t), allocatable, intent(out) :: error
     integer :: i
     allocate (other)
     other%number = train%cylinders%number
@@ -132,7 +136,25 @@ contains
       other%has_gas(i) = case%cylinders(other%number(i))%gas
     end do
     gas%scale = case%cylinders(train%full_number)%pressure_scale
+    if (.not. allocated(gas%cycle) .or. all(case%cylinders%heat_scale >= 1 .and. case%cylinders%heat_scale <= 1)) return
+    allocate (other%cycles(size(train%cylinders)))
+    do i = 1, size(train%cylinders)
+      other%cycles(i) = gas%cycle
+      call scale_heat(case%cylinders(other%number(i))%heat_scale, tolerance, other%cycles(i), error)
+      if (allocated(error)) return
+    end do
+    call scale_heat(case%cylinders(train%full_number)%heat_scale, tolerance, gas%cycle, error)
   end subroutine build_other_gas
+
+  !> Give a cycle this part of its heat. Error: it cannot be integrated.
+  subroutine scale_heat(factor, tolerance, cycle, error)
+    real(dp), intent(in) :: factor, tolerance
+    type(gas_cycle_t), intent(inout) :: cycle
+    type(error_t), allocatable, intent(out) :: error
+    if (.not. abs(factor - 1) > 0) return
+    cycle%release%heat = factor*cycle%release%heat
+    call new_gas_cycle(cycle, tolerance, error)
+  end subroutine scale_heat
 
   !> Gravity along the axis of the mechanism's cylinder and across it [m/s^2].
   pure function axis_gravity(case) result(gravity)

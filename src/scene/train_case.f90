@@ -16,7 +16,7 @@ module train_case
     real(dp) :: phase_deg = 0, bank_deg = 0
     integer :: throw = 0                  !! from 1 on; 0: not given
     real(dp) :: axial_position = 0        !! [m]
-    real(dp) :: pressure_scale = 1
+    real(dp) :: pressure_scale = 1, heat_scale = 1
     logical :: gas = .true.
     real(dp) :: piston_mass = 0, rod_mass = 0, rod_inertia = 0, rod_com(2) = 0
     real(dp) :: crank_mass = 0, crank_inertia = 0, crank_com(2) = 0
@@ -71,6 +71,9 @@ contains
       default='0.0', usual='0 to 20')
     call list%add('pressure_scale', self%pressure_scale, 'factor on the absolute pressure', range='> 0 and <= 10', default='1.0', &
       usual='0.1 to 2')
+    call list%add('heat_scale', self%heat_scale, &
+      'factor on the heat of an engine; 0: the cylinder misfires or is motored, its compression remains', range='>= 0 and <= 10', &
+      default='1.0', usual='0.1 to 2')
     call list%add('gas', self%gas, '.false.: no force of the gas, for a cylinder that is driven', '.true.')
     call list%add('piston_mass', self%piston_mass, 'as in &mechanism, as all following keys; default: its value', 'kg', '> 0', &
       '', example='0.91', usual='1e-4 to 1e4')

@@ -66,7 +66,8 @@ class Gas(Cylinder):
         super().__init__(run, "combustion")
         n = run.number
         self.sense = -1 if n("initial.crank_speed") < 0 else 1
-        self.exponent, self.heat, self.a, self.n = (n("combustion.heat_capacity_ratio"), n("combustion.heat"),
+        full = next((key.split(".")[0] for key, value in run.case.items() if key.endswith(".full") and value[0]), "cylinder_1")
+        self.exponent, self.heat, self.a, self.n = (n("combustion.heat_capacity_ratio"), n("combustion.heat") * n(f"{full}.heat_scale", 1.0),
                                                     n("combustion.wiebe_efficiency"), n("combustion.wiebe_form"))
         self.start, self.duration = math.radians(n("combustion.start_deg")), math.radians(n("combustion.duration_deg"))
         self.intake = n("combustion.intake_pressure")
@@ -212,7 +213,7 @@ class Measured(Cylinder):
         angle_unit, pressure_unit = (self.UNITS[name.split("[")[1].split("]")[0].strip()] for name in header)
         self.period = math.radians(n("cylinder_pressure.period_deg"))
         self.x = [math.radians(float(a) * angle_unit + n("cylinder_pressure.offset_deg")) for a, _ in rows]
-        self.y = [float(p) * pressure_unit for _, p in rows]
+        self.y = [float(p) * pressure_unit + n("cylinder_pressure.pressure_offset") for _, p in rows]
         if self.x[-1] - self.x[0] > self.period * (1 - 1e-9):
             self.y[0] = (self.y[0] + self.y.pop()) / 2
             self.x.pop()
