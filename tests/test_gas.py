@@ -29,6 +29,7 @@ import f90nml
 import numpy as np
 import pandas as pd
 from assertions import Assertions
+from gudgeon import heat_release
 from gudgeon.program import release_program
 from scipy.integrate import cumulative_simpson, quad
 from scipy.optimize import brentq
@@ -361,6 +362,17 @@ def pegging(program: Path) -> None:
     check(made.returncode == 3 and "must be > 0: absolute" in made.stderr, "an offset that leaves a negative pressure is refused", made.stderr[:200])
 
 
+def heat_of_a_pressure(program: Path) -> None:
+    """The heat that a pressure shows is the one that made it: Wiebe's function, 165 J (1 - exp(-5)) and the angles of its parts."""
+    r = run(program, TOP / "cases" / "sim_IV.nml", *CLOSE, *HELD, "integrator.revolutions=2", name="heat of a pressure")
+    wanted = [340 + 40 * (-np.log(1 - share * (1 - np.exp(-5))) / 5) ** (1 / 3) for share in (0.1, 0.5, 0.9)]
+    for step, angle, heat in ((1, 2e-3, 1e-4), (10, 0.03, 3e-3)):   # rows at 0.1 degree and at 1 degree
+        found = heat_release({name.split("[")[0]: r.column(name)[::step] for name in r.rows}, 1.4)
+        off = worst(np.array(found.angles) - wanted)
+        check(off < angle and abs(found.total - 165 * (1 - np.exp(-5))) < heat, f"the heat that a pressure shows, every {step} rows", repr(found))
+        check(abs(found.exponent - 1.4) < 1e-9, "the exponent of a compression without losses", repr(found.exponent))
+
+
 def what_check_says(program: Path) -> None:
     """Pressures, work and firing of a case that is only read, and the note on a table in another unit, against the table itself."""
     text = (GAS / "indicator.csv").read_text()
@@ -434,6 +446,7 @@ def main() -> int:
     measured_pressure(program)
     offset_axis(program)
     pegging(program)
+    heat_of_a_pressure(program)
     what_check_says(program)
     return assertions.report()
 

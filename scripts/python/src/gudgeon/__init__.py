@@ -19,7 +19,7 @@ _HOMES = {
     "Stepper": "stepper", "Snapshot": "stepper", "Inputs": "stepper",
     "sweep": "_sweep", "schema": "_schema", "fmu": "_fmu", "table": "_table", "Table": "_table",
     "fit": "_fit", "Fit": "_fit", "levels": "_fit", "tolerances": "_tolerances", "Tolerances": "_tolerances",
-    "read_pressure": "_rig", "RigFileError": "_rig",
+    "read_pressure": "_rig", "RigFileError": "_rig", "heat_release": "_heat", "HeatRelease": "_heat",
     "Key": "_keys", "keys": "_keys", "groups": "_keys",
     "orbit": "_orbit", "continuation": "_orbit", "Orbit": "_orbit", "Branch": "_orbit", "OrbitError": "_orbit",
 }  # fmt: skip
