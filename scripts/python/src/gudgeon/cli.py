@@ -50,7 +50,7 @@ def main(words: list[str] | None = None) -> int:
     try:
         return run(name, what, rest)
     except ModuleNotFoundError as lacking:
-        packages = "pip install 'gudgeon[plots]' or, in a checkout, scripts/setup.sh --python"
+        packages = "in a checkout: scripts/setup.sh --python, or pip install './scripts/python[plots]'"
         print(f"{name}: needs the Python package {lacking.name}: {packages}", file=sys.stderr)
         return 1
 
