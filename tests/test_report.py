@@ -213,6 +213,19 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
     time.sleep(0.3)
     checks.check(browser.run("return gudgeon.now") == stopped, f"{name}: pauses")
 
+    cycle = browser.run("return gudgeon.scene.cycle")
+    axis = browser.run("const l = gudgeon.charts.find(c => c.timed).div.layout; return [l.xaxis.title.text, ...l.xaxis.range, l.xaxis.dtick || 0]")
+    if cycle:   # dead centres: once in half a revolution, the first and last ones at the ends
+        checks.check(axis == ["crank angle [deg]", 0, cycle["degrees"], 90], f"{name}: opens on the last cycle, {axis}")
+        lines = browser.wait("gudgeon.charts.find(c => c.timed).div.layout.shapes.filter(s => s.line && s.line.dash === 'dot').length >= "
+                             f"{cycle['degrees'] / 180 - 1}", 10)
+        checks.check(lines, f"{name}: dead centres are marked")
+    width = "gudgeon.charts.find(c => c.timed).div.querySelector('svg').clientWidth"
+    shown = browser.run(f"return {width}")
+    browser.run("window.dispatchEvent(new Event('beforeprint'))")
+    checks.check(browser.wait(f"{width} === 340", 10), f"{name}: charts are narrow on paper")
+    browser.run("window.dispatchEvent(new Event('afterprint'))")
+    checks.check(browser.wait(f"{width} === {shown}", 10), f"{name}: and wide again on the screen")
     browser.run(
         "const t = gudgeon.charts.filter(c => c.timed); Plotly.relayout(t[0].div,"
         "{'xaxis.range[0]': 1, 'xaxis.range[1]': 2})"
@@ -221,7 +234,6 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
         "gudgeon.charts.filter(c => c.timed).every(c => Math.abs(c.div.layout.xaxis.range[1] - 2) < 1e-9)", 10
     )
     checks.check(linked, f"{name}: time axes zoom together")
-    cycle = browser.run("return gudgeon.scene.cycle")
     browser.run(CHOOSE, "angle", bool(cycle))
     titled = "gudgeon.charts.filter(c => c.timed).every(c => c.div.layout.xaxis.title.text === 'crank angle [deg]')"
     checks.check(browser.wait(titled, 30), f"{name}: plots over the crank angle")

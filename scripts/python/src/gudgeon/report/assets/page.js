@@ -504,6 +504,18 @@
     return angleOf(column.crank_angle[before] + part * (column.crank_angle[i] - column.crank_angle[before]));
   };
 
+  // Dead centres in the cycle shown, as thin lines, and ticks each quarter of a revolution.
+  const inCycle = () => overAngle() && cycleAlone();
+  const deadCentres = () => {
+    if (!inCycle()) return [];
+    const first = [Math.asin(scene.axis / (scene.crank + scene.rod)), Math.PI + Math.asin(scene.axis / (scene.rod - scene.crank))];
+    return first.flatMap((angle) => Array.from({ length: scene.cycle.degrees / 360 + 1 }, (_, turn) => 180 / Math.PI * angle + 360 * turn))
+      .filter((x) => x >= 0 && x <= scene.cycle.degrees)
+      .map((x) => ({ type: "line", layer: "below", x0: x, x1: x, yref: "paper", y0: 0, y1: 1, line: { color: COLOUR.grey, width: 0.6, dash: "dot" } }));
+  };
+  const ticks = () => (inCycle() ? { "xaxis.range": [0, scene.cycle.degrees], "xaxis.tickmode": "linear", "xaxis.tick0": 0, "xaxis.dtick": 90 }
+    : { "xaxis.autorange": true, "xaxis.tickmode": "auto" });
+
   // The part of the run beyond its certified time.
   const uncertified = () => (scene.certified === null ? [] : [{ type: "rect", layer: "below", x0: abscissaAt(scene.certified), x1: abscissaAt(end),
     yref: "paper", y0: 0, y1: 1, fillcolor: "rgba(127,127,127,0.18)", line: { width: 0 } }]);
@@ -513,7 +525,7 @@
     marked = setTimeout(() => {
       for (const chart of charts.filter((c) => c.timed)) {
         const x = abscissaAt(now);
-        Plotly.relayout(chart.div, { shapes: [...uncertified(), { type: "line", x0: x, x1: x, yref: "paper", y0: 0, y1: 1,
+        Plotly.relayout(chart.div, { shapes: [...uncertified(), ...deadCentres(), { type: "line", x0: x, x1: x, yref: "paper", y0: 0, y1: 1,
           line: { color: COLOUR.vermilion, width: 1 } }] });
       }
     }, 150);
@@ -524,7 +536,7 @@
     linking = true;
     for (const chart of charts.filter((c) => c.timed)) {
       await Plotly.update(chart.div, { x: chart.curves.map(() => x), y: chart.curves.map((curve) => values(curve, "y").slice(first, last)) },
-        { "xaxis.title.text": title, "xaxis.autorange": true, "yaxis.autorange": true });
+        { "xaxis.title.text": title, "yaxis.autorange": true, ...ticks() });
     }
     linking = false;
     markPlots();
@@ -589,6 +601,14 @@
   byId("scrub").addEventListener("change", scrubbed);
   line.addEventListener("pointerup", scrubbed);
   byId("abscissa").addEventListener("change", changeAbscissa);
+  if (scene.cycle) {   // a page opens on the settled cycle
+    byId("abscissa").value = "angle";
+    byId("last-cycle").checked = true;
+    await changeAbscissa();
+  }
+  // on paper two charts stand beside each other
+  window.addEventListener("beforeprint", () => charts.forEach((c) => Plotly.relayout(c.div, { width: c.timed ? 340 : 330, height: c.timed ? 210 : 330 })));
+  window.addEventListener("afterprint", () => charts.forEach((c) => Plotly.relayout(c.div, { width: null, height: null, autosize: true })));
   byId("last-cycle").addEventListener("change", changeAbscissa);
   window.gudgeon.ready = true;
 })().catch((error) => {
