@@ -439,7 +439,7 @@ def page(
         "line": time_line(columns, run) | {"title": say(time_line(columns, run)["title"])},
         "words": {word: say(word) for word in script_words()},
         "comma": bool(language and not language.is_english),
-        "start": first_moment(columns, [field["time"].iloc[0] for field in fields or []]),
+        "start": first_moment(columns, [field["time"].iloc[0] for field in fields or []], last_cycle(run, columns)),
         "angles": ANGLES if film else 0,
         "signed": bool(film and film[2]),
         "supply": supply_of(run),
@@ -541,11 +541,11 @@ def last_cycle(run: Run, columns: dict[str, np.ndarray]) -> dict[str, float] | N
     return {"begin": begin, "end": begin + length, "angle": float(np.interp(begin, time, columns["crank_angle"])), "degrees": 360 * turns}
 
 
-def first_moment(columns: dict[str, np.ndarray], of_fields: Sequence[float] = ()) -> float:
-    """The time at which the page opens [s]: that of the largest pin force after the first tenth of the run, where there are fields of
-    a film between the first and the last of them."""
+def first_moment(columns: dict[str, np.ndarray], of_fields: Sequence[float] = (), cycle: dict[str, float] | None = None) -> float:
+    """The time at which the page opens [s]: that of the largest pin force in the last cycle, or after the first tenth of a run without
+    one, where there are fields of a film between the first and the last of them."""
     time = columns["time"]
-    shown = time >= time[0] + 0.1 * (time[-1] - time[0])
+    shown = time >= (cycle["begin"] if cycle else time[0] + 0.1 * (time[-1] - time[0]))
     if of_fields:
         shown = (time >= min(of_fields)) & (time <= max(of_fields))
     force = np.where(shown, columns["pin_force"], 0.0)
