@@ -2,7 +2,7 @@
 !> or group and key, value as written, and what is allowed.
 module case_file
   use error_handling, only: error_t, fail, status_case_file
-  use text_tools, only: lowercase, printable, case_name, likely_word, joined, integer_text
+  use text_tools, only: lowercase, printable, case_name, likely_word, integer_text
   use text_file, only: read_text_file
   use joint_places, only: places, n_places, in_order, joint_group
   use case_definition, only: case_t
@@ -288,7 +288,10 @@ contains
     character(len=*), intent(in) :: name
     character(len=:), allocatable :: list
     integer :: i
-    list = joined(places(in_order)%name)
+    list = trim(places(in_order(1))%name)
+    do i = 2, size(in_order)
+      list = list//', '//trim(places(in_order(i))%name)
+    end do
     do i = 1, size(values%groups)
       if (is_apart(values%groups(i)) .and. name_in_file(values%groups(i)) == name) &
         list = list//', '//values%groups(i)%name(:index(values%groups(i)%name, '.') - 1)
