@@ -48,13 +48,22 @@ class Variant:
 
 
 def read_template(text: str) -> dict[str, dict[str, Key]]:
-    """The groups and keys that `gudgeon --template` prints, including groups that are commented out: group -> key -> Key."""
+    """The groups and keys that `gudgeon --template` prints, including groups that are commented out: group -> key -> Key. A group with
+    a place has it before its name, as in `--set`."""
     groups: dict[str, dict[str, Key]] = {}
     name = ""
+    earlier: dict[str, Key] | None = None
     for line in text.splitlines():
         line = re.sub(r"^! (?=(&|\s))", "", line)
         if match := re.match(r"&(\w+)", line):
             name = match[1]
+            earlier = groups.get(name)
+            groups[name] = {}
+        elif name and (match := re.match(r"\s+place = '(\w+)'$", line)):
+            del groups[name]
+            if earlier is not None:
+                groups[name] = earlier
+            name = f"{match[1]}.{name}"
             groups[name] = {}
         elif name and (match := re.match(r"\s+(\w+) = (.*?)\s+! (.*)$", line)):
             choices = re.match(r"one of ((?:\w+, )*\w+)", match[3])
