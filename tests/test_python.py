@@ -713,7 +713,8 @@ def texts_of_the_package() -> None:
     made = subprocess.run([sys.executable, str(TOP / "scripts/python/make_stubs.py")], check=True, capture_output=True, text=True)
     classes = {node.name: node for node in ast.parse(Path(made.stdout.strip()).read_text()).body if isinstance(node, ast.ClassDef)}
     for group in {key.group for key in gudgeon.keys.values()}:
-        declared = {node.target.id for node in classes[group.rpartition(".")[2].title().replace("_", "") + "Group"].body if isinstance(node, ast.AnnAssign)}
+        own, shared = (name.replace(".", "_").title().replace("_", "") + "Group" for name in (group, group.rpartition(".")[2]))
+        declared = {node.target.id for node in classes.get(own, classes.get(shared)).body if isinstance(node, ast.AnnAssign)}
         names = {key.name for key in gudgeon.keys.values() if key.group == group and not keyword.iskeyword(key.name)}
         check(names == declared, f"&{group} is declared for editors")
     done = subprocess.run([Path(sys.executable).with_name("basedpyright"), "-p", TOP / "scripts/python"], capture_output=True, text=True)

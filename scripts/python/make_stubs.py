@@ -47,12 +47,13 @@ def stubs() -> str:
     parts, attributes, places = [HEAD], [], {}
     for full, group in groups().items():
         place, _, name = full.rpartition(".")
-        kind = name.title().replace("_", "") + "Group"
+        own = bool(place) and name in groups() and {key.name for key in group.keys} != {key.name for key in groups()[name].keys}
+        kind = class_of(full if own else name)
         if place:
             places.setdefault(place, []).append(f"    {name}: {kind}")
         elif not hasattr(Case, name):  # `run` is a method
             attributes.append(f"    {name}: {kind}")
-        if place and name in groups():
+        if place and name in groups() and not own:
             continue
         parts.append(f'class {kind}(Group):\n    """{quoted(group.meaning)}"""')
         for key in (key for key in group.keys if not keyword.iskeyword(key.name)):  # case["initial.from"]
@@ -61,6 +62,11 @@ def stubs() -> str:
         parts.append(f"class {place.title().replace('_', '')}Place(Place):\n" + "\n".join(its))
         attributes.append(f"    {place}: {place.title().replace('_', '')}Place")
     return "\n".join([*parts, "class Groups:", *attributes, ""])
+
+
+def class_of(group: str) -> str:
+    """The name of the class of a group. That of a place has the place before it if its keys are others than those of the group alone."""
+    return group.replace(".", "_").title().replace("_", "") + "Group"
 
 
 def quoted(text: str) -> str:
