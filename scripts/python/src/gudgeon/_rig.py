@@ -86,7 +86,7 @@ def _decoded(raw: bytes) -> str:
 def _table(text: str, path: str) -> tuple[list[str], list[str], np.ndarray]:
     """Names, units and rows of the table of a text: pandas reads it with the separators that give the most rows of numbers."""
     lines = [line for line in text.split("\n") if line.strip()]
-    found: list[tuple[int, int, int, pd.DataFrame, str]] = []
+    found: list[tuple[int, int, int, np.ndarray, str]] = []
     for separator, decimal in ((";", ","), (";", "."), ("\t", ","), ("\t", "."), (",", "."), (r"\s+", ","), (r"\s+", ".")):
         fields = [len(re.split(separator, line.strip())) for line in lines]
         width = int(np.median(fields))
@@ -97,12 +97,12 @@ def _table(text: str, path: str) -> tuple[list[str], list[str], np.ndarray]:
             continue
         rows = pd.read_csv(io.StringIO("\n".join(lines[first:])), sep=separator, decimal=decimal, header=None, names=range(width), engine="python",
                            on_bad_lines="skip", skipinitialspace=True)  # fmt: skip
-        rows = rows.apply(pd.to_numeric, errors="coerce")
-        rows = rows[rows.notna().sum(axis=1) > 1]
-        found.append((len(rows) * width, width, first, rows, separator))
+        numbers = np.array([pd.to_numeric(rows[i], errors="coerce") for i in range(width)], dtype=float).T
+        numbers = numbers[np.isfinite(numbers).sum(axis=1) > 1]
+        found.append((len(numbers) * width, width, first, numbers, separator))
     if not found:
         raise RigFileError(f"{path}: no rows of at least two numbers are found; its first lines are\n" + "\n".join("  " + line[:100] for line in lines[:5]))
-    _, width, first, rows, separator = max(found, key=lambda one: one[:2])
+    _, width, first, numbers, separator = max(found, key=lambda one: one[:2])
     heads = [[field.strip().strip('"') for field in re.split(separator, line.strip())] for line in lines[:first]]
     heads = [head for head in heads if len(head) == width]
     names, units = [f"column {i}" for i in range(width)], [""] * width
@@ -115,7 +115,7 @@ def _table(text: str, path: str) -> tuple[list[str], list[str], np.ndarray]:
         inside = re.search(r"[\[(](.*?)[\])]", name)
         if inside and not units[i]:
             units[i], names[i] = inside[1].strip(), name[: inside.start()].strip()
-    return names, units, rows.to_numpy(float)
+    return names, units, numbers
 
 
 def _are_numbers(fields: list[str], decimal: str) -> bool:
