@@ -215,10 +215,10 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
 
     cycle = browser.run("return gudgeon.scene.cycle")
     axis = browser.run("const l = gudgeon.charts.find(c => c.timed).div.layout; return [l.xaxis.title.text, ...l.xaxis.range, l.xaxis.dtick || 0]")
-    if cycle:   # dead centres: once in half a revolution, the first and last ones at the ends
+    if cycle:   # a dead centre in each half of a revolution, and one more where the first and the last are at the ends
         checks.check(axis == ["crank angle [deg]", 0, cycle["degrees"], 90], f"{name}: opens on the last cycle, {axis}")
         lines = browser.wait("gudgeon.charts.find(c => c.timed).div.layout.shapes.filter(s => s.line && s.line.dash === 'dot').length >= "
-                             f"{cycle['degrees'] / 180 - 1}", 10)
+                             f"{cycle['degrees'] / 180}", 10)
         checks.check(lines, f"{name}: dead centres are marked")
     width = "gudgeon.charts.find(c => c.timed).div.querySelector('svg').clientWidth"
     shown = browser.run(f"return {width}")
