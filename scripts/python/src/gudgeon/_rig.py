@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-#: Units of pressures in Pa; of gauge pressures nothing is known here: the table is absolute.
+#: Units of pressures in Pa. Gauge pressures stay gauge pressures: `pressure_offset` of the case makes them absolute.
 PRESSURES = {"pa": 1.0, "hpa": 1e2, "mbar": 1e2, "kpa": 1e3, "bar": 1e5, "bara": 1e5, "mpa": 1e6, "psi": 6894.757293168361, "psia": 6894.757293168361}
 #: Units of crank angles in degrees.
 ANGLES = {"deg": 1.0, "degree": 1.0, "degrees": 1.0, "°": 1.0, "grad": 1.0, "°ca": 1.0, "ca": 1.0, "degca": 1.0, "cad": 1.0, "deg ca": 1.0, "°kw": 1.0, "kw": 1.0,
@@ -43,7 +43,7 @@ def read_pressure(
 
     With `average` the cycles of `period_deg` degrees (720, or 360 of a two-stroke or compressor) become their mean, at the angles
     of the samples; without it the first whole cycle is taken. The result has the columns crank_angle[deg], from 0 to the period, and
-    pressure[bar], absolute as in the file; `save` writes it as the table of `&cylinder_pressure`.
+    pressure[bar], absolute or gauge as in the file (a gauge pressure needs the `pressure_offset` of the case); `save` writes it as the table of `&cylinder_pressure`.
 
     Raises RigFileError for a file without rows of numbers, a column that is not there or not clear, a unit that is not known, an
     angle that does not increase, or less than one cycle.
@@ -54,14 +54,14 @@ def read_pressure(
     first = _column(names, units, angle, ANGLES, ANGLE_NAMES, "angle", str(path), shown)
     second = _column(names, units, pressure, PRESSURES, PRESSURE_NAMES, "pressure", str(path), shown, other=first)
     factor = ANGLES.get(_plain(units[first]), 1.0 if not units[first] else np.nan)
-    per_pa = PRESSURES.get(_plain(unit if unit is not None else units[second]), np.nan)
+    in_pa = PRESSURES.get(_plain(unit if unit is not None else units[second]), np.nan)
     if np.isnan(factor):
         raise RigFileError(f"{path}: the angle's unit '{units[first]}' is not known, but deg and rad are{shown}")
-    if np.isnan(per_pa):
+    if np.isnan(in_pa):
         raise RigFileError(f"{path}: the pressure's unit '{unit or units[second]}' is not known: give unit=, one of bar, mbar, kPa, MPa, Pa, hPa, psi{shown}")
     rows = values[:, [first, second]]
     rows = rows[np.isfinite(rows).all(axis=1)]
-    degrees, bar = _unrolled(rows[:, 0] * factor, period_deg), rows[:, 1] * per_pa / 1e5
+    degrees, bar = _unrolled(rows[:, 0] * factor, period_deg), rows[:, 1] * in_pa / 1e5
     if len(degrees) < 3 or not np.all(np.diff(degrees) > 0):
         at = 0 if len(degrees) < 3 else int(np.argmin(np.diff(degrees)))
         raise RigFileError(f"{path}: the angle does not increase at row {at + 1} of the numbers{shown}")
@@ -75,12 +75,14 @@ def read_pressure(
 
 
 def _decoded(raw: bytes) -> str:
-    for encoding in ("utf-8-sig", "utf-16") if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig", "cp1252"):
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        text = raw.decode("utf-16", "replace")
+    else:
         try:
-            return raw.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
+            text = raw.decode("utf-8-sig")
         except UnicodeError:
-            continue
-    return raw.decode("latin-1")
+            text = raw.decode("cp1252", "replace")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _table(text: str, path: str) -> tuple[list[str], list[str], np.ndarray]:

@@ -52,23 +52,16 @@ def read_template(text: str) -> dict[str, dict[str, Key]]:
     a place has it before its name, as in `--set`."""
     groups: dict[str, dict[str, Key]] = {}
     name = ""
-    earlier: dict[str, Key] | None = None
     for line in text.splitlines():
         line = re.sub(r"^! (?=(&|\s))", "", line)
         if match := re.match(r"&(\w+)", line):
             name = match[1]
-            earlier = groups.get(name)
-            groups[name] = {}
         elif name and (match := re.match(r"\s+place = '(\w+)'$", line)):
-            del groups[name]
-            if earlier is not None:
-                groups[name] = earlier
             name = f"{match[1]}.{name}"
-            groups[name] = {}
         elif name and (match := re.match(r"\s+(\w+) = (.*?)\s+! (.*)$", line)):
             choices = re.match(r"one of ((?:\w+, )*\w+)", match[3])
             names = choices[1].split(", ") if choices else []
-            groups[name][match[1]] = Key(match[2].strip("'"), tuple(word for word in names if word != "default"))
+            groups.setdefault(name, {})[match[1]] = Key(match[2].strip("'"), tuple(word for word in names if word != "default"))
     return groups
 
 
