@@ -32,7 +32,7 @@ module test_case_file
   character(len=*), parameter :: no_speeds = n//'x.nml: &friction v0: required with law = ''ambrosio'' (m/s)'//n// &
     'x.nml: &friction v1: required with law = ''ambrosio'' (m/s)'
   character(len=*), parameter :: at_rest = n//'x.nml: &output interval: required with crank_speed = 0 (s)'
-  character(len=*), parameter :: joint_keys = ' (allowed: kind, clearance, bearing_radius, bearing_length, load_share)'
+  character(len=*), parameter :: joint_keys = ' (allowed: kind, clearance, bearing_radius, bearing_length, numbers, load_share)'
 
 contains
 

@@ -371,8 +371,59 @@ def offset_chains(run: Runner) -> None:
             check(off < 1e-9, f"the mirror image of an offset axis: {column}", f"{off:.2g} with {gas[0]}")
 
 
+# bearings of a whole engine
+
+def bearings(run: Runner) -> None:
+    """Every main bearing and every big end: orbits, pressures, losses against another program; parts of the whole; one cylinder alone."""
+    reference = bare(pd.read_csv(DATA / "mains_inline_four.csv"))
+    wanted = reference.columns.drop(["time", "crank_angle"])
+    loads = [f"main_bearing_{b}_force_{axis}" for b in range(1, 6) for axis in "xy"]
+    rows, summary = run(DATA / "mains_inline_four.nml", f"output.columns={', '.join(['time', 'crank_angle', *wanted, *loads])}")
+    state = run.result(DATA / "mains_inline_four.nml", "state.nml")
+    rows = bare(rows)
+
+    def by_angle(table: pd.DataFrame) -> pd.DataFrame:
+        return table.assign(at=np.round(np.degrees(table["crank_angle"]), 6) % 720).drop_duplicates("at").set_index("at")
+
+    found, other = by_angle(rows), by_angle(reference)
+    check(len(other) == 176 and set(other.index) <= set(found.index), "mains_inline_four: every row of the reference is there", str(len(found)))
+    found = found.loc[other.index]
+    off = {column: (found[column] - other[column]).abs().max() / other[column].abs().max() for column in wanted}
+    worst = max(off, key=off.get)
+    check(off[worst] < 1e-6, "mains_inline_four: all columns are those of the reference", f"{worst}: {off[worst]:.2g}")
+    off = max((rows[f"main_bearing_{b}_film_force_{axis}"] - rows[f"main_bearing_{b}_force_{axis}"]).abs().max() for b in range(1, 6) for axis in "xy")
+    check(off < 1e-4, "the films of the main bearings carry the columns of their loads", f"{off:.2g} N")
+
+    table = pd.read_csv(DATA / "facts.csv").set_index(["case", "quantity"]).loc["mains_inline_four"]
+    for quantity, row in table.iterrows():
+        apart = float(summary[quantity.partition("[")[0]]) - row["value"]
+        if quantity.startswith("main_bearing_3") and "angle" in quantity:   # it repeats after one revolution
+            apart = (apart + 180) % 360 - 180
+        check(abs(apart) <= row["tolerance"], f"mains_inline_four: {quantity} is that of the reference", f"{apart:.3g} for {row['tolerance']:.3g}")
+    names = [f"main_bearing_{b}" for b in range(1, 6)] + [f"crank_pin_{i}" for i in range(1, 5)]
+    total = sum(float(summary[f"{name}_cycle_joint_fmep"]) for name in names)
+    check(abs(total / float(summary["cycle_one_way_fmep"]) - 1) < 1e-12, "the bearings' parts add up to their FMEP", f"{total!r}")
+    check(summary["cycle_thinnest_bearing"] == "crank_pin_1", "of four equal films the first is named", summary["cycle_thinnest_bearing"])
+
+    again = run(DATA / "mains_inline_four.nml", f"initial.from={state}", "run.until=end", "integrator.revolutions=2", "output.window=all", "initial.goes_on=F")[1]
+    off = max(abs(float(again[f"{name}_cycle_min_film_thickness"]) / float(summary[f"{name}_cycle_min_film_thickness"]) - 1) for name in names)
+    check(off < 1e-6, "all bearings go on from their state", f"{off:.2g}")
+    taken = run(DATA / "mains_inline_four.nml", "main_bearing.joint.numbers='2, 3'", "crank_pin.joint=none")[1]
+    for name in ("main_bearing_2_cycle_min_film_thickness", "main_bearing_3_cycle_mean_film_power"):
+        check(abs(float(taken[name]) / float(summary[name]) - 1) < 1e-6, f"two bearings alone: {name}", taken[name])
+    check("main_bearing_1_cycle_mean_film_power" not in taken and taken["cycle_thinnest_bearing"] == "main_bearing_3", "other numbers are not there")
+
+    one = (DATA / "mains_inline_four.nml").read_text()
+    one = "\n".join(line for line in one.splitlines() if not line.startswith(("&cylinder", "&joint place = 'crank", "&output"))) + "\n&output digits = 17 /\n"
+    half = run(one.replace("numbers = 'all'", "load_share = 0.5"))[1]
+    alone = run(one.replace("&combustion", "&cylinder /\n&combustion").replace("numbers = 'all'", "numbers = '1'"))[1]
+    for name in ("cycle_min_film_thickness", "cycle_mean_film_power", "cycle_max_film_pressure"):
+        check(alone[f"main_bearing_1_{name}"] == half[f"main_bearing_{name}"], f"a main bearing of one cylinder has half of its load: {name}", alone[f"main_bearing_1_{name}"])
+
+
 def refusals(run: Runner) -> None:
     six, dry, four = CASES / "six_mwm.nml", CASES / "four_dry.nml", CASES / "inline_four.nml"
+    mains = DATA / "mains_inline_four.nml"
     for case, changes, says in [
         (six, ["crankshaft.stiffness=1e6,2e6"], "must have 8 values or one, not 2"),
         (six, ["crankshaft.inertia=0.1"], "must have 2 to 16 values"),
@@ -398,6 +449,14 @@ def refusals(run: Runner) -> None:
         (six, ["cylinder_2.heat_scale=0"], "a compressor or a measured pressure has none"),
         (four, ["crankshaft.flywheel_inertia=1", "crankshaft.torsional_stiffness=1e5"], "needs one cylinder"),
         (engine("&cylinder /\n" * 17), [], "at most 16 of these groups"),
+        (mains, ["main_bearing.joint.numbers=7"], "numbers = 7: must be all or numbers from 1 to 5: the shaft has 4 throws"),
+        (mains, ["main_bearing.joint.numbers='2, x'"], "must be all or numbers from 1 to 5"),
+        (mains, ["main_bearing.joint.numbers='2, 3, 2'"], "must not have the same number twice"),
+        (mains, ["crank_pin.joint.numbers='0, 1'"], "must be all or numbers from 1 to 4: there are 4 cylinders"),
+        (mains, ["main_bearing.joint.load_share=0.5"], "must be 1 with further cylinders: the throws of the shaft give the load"),
+        (mains, ["crank_pin.joint.kind=clearance"], "only the full cylinder has joints with clearance"),
+        (mains, ["cylinder=none", "main_bearing.joint=none"], "needs the groups cylinder: there is one cylinder alone"),
+        (four, ["joint.numbers=all"], "is for place = 'main_bearing' or 'crank_pin' alone"),
         (SMALL, ["mechanism.axis_offset=0.07"], "axis_offset = 0.07: must be shorter than rod_length - crank_length, less clearances, = 0.0615: the crank could not turn"),
         (SMALL, ["mechanism.axis_offset=-0.062"], "axis_offset = -0.062: must be shorter than"),
         (SMALL, [*LOOSE, "guide=none", "mechanism.axis_offset=0.06149"], "less clearances, = 0.06148"),
@@ -474,7 +533,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         run = Runner(options.program or str(release_program()), Path(folder))
         for part in (references, facts, programs_of_others, another_cylinder, equalities, limits, energies, offset_linkage, offset_of_the_pin,
-                     offset_chains, misfire, refusals, resumes):
+                     offset_chains, bearings, misfire, refusals, resumes):
             part(run)
     return assertions.report()
 

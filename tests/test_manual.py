@@ -373,7 +373,7 @@ def names_of_engine(name: str) -> list[str]:
 def is_described(name: str, unit: str, known: set[tuple[str, str]]) -> bool:
     """Whether the reference has a column or quantity: by its name, without the prefix of a joint, or with capitals in place of a
     number or word."""
-    whole, name = name, re.sub(r"^(crank_pin_|small_end_|main_bearing_(?!force)|guide_\d_(?!gap|force|friction))", "", name)
+    whole, name = name, re.sub(r"^(crank_pin_(\d+_)?|small_end_|main_bearing_(\d+_)?(?!\d*_?force)|guide_\d_(?!gap|force|friction))", "", name)
     names = [whole, name, f"crank_pin_{name}", re.sub(r"^(rod_mode|rod_axial)_\d$", r"\1_2", name), re.sub(r"^steps_limited_by_\w+$", "steps_limited_by_NAME", name),
              re.sub(r"^(steps_of)_(order_)?\d+", r"\1_\2N", name), *names_of_engine(name),
              re.sub(r"^note_\d+$", "note_N", name), re.sub(r"(?<![a-z])ring_\d_", "ring_1_", name),

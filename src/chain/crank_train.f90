@@ -13,7 +13,7 @@ module crank_train
   use state_layout, only: layout_t, coordinates_t, slice_t
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, turn_crank
-  use train_motion, only: most_stations
+  use train_motion, only: most_stations, most_cylinders
   use chain_bodies, only: bodies_t, drive_t
   use varying_drive, only: varying_drive_t
   use ideal_cylinders, only: ideal_cylinder_t, small_sine_cosine
@@ -41,6 +41,7 @@ module crank_train
     real(dp) :: full_axial_position = 0          !! [m]
     real(dp) :: axis_offset = 0                  !! of all cylinder axes, each along its own y [m]
     integer :: n_throws = 1
+    integer :: throw_station(most_cylinders) = 1 !! station of each throw
     real(dp) :: inertia(most_stations) = 0       !! J_j [kg m^2]
     real(dp) :: stiffness(most_stations) = 0     !! k_j [N m/rad]
     real(dp) :: damping(most_stations) = 0       !! c_j [N m s/rad]
@@ -63,6 +64,7 @@ module crank_train
     procedure, non_overridable :: set_rates
     procedure, non_overridable :: segment_torque
     procedure, non_overridable :: ring_torque
+    procedure, non_overridable :: find_journal
     procedure :: energy
     procedure, non_overridable :: frees_crank
     procedure :: add_slopes
@@ -307,6 +309,19 @@ contains
       if (.not. ring%is_viscous) torque = torque + ring%stiffness*train%ring_twist(i)
     end associate
   end function ring_torque
+
+  !> Turn of the shaft beyond the crank angle [rad] and its speed [rad/s] at main bearing b: means of those of the stations of the
+  !> throws b - 1 and b, at an end of the shaft those of the one there.
+  pure subroutine find_journal(self, motion, b, twist, speed)
+    class(crank_train_t), intent(in) :: self
+    type(motion_t), intent(in) :: motion
+    integer, intent(in) :: b
+    real(dp), intent(out) :: twist, speed
+    associate (beside => self%throw_station([max(1, b - 1), min(self%n_throws, b)]))
+      twist = 0.5_dp*sum(motion%train%twist(beside))
+      speed = 0.5_dp*sum(motion%train%speed(beside))
+    end associate
+  end subroutine find_journal
 
   !> Kinetic energy of stations and rings, elastic energy of segments and rings, and the energy of the cylinders [J].
   pure real(dp) function energy(self, motion)

@@ -48,6 +48,8 @@ module ideal_cylinders
     type(reactions_t) :: reactions
     real(dp) :: piston_position = 0      !! [m]
     real(dp) :: torque = 0               !! of the rod on the crank [N m]
+    real(dp) :: rod(2) = 0               !! cosine and sine of the angle A of the rod
+    real(dp) :: rod_speed = 0            !! A' [rad/s]
   end type cylinder_forces_t
 
 contains
@@ -125,6 +127,8 @@ contains
     accelerations%pin(:, crank_pin) = 0
     found%reactions = reactions_of(self%bodies, loads, motion, accelerations)
     found%piston_position = motion%piston_position
+    found%rod = [motion%cos_rod, motion%sin_rod]
+    found%rod_speed = motion%rod_speed
     found%torque = self%bodies%crank%length*(found%reactions%crankpin(1)*motion%sin_crank &
       - found%reactions%crankpin(2)*motion%cos_crank)
   end function forces

@@ -1,10 +1,15 @@
 !> The places of joints in the chain. A joint at a further place is a line in `places`.
+!>
+!> Of several cylinders on one crankshaft there are many main bearings and big ends. A spot is one bearing: a place itself, or one
+!> of its numbered bearings, the main bearings along the shaft or the big ends of the cylinders.
 module joint_places
   use kinds, only: dp
   use chain_motion, only: crank_pin, piston_pin, small_end, body_crank, body_big_end, body_small_end, body_piston, body_frame
+  use train_motion, only: most_cylinders
   implicit none
   private
   public :: place_t, places, n_places, in_order, name_prefix, pin_title, joint_group, crank_pin, piston_pin, small_end, main_bearing
+  public :: n_spots, spot_of, place_of, number_of, spot_prefix, spot_name
 
   !> One place: its names, and how its joint enters the chain. The eccentricity of the pin in its bearing is that of the chain
   !> at this pin, the joint's force on its pin acts on the body nearer to the crank, and the opposite force on the other; the other
@@ -28,21 +33,67 @@ module joint_places
 
   integer, parameter :: in_order(n_places) = [piston_pin, small_end, crank_pin, main_bearing]   !! order in cases and results
 
+  integer, parameter :: most_mains = most_cylinders + 1
+  integer, parameter :: n_spots = n_places + most_mains + most_cylinders   !! the places, main bearings, big ends
+  character(len=2), parameter :: digits(most_mains) = [character(len=2) :: '1', '2', '3', '4', '5', '6', '7', '8', '9', '10', &
+    '11', '12', '13', '14', '15', '16', '17']
+
 contains
 
-  !> Prefix of the names of a place's quantities.
-  pure function name_prefix(place) result(prefix)
-    integer, intent(in) :: place   !! index in `places`
+  !> The spot of a bearing at a place; number 0: that of the place itself.
+  pure integer function spot_of(place, number) result(spot)
+    integer, intent(in) :: place    !! index in `places`; with a number a main bearing or a crank pin
+    integer, intent(in) :: number   !! main bearing along the shaft, or cylinder
+    spot = place
+    if (number > 0) spot = n_places + number
+    if (number > 0 .and. place == crank_pin) spot = spot + most_mains
+  end function spot_of
+
+  !> The place of a spot.
+  elemental integer function place_of(spot) result(place)
+    integer, intent(in) :: spot
+    place = spot
+    if (spot > n_places) place = main_bearing
+    if (spot > n_places + most_mains) place = crank_pin
+  end function place_of
+
+  !> The number of the bearing of a spot; 0: it is a place itself.
+  elemental integer function number_of(spot) result(number)
+    integer, intent(in) :: spot
+    number = max(0, spot - n_places)
+    if (number > most_mains) number = number - most_mains
+  end function number_of
+
+  !> Prefix of the names of a spot's quantities: main_bearing_3_. Of one length, so that threads may call it at once.
+  pure function spot_prefix(spot) result(prefix)
+    integer, intent(in) :: spot
+    character(len=16) :: prefix
+    prefix = places(place_of(spot))%prefix
+    if (spot > n_places) prefix = trim(prefix)//trim(digits(number_of(spot)))//'_'
+  end function spot_prefix
+
+  !> The same without blanks behind it.
+  pure function name_prefix(spot) result(prefix)
+    integer, intent(in) :: spot
     character(len=:), allocatable :: prefix
-    prefix = trim(places(place)%prefix)
+    prefix = trim(spot_prefix(spot))
   end function name_prefix
 
-  !> The pin of a place, in texts.
-  pure function pin_title(place) result(title)
-    integer, intent(in) :: place   !! index in `places`
+  !> Name of a spot in results: main_bearing_3.
+  pure function spot_name(spot) result(name)
+    integer, intent(in) :: spot
+    character(len=:), allocatable :: name
+    name = trim(places(place_of(spot))%name)
+    if (spot > n_places) name = name//'_'//trim(digits(number_of(spot)))
+  end function spot_name
+
+  !> The pin of a spot, in texts.
+  pure function pin_title(spot) result(title)
+    integer, intent(in) :: spot
     character(len=:), allocatable :: title
-    title = trim(places(place)%title)
-    if (place == small_end) title = 'piston pin in the small end'
+    title = trim(places(place_of(spot))%title)
+    if (spot == small_end) title = 'piston pin in the small end'
+    if (spot > n_places) title = title//' '//trim(digits(number_of(spot)))
   end function pin_title
 
   !> Name of the group of a place's joint in cases.

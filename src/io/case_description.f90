@@ -5,7 +5,7 @@ module case_description
   use ideal_linkage, only: linkage_t
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
-  use joint_places, only: places, n_places, in_order
+  use joint_places, only: places, n_places, in_order, crank_pin, number_of
   use scene_builder, only: simulated_time, sample_interval
   use train_case, only: order_cylinders
   use gas_law, only: gas_law_t
@@ -47,7 +47,7 @@ contains
           if (i == 1) call add('bearing', joint_text(case%joints(place)))
           if (i == 1) call add('note', advice(case%joints(place)))
         else if (i == 1 .or. case%joints(place)%has_bearing()) then
-          call add(trim(places(place)%title), joint_text(case%joints(place)))
+          call add(trim(places(place)%title), numbers_text(case, place)//joint_text(case%joints(place)))
           call add('note', advice(case%joints(place)))
         end if
       end associate
@@ -159,6 +159,25 @@ contains
     character(len=:), allocatable :: text
     text = short_text(30*speed/pi, digits)//' rpm'
   end function rpm_text
+
+  !> How many bearings a group of numbered ones stands for; empty: one without number.
+  function numbers_text(case, place) result(text)
+    type(case_t), intent(in) :: case
+    integer, intent(in) :: place   !! index in `places`
+    character(len=:), allocatable :: text
+    integer, allocatable :: spots(:)
+    integer :: i
+    text = ''
+    if (.not. case%has_numbers(place)) return
+    spots = case%spots(place)
+    text = 'bearings'
+    if (place == crank_pin) text = 'cylinders'
+    do i = 1, size(spots)
+      if (i > 1) text = text//','
+      text = text//' '//integer_text(number_of(spots(i)))
+    end do
+    text = text//': '
+  end function numbers_text
 
   !> Clearance and models of a joint.
   function joint_text(joint) result(text)

@@ -6,7 +6,7 @@ module case_notes
   use ideal_linkage, only: linkage_t
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
-  use joint_places, only: places, n_places, in_order, name_prefix, joint_group
+  use joint_places, only: places, n_places, in_order, name_prefix, joint_group, crank_pin
   use chain_motion, only: body_piston
   use case_schema, only: find_group, shown_group
   use case_values, only: case_values_t
@@ -296,6 +296,9 @@ contains
       type(joint_case_t), intent(in) :: joint
       integer, intent(in) :: place   !! index in `places`
       if (.not. joint%has_bearing()) return
+      if (joint%is_carried() .and. place == crank_pin .and. c%n_bearings(place) > 1 .and. .not. c%has_numbers(place)) &
+        call remark(joint_group(place), 'kind', 'computes the big end of one cylinder alone: numbers = ''all'' computes those '// &
+        'of the other cylinders', '')
       if (joint%is_too_short_for_its_film() .and. .not. is_given(values%law_group('lubrication', place), 'law')) &
         call remark(joint_group(place), 'bearing_length', 'is less than two diameters, and the film by default that of a '// &
         'long bearing, which is too thick here: &lubrication law = ''finite_bearing''', joint_group(place)//'.bearing_radius')

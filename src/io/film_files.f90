@@ -11,7 +11,7 @@ module film_files
   use error_handling, only: error_t, fail, status_integration, status_case_file
   use bearing_size, only: bearing_t
   use checksums, only: checksum_t, checksum_of, checksum_length
-  use joint_places, only: places, n_places, in_order
+  use joint_places, only: places, n_places, in_order, spot_name
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use film_snapshots, only: film_field_t
@@ -293,7 +293,7 @@ contains
       do j = 1, size(fields(i)%angle)
         do k = 1, size(fields(i)%along)
           associate (field => fields(i))
-            call file%append(real_text(field%time)//','//real_text(field%crank_angle)//','//trim(places(field%place)%name)//',')
+            call file%append(real_text(field%time)//','//real_text(field%crank_angle)//','//spot_name(field%place)//',')
             call file%append(real_text(field%angle(j) + field%direction)//',')
             call file%append(real_text(field%clearance - field%distance*cos(field%angle(j)))//',')
             call file%append(real_text(field%along(k))//','//real_text(field%pressure(j, k))//achar(10))

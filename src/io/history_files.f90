@@ -11,7 +11,7 @@ module history_files
   use film_results, only: film_field_t
   use growing_text, only: growing_text_t
   use history_record, only: history_record_t
-  use joint_places, only: places, name_prefix
+  use joint_places, only: name_prefix, spot_name
   use number_text, only: real_text
   use result_file, only: write_text
   use result_table, only: result_table_t
@@ -62,7 +62,7 @@ contains
     call fields%append('time[s],crank_angle[rad],joint,'//field_columns//newline)
     do i = 1, size(histories)
       path = base
-      if (size(histories) > 1) path = base//'.'//trim(places(histories(i)%place)%name)
+      if (size(histories) > 1) path = base//'.'//spot_name(histories(i)%spot)
       associate (of => histories(i))
         if (.not. allocated(of%history%rows)) cycle
         call write_rows(path, of%history, case%output%digits, error, of)
@@ -71,7 +71,7 @@ contains
         do k = 1, size(of%history%fields)
           associate (field => of%history%fields(k))
             call append_field(fields, field, real_text(field%time, case%output%digits)//','//real_text(of%angle( &
-              minloc(abs(of%duty%time(2:) - field%time), 1)), case%output%digits)//','//trim(places(of%place)%name), &
+              minloc(abs(of%duty%time(2:) - field%time), 1)), case%output%digits)//','//spot_name(of%spot), &
               case%output%digits)
           end associate
         end do
@@ -163,7 +163,7 @@ contains
     integer :: i, k
     do i = 1, size(histories)
       if (.not. allocated(histories(i)%history%rows)) cycle
-      prefix = name_prefix(histories(i)%place)
+      prefix = name_prefix(histories(i)%spot)
       associate (record => histories(i))
         call add_history(table, record%history, record%duty, prefix)
         if (size(record%history%rows) == 0) cycle

@@ -3,7 +3,10 @@ module joint_rules
   use kinds, only: dp
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
-  use joint_places, only: places, n_places, in_order, joint_group, main_bearing
+  use joint_places, only: places, n_places, in_order, joint_group, main_bearing, crank_pin
+  use train_case, only: most_cylinders
+  use value_reader, only: read_numbers
+  use text_tools, only: integer_text
   use chain_motion, only: n_bodies, body_crank, body_big_end, body_small_end, body_piston, body_frame
   use archard_wear, only: of_bore
   use friction_law, only: friction_law_t
@@ -47,6 +50,7 @@ contains
       'must be ideal or quasi_static: the crank turns about a fixed axis')
     call values%forbid(place /= main_bearing .and. abs(joint%load_share - 1) > 0, group, 'load_share', &
       'is for place = ''main_bearing'' alone')
+    call check_numbers(c, joint, place, group, values)
     if (.not. joint%has_bearing()) then
       call values%forbid(has_own_law(place, values) .or. place == in_order(1) .and. (allocated(joint%contact) .or. &
         allocated(joint%friction) .or. allocated(joint%film) .or. allocated(joint%asperities) .or. allocated(joint%wear) .or. &
@@ -88,6 +92,38 @@ contains
     call check_elastic_film(joint, film, values%law_group('contact', place), values)
   end subroutine check_joint
 
+  !> Check the numbers of the bearings of several cylinders.
+  subroutine check_numbers(c, joint, place, group, values)
+    type(case_t), intent(in) :: c
+    type(joint_case_t), intent(in) :: joint
+    integer, intent(in) :: place              !! index in `places`
+    character(len=*), intent(in) :: group     !! of the joint
+    type(case_values_t), intent(inout) :: values
+    real(dp) :: found(most_cylinders + 1)
+    character(len=:), allocatable :: why
+    integer :: n, most, i
+    logical :: is_right
+    if (c%has_numbers(place)) call values%forbid(abs(joint%load_share - 1) > 0, group, 'load_share', &
+      'must be 1 with further cylinders: the throws of the shaft give the load')
+    if (joint%numbers == '') return
+    call values%forbid(all(place /= [main_bearing, crank_pin]), group, 'numbers', &
+      'is for place = ''main_bearing'' or ''crank_pin'' alone')
+    if (all(place /= [main_bearing, crank_pin])) return
+    call values%forbid(.not. joint%is_carried(), group, 'numbers', &
+      'needs kind = ''quasi_static'': only the full cylinder has joints with clearance')
+    call values%forbid(.not. allocated(c%cylinders), group, 'numbers', 'needs the groups cylinder: there is one cylinder alone')
+    if (values%problems%concerns(group) .or. joint%numbers == 'all') return
+    most = c%n_bearings(place)
+    call read_numbers(joint%numbers, ',', found, n, is_right)
+    if (is_right) is_right = all(found(:n) > 0.5_dp) .and. all(found(:n) < most + 0.5_dp)
+    if (is_right) is_right = all([(joint%wants_number(nint(found(i))), i=1, n)])
+    why = ': there are '//integer_text(most)//' cylinders'
+    if (place == main_bearing) why = ': the shaft has '//integer_text(most - 1)//' throws'
+    call values%forbid(.not. is_right, group, 'numbers', 'must be all or numbers from 1 to '//integer_text(most)//why)
+    if (is_right) call values%forbid(any([(any(nint(found(:i - 1)) == nint(found(i))), i=1, n)]), group, 'numbers', &
+      'must not have the same number twice')
+  end subroutine check_numbers
+
   !> Check that a joint that is ideal by default has no values of a bearing.
   subroutine check_ideal(group, values)
     character(len=*), intent(in) :: group   !! of the joint
@@ -119,8 +155,6 @@ contains
       'quasi_static needs the group lubrication: a film carries the load')
     call values%forbid(allocated(joint%friction), values%law_group('friction', place), 'law', &
       'is not for kind = ''quasi_static'': no contact law acts there; give the group the place of another joint')
-    call values%forbid(place == main_bearing .and. allocated(c%cylinders), joint_group(place), 'kind', &
-      'must be ideal with further cylinders: the load of a single bearing of the crankshaft is not known')
     if (.not. allocated(joint%film)) return
     call values%forbid(allocated(joint%contact) .and. .not. joint%elastic%is_wanted, values%law_group('contact', place), 'law', &
       'is not for kind = ''quasi_static'' unless elastic_film = .true.: the film carries all of the load')

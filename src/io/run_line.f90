@@ -6,7 +6,7 @@ module run_line
   use simulation, only: run_report_t
   use run_figures, only: pin_figures_t, floating_figures_t
   use period_watch, only: period_watch_t
-  use joint_places, only: places, n_places, in_order, name_prefix
+  use joint_places, only: places, n_places, in_order, name_prefix, pin_title, place_of
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use result_notes, only: notes_on_results, relative_residual
@@ -38,13 +38,14 @@ contains
       if (report%periods%is_on .and. report%status == 'done') text = text//', '//period_text(report%periods)
       do i = 1, n_places
         associate (place => in_order(i))
-          if (i > 1 .and. .not. case%joints(place)%has_bearing()) cycle
+          if (i > 1 .and. .not. case%joints(place)%has_bearing() .or. case%has_numbers(place)) cycle
           text = text//'; '
           if (i > 1) text = text//trim(places(place)%title)//': '
           text = text//pin_text(case%joints(place), f%pin(place), case%integrator%relative_tolerance, report, place)
           if (.not. report%periods%is_on .and. is_driven(case)) text = text//settling_text(case%joints(place), f%pin(place))
         end associate
       end do
+      text = text//bearings_text(case, report)
       if (f%floating%is_present) text = text//'; '//turn_text(f%floating)
       if (case%has_loose_guide()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
         ' contacts, force up to '//quantity_text(maxval(f%corner%max_force), 'N')
@@ -60,6 +61,37 @@ contains
     if (notes /= '') text = text//newline//'  note: '//replaced(notes, newline, newline//'  note: ')
   end function lines_for_user
 
+  !> Text about numbered bearings: the thinnest film of the last cycle, or of a run without one, and the losses; empty: there are
+  !> none.
+  function bearings_text(case, report) result(text)
+    type(case_t), intent(in) :: case
+    type(run_report_t), intent(in) :: report
+    character(len=:), allocatable :: text
+    integer, allocatable :: spots(:)
+    real(dp) :: thickness, thinnest, power
+    logical :: is_known
+    integer :: i, k, at
+    real(dp), parameter :: same = 1e-4_dp   ! difference of films of equal bearings
+    text = ''
+    at = 0
+    thinnest = huge(thinnest)
+    do i = 1, n_places
+      if (.not. case%has_numbers(in_order(i))) cycle
+      spots = case%spots(in_order(i))
+      do k = 1, size(spots)
+        call report%value_of(name_prefix(spots(k))//'cycle_min_film_thickness', thickness, is_known)
+        if (.not. is_known) thickness = report%figures%pin(spots(k))%min_film_thickness
+        if (thickness >= (1 - same)*thinnest) cycle
+        thinnest = thickness
+        at = spots(k)
+      end do
+    end do
+    if (at == 0) return
+    text = '; thinnest film '//quantity_text(thinnest, 'm')//' at '//pin_title(at)
+    call report%value_of('cycle_bearings_power', power, is_known)
+    if (is_known) text = text//', bearings '//quantity_text(power, 'W')
+  end function bearings_text
+
   !> Text about the turn of a floating pin.
   function turn_text(pin) result(text)
     type(floating_figures_t), intent(in) :: pin
@@ -72,14 +104,16 @@ contains
   !> Text about the films with memory, each beside the film of the run.
   function histories_text(histories) result(text)
     type(history_record_t), intent(in) :: histories(:)
-    character(len=:), allocatable :: text
+    character(len=:), allocatable :: text, title
     integer :: i
     text = ''
     do i = 1, size(histories)
       associate (found => histories(i)%history)
         if (.not. allocated(found%rows)) cycle
         if (size(found%rows) == 0) cycle
-        text = text//'; film with memory at the '//trim(places(histories(i)%place)%title)//': thinnest '// &
+        title = trim(places(place_of(histories(i)%spot))%title)
+        if (histories(i)%spot > n_places) title = pin_title(histories(i)%spot)
+        text = text//'; film with memory at the '//title//': thinnest '// &
           quantity_text(found%summary%min_thickness, 'm')//' ('//quantity_text(minval(histories(i)%quick_thickness), 'm')// &
           ' in the run), pressure up to '//quantity_text(found%summary%max_pressure, 'Pa')
       end associate

@@ -39,7 +39,8 @@ contains
     character(len=:), allocatable :: text
     type(result_table_t) :: table
     character(len=5), parameter :: method_names(2) = ['adams', 'radau']
-    integer :: order, limit, mode, method, corner, i
+    integer, allocatable :: spots(:)
+    integer :: order, limit, mode, method, corner, i, k
 
     table%digits = case%output%digits
     call table%clear()
@@ -104,7 +105,10 @@ contains
       call add_notes()
       do i = 1, n_places
         if (.not. case%joints(in_order(i))%has_bearing()) cycle
-        call add_joint(name_prefix(in_order(i)), case%joints(in_order(i)), f%pin(in_order(i)))
+        spots = case%spots(in_order(i))
+        do k = 1, size(spots)
+          call add_joint(name_prefix(spots(k)), case%joints(in_order(i)), f%pin(spots(k)))
+        end do
       end do
       if (case%has_loose_guide()) then
         do corner = 1, n_corners
@@ -288,7 +292,8 @@ contains
     subroutine add_answers(answers)
       type(answer_t), intent(in) :: answers(:)
       character(len=:), allocatable :: name
-      integer :: i, k
+      integer, allocatable :: spots(:)
+      integer :: i, k, j
       do i = 1, size(answers)
         associate (it => answers(i))
           name = trim(cycle_quantities(it%quantity)%name)
@@ -303,7 +308,10 @@ contains
           end if
           if (name /= 'cycle_is_settled') cycle
           do k = 1, n_places
-            call add_kept(name_prefix(in_order(k)), in_cycle=.true.)
+            spots = case%spots(in_order(k))
+            do j = 1, size(spots)
+              call add_kept(name_prefix(spots(j)), in_cycle=.true.)
+            end do
           end do
           do k = 1, n_corners
             call add_kept(corner_names(k)//'_', in_cycle=.true.)

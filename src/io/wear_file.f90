@@ -2,7 +2,7 @@
 module wear_file
   use kinds, only: dp
   use error_handling, only: error_t
-  use joint_places, only: places
+  use joint_places, only: spot_name
   use archard_wear, only: of_pin, of_bore
   use wear_record, only: wear_profile_t
   use growing_text, only: growing_text_t
@@ -27,7 +27,7 @@ contains
     do i = 1, size(worn)
       associate (depth => worn(i)%depth, volume => worn(i)%volume)
         do j = 1, size(depth, 1)
-          call file%append(trim(places(worn(i)%place)%name)//','//real_text((j - 0.5_dp)*360/size(depth, 1)))
+          call file%append(spot_name(worn(i)%place)//','//real_text((j - 0.5_dp)*360/size(depth, 1)))
           do k = of_pin, of_bore
             call file%append(','//real_text(depth(j, k), digits))
           end do

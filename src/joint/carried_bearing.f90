@@ -57,11 +57,11 @@ contains
     real(dp), intent(inout) :: y(:)
     character(len=:), allocatable :: pre
     real(dp) :: clearance
-    pre = name_prefix(joint%place)
+    pre = name_prefix(joint%spot)
     clearance = joint%bearing%clearance
     call list%add(pre//'clearance', clearance, 'm', 'clearance of this position')
     call list%add(pre//'carried_eccentricity', y(self%place%first:self%place%last), 'm', &
-      'centre of the '//pin_title(joint%place)//' from the centre of its bearing, where a film carries it (x, y)')
+      'centre of the '//pin_title(joint%spot)//' from the centre of its bearing, where a film carries it (x, y)')
     if (allocated(joint%heat)) call joint%heat%declare(pre, list, y)
     if (list%sets .and. abs(clearance - joint%bearing%clearance) > 0) &
       y(self%place%first:self%place%last) = y(self%place%first:self%place%last)*(joint%bearing%clearance/clearance)

@@ -9,7 +9,7 @@ module clearance_joint
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, angular_acceleration, small_end, body_crank, body_big_end, body_small_end, &
     body_piston, body_pin, body_frame, n_bodies
-  use joint_places, only: place_t, places, piston_pin, name_prefix, pin_title
+  use joint_places, only: place_t, places, piston_pin, name_prefix, pin_title, n_spots
   use chain_bodies, only: bodies_t
   use ideal_chain, only: ideal_rod
   use chain_loads, only: loads_t, bearing_moment
@@ -26,7 +26,7 @@ module clearance_joint
   public :: phase_free, phase_film, phase_contact, n_phases, contact_changes
 
   integer, parameter :: most_joints = 3     !! with clearance
-  integer, parameter :: most_bearings = 4   !! with those whose pins are ideal in the mechanism
+  integer, parameter :: most_bearings = n_spots   !! with those whose pins are ideal in the mechanism
   integer, parameter :: most_elements = 2                                       !! of a joint
   integer, parameter :: most_joint_states = most_elements*most_element_states + 1   !! of all its elements, and a temperature
   integer, parameter :: n_joint_slopes = n_motions + most_joint_states          !! columns of its slopes
@@ -46,6 +46,7 @@ module clearance_joint
   type :: clearance_joint_t
     integer :: place = piston_pin           !! index in `places`
     type(place_t) :: site = places(piston_pin)   !! that place
+    integer :: spot = piston_pin            !! the bearing there: see `joint_places`
     logical :: bearing_turns = .false.      !! false for a bearing in a piston that does not tilt
     type(bearing_t) :: bearing
     real(dp) :: pin_radius = 0              !! of the pin [m]
@@ -127,6 +128,7 @@ contains
     integer, intent(in) :: place   !! index in `places`
     self%place = place
     self%site = places(place)
+    self%spot = place
     self%bearing_turns = all(self%site%bearing /= [body_piston, body_frame])
   end subroutine set_place
 

@@ -4,6 +4,7 @@
 !> to be compiled again.
 module joint_case
   use kinds, only: dp
+  use text_tools, only: integer_text
   use model_parameters, only: has_parameters_t, parameter_list_t, law_t
   use bearing_size, only: bearing_t
   use contact_law, only: contact_law_t
@@ -31,6 +32,7 @@ module joint_case
   type, extends(has_parameters_t) :: joint_case_t
     character(len=:), allocatable :: kind
     real(dp) :: clearance = 0, bearing_radius = 0, bearing_length = 0
+    character(len=:), allocatable :: numbers   !! of the bearings of several cylinders: 'all', or with commas; empty: none
     real(dp) :: load_share = 1             !! of the load of the place, carried by a bearing of kind quasi_static
     class(contact_law_t), allocatable :: contact
     class(friction_law_t), allocatable :: friction
@@ -51,6 +53,7 @@ module joint_case
     procedure :: is_carried
     procedure :: has_bearing
     procedure :: can_touch
+    procedure :: wants_number
     procedure :: has_elastic_film
     procedure :: has_weighted_film
     procedure :: has_worn_bore
@@ -78,6 +81,21 @@ contains
     class(joint_case_t), intent(in) :: self
     can_touch = allocated(self%contact) .and. .not. self%has_elastic_film()
   end function can_touch
+
+  !> Whether the bearing of a number is wanted: all are, unless numbers are given.
+  pure logical function wants_number(self, number)
+    class(joint_case_t), intent(in) :: self
+    integer, intent(in) :: number
+    character(len=:), allocatable :: list
+    integer :: i
+    wants_number = self%numbers == '' .or. self%numbers == 'all'
+    if (wants_number) return
+    list = ','
+    do i = 1, len(self%numbers)
+      if (self%numbers(i:i) /= ' ') list = list//self%numbers(i:i)
+    end do
+    wants_number = index(list//',', ','//integer_text(number)//',') > 0
+  end function wants_number
 
   !> Whether the joint has a film between elastic walls.
   elemental logical function has_elastic_film(self)
@@ -166,6 +184,8 @@ contains
     call list%add('bearing_length', self%bearing_length, &
       'width of the bearing; needed with a film and with contact geometries other than hertz_sphere', &
       'm', '> 0', default='0.0', example='0.015', usual='5e-4 to 1')
+    call list%text('numbers', self%numbers, 'with &cylinder and quasi_static: which main bearings along the shaft (default: '// &
+      'all), or the big ends of which cylinders (default: that of the full one alone): ''all'', or numbers with commas', '')
     call list%add('load_share', self%load_share, &
       'part of the load that this bearing carries, of main_bearing alone: 0.5 for two equal main bearings', &
       range='> 0 and <= 1', default='1.0', usual='0.05 to 1')

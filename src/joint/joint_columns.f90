@@ -3,8 +3,7 @@ module joint_columns
   use kinds, only: dp
   use trace_row, only: trace_row_t, least, largest, mean, changes, reversed, reversed_angle, impacts, of_run, of_cycle
   use chain_loads, only: force_size
-  use chain_motion, only: motion_t
-  use joint_places, only: places, piston_pin
+  use joint_places, only: places, piston_pin, n_places, spot_prefix, place_of
   use joint_evaluation, only: joint_evaluation_t
   use clearance_joint, only: clearance_joint_t
   use joint_events, only: may_touch
@@ -20,8 +19,9 @@ contains
     type(clearance_joint_t), intent(in) :: joint
     type(joint_evaluation_t), intent(in) :: now
     type(trace_row_t), intent(inout) :: row
-    integer :: k
-    row%place = places(joint%place)%prefix
+    integer :: first, gap, k
+    row%place = spot_prefix(joint%spot)
+    first = row%n + 1
     call row%add('eccentricity_x[m]', now%eccentricity(1), 'centre of the pin from the centre of its bearing, along x')
     call row%add('eccentricity_y[m]', now%eccentricity(2), 'the same along y')
     if (joint%place == piston_pin) then   ! whose trace has them on request alone
@@ -36,6 +36,7 @@ contains
     if (joint%has_own_gap) call row%keep('max_eccentricity_ratio', largest, 'largest eccentricity over the clearance')
     call row%add('film_thickness[m]', -now%penetration, &
       'smallest gap between pin and bearing; negative where the pin penetrates')
+    gap = row%n
     call row%keep('min_film_thickness', least, 'smallest film thickness; negative: deepest penetration', &
       rate=-now%penetration_rate, is_of_contact=.true., has_angle=.true.)
     call row%add_on_request('closing_speed[m/s]', now%penetration_rate, 'speed at which this gap closes')
@@ -57,6 +58,7 @@ contains
       'dynamic viscosity of the film at its temperature and rate of shear')
     if (allocated(joint%wear)) call add_wear(joint, now, row)
     row%place = ''
+    if (joint%spot > n_places .and. row%is_naming) row%on_request([(k, k=first + 2, gap - 1), (k, k=gap + 1, row%n)]) = .true.
   end subroutine add_joint_columns
 
   !> Add the column of the size of the force [N] on a pin, which an ideal one may have too.
@@ -68,13 +70,13 @@ contains
   end subroutine add_pin_force
 
   !> Add the column of the force that a pin carries along the rod; `force` [N] is that of its joint on it.
-  pure subroutine add_rod_load(place, motion, force, row)
-    integer, intent(in) :: place   !! of the pin, at an end of the rod
-    type(motion_t), intent(in) :: motion
+  pure subroutine add_rod_load(spot, rod, force, row)
+    integer, intent(in) :: spot    !! of the pin, at an end of the rod
+    real(dp), intent(in) :: rod(2) !! cosine and sine of its angle
     real(dp), intent(in) :: force(2)
     type(trace_row_t), intent(inout) :: row
-    row%place = places(place)%prefix
-    call row%add_on_request('load_along_rod[N]', -places(place)%sense*(force(1)*motion%cos_rod - force(2)*motion%sin_rod), &
+    row%place = spot_prefix(spot)
+    call row%add_on_request('load_along_rod[N]', -places(place_of(spot))%sense*(force(1)*rod(1) - force(2)*rod(2)), &
       'force of the pin along the rod, positive where it presses on it')
     call row%keep('load_reversals', changes, 'changes of the sense of the load along the rod', told=of_cycle, unit='1')
     call row%keep('reversed_load', reversed, &

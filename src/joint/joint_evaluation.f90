@@ -29,6 +29,9 @@ module joint_evaluation
     ! the film
     real(dp) :: temperature           !! of a film that heats up [K]
     real(dp) :: viscosity_ratio       !! of its viscosity to that which its law was prepared for [-]
+    ! of a numbered bearing (`joint_places`)
+    real(dp) :: pin_angle             !! by which the pin has turned [rad]
+    real(dp) :: rod(2)                !! cosine and sine of the angle A of the rod that holds the bearing; 1, 0: the frame
     ! loads on the pin; the opposite forces act on the bearing
     real(dp) :: force(2)              !! of all kinds [N]
     real(dp) :: moment                !! of all kinds, about the pin's centre, positive from x to y [N m]

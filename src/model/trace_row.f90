@@ -13,9 +13,9 @@ module trace_row
   public :: least, largest, largest_size, spread, mean, root_mean_square, integral, changes, reversed, reversed_angle, impacts
   public :: everywhere, of_run, of_cycle
 
-  integer, parameter :: name_length = 40
+  integer, parameter :: name_length = 48
   integer, parameter :: meaning_length = 160
-  integer, parameter :: most_columns = 360
+  integer, parameter :: most_columns = 1400
 
   !> What is kept of a column: an extreme, that of its size, the spread, the mean, that of squares or the integral over the time;
   !> how often its sense changes, the largest value in the sense opposite to that of the largest size, and the crank angle in that
@@ -27,7 +27,7 @@ module trace_row
 
   !> A result that is kept of a column.
   type :: kept_t
-    character(len=13) :: place = ''                !! prefix of its name
+    character(len=16) :: place = ''                !! prefix of its name
     character(len=name_length) :: name = ''        !! that over the run; with `cycle_` before it that over the last cycle
     character(len=meaning_length) :: meaning = ''
     integer :: what = 0                            !! least, largest, ...
@@ -58,7 +58,7 @@ module trace_row
     integer :: n                                !! number of columns so far
     integer :: last                             !! last column that is in the trace
     logical :: is_naming                        !! names are being collected
-    character(len=13) :: place                  !! prefix of the following names, separated by an underscore
+    character(len=16) :: place                  !! prefix of the following names, separated by an underscore
     logical :: wanted(most_columns)             !! columns whose values are in the trace
     real(dp) :: values(most_columns)            !! values of the columns so far
     real(dp) :: rates(most_columns)             !! their rates, where they are known

@@ -7,7 +7,7 @@ module ode_problem
   use kinds, only: dp
   implicit none
   private
-  public :: ode_problem_t, difference_jacobian
+  public :: ode_problem_t, difference_jacobian, difference_by_parts
   public :: step_admitted, step_too_deep, step_too_far
   public :: event_continue, event_stop, max_events
 
@@ -72,6 +72,18 @@ contains
     class(ode_problem_t), intent(in) :: self
     real(dp), intent(in) :: t, y(:)
     real(dp), intent(out) :: a_p(:, :), a_v(:, :)
+    integer :: part(size(a_p, 2) + size(a_v, 1))
+    part = 0
+    call difference_by_parts(self, t, y, part, a_p, a_v)
+  end subroutine difference_jacobian
+
+  !> The same where states of one part have an influence on the rates of that part alone: the first states of all parts are moved at
+  !> once, then the second ones, and so on.
+  subroutine difference_by_parts(self, t, y, part, a_p, a_v)
+    class(ode_problem_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    integer, intent(in) :: part(:)   !! number of the part of each state, 1, 2, ...; 0: of none
+    real(dp), intent(out) :: a_p(:, :), a_v(:, :)
     real(dp) :: f(self%n), moved(self%n), state(self%n), step
     logical :: in_domain
     integer :: i, m, k
@@ -82,7 +94,9 @@ contains
     a_v = 0
     call self%derivatives(t, y, f, in_domain)
     if (.not. in_domain) return
+    call move_parts(self, t, y, part, f, a_v)
     do i = 1, m + k
+      if (part(i) > 0) cycle
       step = sqrt(epsilon(1.0_dp))*max(abs(y(i)), 1e-5_dp)
       state = y
       state(i) = y(i) + step
@@ -100,7 +114,40 @@ contains
         a_v(:, i - m) = moved(m + 1:m + k)
       end if
     end do
-  end subroutine difference_jacobian
+  end subroutine difference_by_parts
+
+  !> The derivatives of the rates of states that belong to a part.
+  subroutine move_parts(self, t, y, part, f, a_v)
+    class(ode_problem_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    integer, intent(in) :: part(:)
+    real(dp), intent(in) :: f(:)             !! at (t, y)
+    real(dp), intent(inout) :: a_v(:, :)
+    real(dp) :: moved(self%n), state(self%n), step(self%n)
+    integer :: place(size(part)), m, i, j, k   ! place: of a state in its part
+    logical :: in_domain
+    m = size(part) - size(a_v, 1)
+    place = [(count(part(:i) == part(i)), i=1, size(part))]
+    do k = 1, maxval(place, part > 0)
+      step = 0
+      do i = 1, size(part)
+        if (part(i) > 0 .and. place(i) == k) step(i) = sqrt(epsilon(1.0_dp))*max(abs(y(i)), 1e-5_dp)
+      end do
+      state = y + step
+      call self%derivatives(t, state, moved, in_domain)
+      if (.not. in_domain) then
+        step = -step
+        state = y + step
+        call self%derivatives(t, state, moved, in_domain)
+      end if
+      if (.not. in_domain) cycle
+      do j = m + 1, size(part)
+        do i = m + 1, size(part)
+          if (abs(step(i)) > 0 .and. part(j) == part(i)) a_v(j - m, i - m) = (moved(j) - f(j))/step(i)
+        end do
+      end do
+    end do
+  end subroutine move_parts
 
   !> Event functions and their rates along the motion, with signs such that an event is a passage from negative to positive. g and
   !> g_rate have n_events elements. The default is for problems without events.

@@ -12,14 +12,15 @@ module case_definition
   use run_length, only: run_length_t
   use ideal_linkage, only: linkage_t
   use chain_motion, only: n_pins
-  use joint_places, only: places, n_places, in_order, name_prefix, pin_title, piston_pin, small_end, main_bearing
+  use joint_places, only: places, n_places, in_order, name_prefix, pin_title, crank_pin, piston_pin, small_end, main_bearing, &
+    spot_of
   use joint_case, only: joint_case_t
   use pin_case, only: pin_case_t, pin_floating, pin_of_piston
   use guide_case, only: guide_case_t
   use ring_case, only: ring_pack_t
   use elastic_rod, only: elastic_rod_t
   use elastic_crankshaft, only: elastic_crankshaft_t
-  use train_case, only: cylinder_case_t, shaft_case_t, damper_case_t
+  use train_case, only: cylinder_case_t, shaft_case_t, damper_case_t, number_throws, most_cylinders
   use gas_law, only: gas_law_t
   use measured_curve, only: measured_curve_t
   use measured_pressure, only: measured_pressure_t
@@ -125,6 +126,9 @@ module case_definition
     procedure :: become_ideal
     procedure :: has_train
     procedure :: delays
+    procedure :: n_bearings
+    procedure :: has_numbers
+    procedure :: spots
   end type case_t
 
   interface
@@ -227,6 +231,41 @@ contains
     has_train = allocated(self%shaft)
     if (allocated(self%cylinders)) has_train = has_train .or. size(self%cylinders) > 1
   end function has_train
+
+  !> Number of the bearings at a place of which each may be computed: main bearings along the shaft, or big ends of the cylinders;
+  !> 0: the place has no numbers.
+  pure integer function n_bearings(self, place)
+    class(case_t), intent(in) :: self
+    integer, intent(in) :: place   !! index in `places`
+    integer :: throw(most_cylinders)
+    logical :: has_crank(most_cylinders)
+    n_bearings = 0
+    if (.not. allocated(self%cylinders)) return
+    if (place == crank_pin) n_bearings = size(self%cylinders)
+    if (place /= main_bearing) return
+    call number_throws(self%cylinders, throw(:size(self%cylinders)), has_crank(:size(self%cylinders)))
+    n_bearings = maxval(throw(:size(self%cylinders))) + 1
+  end function n_bearings
+
+  !> Whether the bearings at a place are numbered: all main bearings, and big ends on request.
+  pure logical function has_numbers(self, place)
+    class(case_t), intent(in) :: self
+    integer, intent(in) :: place   !! index in `places`
+    has_numbers = self%joints(place)%is_carried() .and. self%n_bearings(place) > 0
+    if (has_numbers) has_numbers = place == main_bearing .or. self%joints(place)%numbers /= ''
+  end function has_numbers
+
+  !> The bearings at a place (see `joint_places`): itself, or those that have the wanted numbers.
+  pure function spots(self, place) result(at)
+    class(case_t), intent(in) :: self
+    integer, intent(in) :: place   !! index in `places`
+    integer, allocatable :: at(:)
+    integer :: n, i
+    at = [place]
+    if (.not. self%has_numbers(place)) return
+    n = self%n_bearings(place)
+    at = pack([(spot_of(place, i), i=1, n)], [(self%joints(place)%wants_number(i), i=1, n)])
+  end function spots
 
   !> Angles of the shaft by which the cylinders come later than a mark to the same point of the cycle [degrees].
   pure function delays(self)

@@ -5,7 +5,7 @@ submodule (case_definition) case_groups
   use friction_laws, only: offer_speed_laws
   use joint_case, only: visit_joint, drop_laws, select_contact, select_friction
   use gas_laws, only: offer_gas_cycles
-  use train_case, only: most_rings, most_cylinders
+  use train_case, only: most_rings
   use ring_case, only: visit_rings
   implicit none
 

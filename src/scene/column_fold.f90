@@ -32,12 +32,14 @@ contains
     self%most = max(self%most, [value, -value])
   end subroutine add
 
-  !> What is known of two times together, the first one first.
+  !> What is known of two times together, the first one first. Of extremes that differ by rounding alone the angle is that of the
+  !> first.
   elemental type(fold_t) function joined(one, other) result(both)
     class(fold_t), intent(in) :: one
     type(fold_t), intent(in) :: other
+    real(dp), parameter :: rounding = 1e-9_dp
     both%most = max(one%most, other%most)
-    both%angle = merge(other%angle, one%angle, other%most > one%most)
+    both%angle = merge(other%angle, one%angle, other%most > one%most + rounding*abs(one%most))
     both%sum = one%sum + other%sum
     both%square = one%square + other%square
     both%duration = one%duration + other%duration

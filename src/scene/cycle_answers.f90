@@ -7,7 +7,7 @@ module cycle_answers
   use constants, only: two_pi
   use load_element, only: of_contact, of_friction, of_film, of_asperities
   use chain_motion, only: body_pin
-  use joint_places, only: name_prefix
+  use joint_places, only: name_prefix, spot_name
   use scene_problem, only: scene_t, by_gas, by_drive, by_damping, by_guide, by_elastic
   use cycle_statistics, only: cycle_t
   use cycle_watch, only: cycle_watch_t
@@ -35,9 +35,9 @@ module cycle_answers
   !> An answer of one run.
   type :: answer_t
     integer :: quantity = 0           !! index in `cycle_quantities`
-    integer :: place = 0              !! of the joint; 0: of the machine
+    integer :: place = 0              !! spot of the joint (`joint_places`); 0: of the machine
     real(dp) :: value = 0
-    character(len=8) :: text = ''     !! instead of the value, of a quantity without unit
+    character(len=16) :: text = ''    !! instead of the value, of a quantity without unit
   end type answer_t
 
   !> Parts of the work, and their quantities.
@@ -83,6 +83,9 @@ module cycle_answers
     quantity_t('cycle_slap_corner', '', 'which corner it was, `guide_1` to `guide_4`'), &
     quantity_t('cycle_slap_energy', 'J', &
       'largest kinetic energy of the piston across its bore and of its tilt when one of them began'), &
+    quantity_t('cycle_bearings_power', 'W', 'losses of all bearings of kind quasi_static in the cycle over its duration, of a '// &
+      'case with numbered bearings'), &
+    quantity_t('cycle_thinnest_bearing', '', 'which of these bearings has the thinnest film in the cycle: main_bearing_3'), &
     quantity_t('cycle_mean_piston_speed', 'm/s', 'two strokes of the ideal mechanism in the mean time of a revolution'), &
     quantity_t('cycle_max_cylinder_pressure', 'Pa', &
       'largest pressure of the gas in the cycle, in the cylinder of the mechanism itself'), &
@@ -164,7 +167,7 @@ contains
       answer%quantity = index_of(name)
       answer%value = value
       if (present(joint)) then
-        if (joint > 0) answer%place = scene%joints(joint)%place
+        if (joint > 0) answer%place = scene%joints(joint)%spot
       end if
       answers = [answers, answer]
     end subroutine add
@@ -202,7 +205,7 @@ contains
     subroutine add_joint(i)
       integer, intent(in) :: i
       real(dp) :: film, friction, load, worn(2)
-      associate (joint => scene%joints(i), pin => cycle%pin(scene%joints(i)%place))
+      associate (joint => scene%joints(i), pin => cycle%pin(scene%joints(i)%spot))
         if (.not. joint%has_own_gap) &
           call add('cycle_max_eccentricity_ratio', 1 - pin%min_film_thickness/joint%bearing%clearance, i)
         call add('cycle_contact_share', pin%contact_time/cycle%duration, i)
@@ -214,7 +217,7 @@ contains
         if (pin%turning > 0) call add('cycle_mean_friction_moment', -(film + friction)/pin%turning, i)
         if (joint%site%pin_body == body_pin) call add('cycle_turning', pin%turning, i)
         if (displacement > 0) call add('cycle_joint_fmep', -(film + friction)/displacement, i)
-        worn = extremes%wear_growth(scene, joint%place, revolutions)*3600/cycle%duration
+        worn = extremes%wear_growth(scene, joint%spot, revolutions)*3600/cycle%duration
         if (all(worn >= 0)) call add('cycle_wear_depth_rate_pin', worn(of_pin), i)
         if (all(worn >= 0)) call add('cycle_wear_depth_rate_bore', worn(of_bore), i)
         if (all(worn >= 0)) call add('cycle_wear_depth_100h_pin', 100*worn(of_pin), i)
@@ -224,9 +227,9 @@ contains
           call add('cycle_heat_to_oil', pin%heat(heat_to_oil), i)
           call add('cycle_heat_to_housing', pin%heat(heat_to_housing), i)
         end if
-        load = kept(name_prefix(joint%place), 'mean_pin_force')
+        load = kept(name_prefix(joint%spot), 'mean_pin_force')
         if (joint%reports_film .and. joint%has_kind(of_asperities) .and. load > 0) call add('cycle_asperity_load_share', &
-          kept(name_prefix(joint%place), 'mean_asperity_force')/load, i)
+          kept(name_prefix(joint%spot), 'mean_asperity_force')/load, i)
       end associate
     end subroutine add_joint
 
@@ -245,13 +248,14 @@ contains
         linkage = linkage_t(bodies%crank%length, bodies%rod%length, bodies%piston%axis_offset)
       end associate
       call add('cycle_mean_piston_speed', 2*linkage%stroke()*revolutions/cycle%duration)
+      one_way = -sum(cycle%work(scene%n_works + 1:size(scene%parts)))    ! by bearings that the mechanism does not feel
+      if (scene%has_numbers) call add_bearings()
       if (.not. allocated(scene%gas)) return
       if (scene%gas%has_force) then
         call add('cycle_max_cylinder_pressure', cycle%max_pressure)
         call add('cycle_max_cylinder_pressure_angle', degrees_in_cycle(cycle%max_pressure_angle, revolutions))
       end if
       shaft = -work_of(by_drive) - work_of(by_damping)
-      one_way = -sum(cycle%work(scene%n_works + 1:size(scene%parts)))    ! by bearings that the mechanism does not feel
       loss = work_of(by_gas) - shaft - sum(cycle%work(:scene%n_works)) + one_way   ! by what is neither gas nor shaft
       shaft = shaft - one_way
       call add('cycle_indicated_power', work_of(by_gas)/cycle%duration)
@@ -277,6 +281,24 @@ contains
       call find_result(kept_results, 'cycle_mean_'//name//'_power', power, is_known)
       if (is_known) call add('cycle_'//name//'_fmep', power*cycle%duration/displacement)
     end subroutine add_ring_fmep
+
+    !> The losses of all quasi-static bearings, and the one with the thinnest film; of equal ones the first.
+    subroutine add_bearings()
+      real(dp), parameter :: same = 1e-4_dp   ! difference of films of equal bearings
+      integer :: thinnest
+      call add('cycle_bearings_power', one_way/cycle%duration)
+      thinnest = scene%carried(1)%joint
+      do i = 2, size(scene%carried)
+        if (thickness(scene%carried(i)%joint) < (1 - same)*thickness(thinnest)) thinnest = scene%carried(i)%joint
+      end do
+      call add('cycle_thinnest_bearing', 0.0_dp)
+      answers(size(answers))%text = spot_name(scene%joints(thinnest)%spot)
+    end subroutine add_bearings
+
+    pure real(dp) function thickness(joint)
+      integer, intent(in) :: joint
+      thickness = cycle%pin(scene%joints(joint)%spot)%min_film_thickness
+    end function thickness
 
     !> The hardest impact of the skirt in the cycle.
     subroutine add_slap()

@@ -1,15 +1,15 @@
 !> Results of each revolution of the crank, and statistics over all revolutions.
 module cycle_statistics
   use kinds, only: dp
-  use joint_places, only: n_places
+  use joint_places, only: n_spots
   use film_heat, only: n_sums
   implicit none
   private
   public :: cycle_t, cycle_statistics_t, skirt, most_parts
 
-  integer, parameter :: skirt = n_places + 1   !! the last place of contacts, after the pins: the skirt of a piston in its bore
+  integer, parameter :: skirt = n_spots + 1   !! the last place of contacts, after the pins: the skirt of a piston in its bore
 
-  integer, parameter :: most_parts = 5 + 4*n_places   !! largest number of parts of the work
+  integer, parameter :: most_parts = 5 + 4*n_spots   !! largest number of parts of the work
 
   !> Results of one revolution at one place. Those of contact and film are 0 at a pin without clearance; an ideal crank pin has no
   !> results. Those of the skirt are over all corners, without film and integral. Peaks are searched also between the accepted

@@ -3,7 +3,7 @@ module cycle_watch
   use kinds, only: dp
   use constants, only: two_pi
   use ode_method, only: ode_method_t
-  use joint_places, only: n_places
+  use joint_places, only: n_spots
   use film_heat, only: n_sums
   use scene_problem, only: scene_t, evaluation_t, phase_contact
   use crank_passage, only: find_passage
@@ -37,7 +37,7 @@ module cycle_watch
     real(dp), private :: pin_angle = 0    !! its angle at the start of the present one
     type(machine_record_t), private :: machine
     real(dp), private :: works(most_parts) = 0, energy = 0   !! at the start of the revolution [J]
-    real(dp), private :: heat(n_sums, n_places) = 0          !! integrals of the heat of films then
+    real(dp), private :: heat(n_sums, n_spots) = 0          !! integrals of the heat of films then
     type(cycle_t), private :: present
     integer :: ended = 0                  !! number of revolutions that have ended
     integer :: followed = 0               !! number of those that have results: a run that goes on begins inside one
@@ -45,7 +45,7 @@ module cycle_watch
     real(dp), private :: start_angle = 0, strobe_offset = 0, initial_energy = 0
     real(dp), private :: t = 0                     !! time of the last point [s]
     real(dp), private :: cycle_start = 0           !! time at which the present revolution began [s]
-    real(dp), private :: force_integral(n_places) = 0, loss = 0   !! at the start of the revolution
+    real(dp), private :: force_integral(n_spots) = 0, loss = 0   !! at the start of the revolution
     logical, private :: has_strobe = .false.
     logical, private :: is_whole = .true.          !! the present revolution has been followed from its beginning
     real(dp), allocatable, private :: y(:)         !! work space for a state
@@ -176,7 +176,7 @@ contains
   !> the end of the third cycle, since the first one begins anywhere, and where the surfaces touch.
   pure real(dp) function film_change(self, pin, revolutions)
     class(cycle_watch_t), intent(in) :: self
-    integer, intent(in) :: pin           !! index in `places`
+    integer, intent(in) :: pin           !! spot, see `joint_places`
     integer, intent(in) :: revolutions   !! in a cycle
     type(cycle_t) :: last, before
     film_change = 0
@@ -213,7 +213,7 @@ contains
     integer :: i
     do i = 1, scene%n_joints
       if (scene%joints(i)%phase /= phase_contact) cycle
-      associate (c => self%present%pin(scene%joints(i)%place))
+      associate (c => self%present%pin(scene%joints(i)%spot))
         c%contact_time = c%contact_time + (t - self%t)
       end associate
     end do
@@ -274,7 +274,7 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(in) :: now
-    real(dp) :: force_integral(n_places), loss, works(most_parts), energy, heat(n_sums, n_places)
+    real(dp) :: force_integral(n_spots), loss, works(most_parts), energy, heat(n_sums, n_spots)
     integer :: i
     force_integral = scene%force_integrals(y)
     loss = scene%joint_loss(t, y)
@@ -283,7 +283,7 @@ contains
     if (allocated(scene%parts)) works(:size(scene%parts)) = scene%works(t, y)
     call self%record_point(scene, t)
     self%present%duration = t - self%cycle_start
-    self%present%pin(:n_places)%force_integral = force_integral - self%force_integral
+    self%present%pin(:n_spots)%force_integral = force_integral - self%force_integral
     self%present%dissipated_energy = loss - self%loss
     self%present%start = self%cycle_start
     self%present%work = works - self%works
@@ -294,7 +294,7 @@ contains
       if (self%is_whole) self%pin_turn = self%pin_turn + self%present%pin_turn
     end if
     heat = heat_of(scene, y)
-    do i = 1, n_places
+    do i = 1, n_spots
       self%present%pin(i)%heat = heat(:, i) - self%heat(:, i)
     end do
     self%ended = self%ended + 1
@@ -319,16 +319,16 @@ contains
     self%heat = heat
   end subroutine end_cycle
 
-  !> Integrals of the heat of the films at the places so far; 0 where films do not heat up.
+  !> Integrals of the heat of the films at the spots so far; 0 where films do not heat up.
   pure function heat_of(scene, y) result(heat)
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:)
-    real(dp) :: heat(n_sums, n_places)
+    real(dp) :: heat(n_sums, n_spots)
     integer :: i
     heat = 0
     do i = 1, size(scene%joints)
       associate (joint => scene%joints(i))
-        if (allocated(joint%heat)) heat(:, joint%place) = y(joint%heat%sums%first:joint%heat%sums%last)
+        if (allocated(joint%heat)) heat(:, joint%spot) = y(joint%heat%sums%first:joint%heat%sums%last)
       end associate
     end do
   end function heat_of

@@ -13,7 +13,7 @@ module film_snapshots
   !> Pressure over one half of a bearing. The other half is its mirror image.
   type :: film_field_t
     real(dp) :: time = 0, crank_angle = 0     !! [s], [rad]
-    integer :: place = 0                      !! pin of the chain
+    integer :: place = 0                      !! spot of the pin
     real(dp) :: clearance = 0, distance = 0   !! c and the magnitude of the eccentricity that the film model uses [m]
     real(dp) :: direction = 0                 !! of the eccentricity, counted from x towards y [rad]
     real(dp), allocatable :: angle(:)         !! measured from that direction [rad]
@@ -87,7 +87,7 @@ contains
       associate (kept => self%kept(:, i), field => all(i), joint => scene%joints(nint(self%kept(3, i))))
         field%time = kept(1)
         field%crank_angle = kept(2)
-        field%place = joint%place
+        field%place = joint%spot
         field%clearance = joint%bearing%clearance
         seen = film_motion_t(eccentricity=kept(5:6), eccentricity_rate=kept(7:8), pin_speed=kept(9), turning_speed=kept(10))
         field%distance = norm2(seen%eccentricity)

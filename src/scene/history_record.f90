@@ -6,6 +6,7 @@ module history_record
   use constants, only: degree
   use error_handling, only: error_t, fail, status_integration
   use case_definition, only: case_t
+  use joint_places, only: place_of
   use film_figures, only: film_figures_t
   use film_history, only: film_history_t, film_duty_t
   use film_law, only: table_watch_t
@@ -20,7 +21,7 @@ module history_record
     of_thickness = 8, of_pressure = 9, of_viscosity = 10
 
   type :: history_record_t
-    integer :: place = 0                       !! index in `places`
+    integer :: spot = 0                        !! of the joint, see `joint_places`
     type(film_history_t) :: history            !! result of `march`
     type(film_duty_t) :: duty                  !! result: what the film was given
     real(dp), allocatable :: angle(:)          !! result: crank angles of its rows, those of the duty but the first [rad]
@@ -38,13 +39,13 @@ module history_record
 
 contains
 
-  !> Prepare for the joint at a place of a case, whose film is marched.
-  subroutine prepare(self, case, place)
+  !> Prepare for the joint at a spot of a case, whose film is marched.
+  subroutine prepare(self, case, spot)
     class(history_record_t), intent(inout) :: self
     type(case_t), intent(in) :: case
-    integer, intent(in) :: place
-    self%place = place
-    associate (joint => case%joints(place))
+    integer, intent(in) :: spot
+    self%spot = spot
+    associate (joint => case%joints(place_of(spot)))
       call joint%make_history(self%history)
       if (allocated(case%output%snapshot_times)) self%history%field_times = case%output%snapshot_times
       self%has_load = joint%history%march%drive == 'load'
@@ -61,14 +62,15 @@ contains
     real(dp), intent(in) :: t
     type(evaluation_t), intent(in) :: now
     type(film_figures_t) :: film
-    real(dp) :: turn, axes(2, 2)
+    real(dp) :: turned(2), axes(2, 2)
     if (self%n == size(self%kept, 2)) call make_space(self)
     self%n = self%n + 1
-    associate (joint => scene%joints(scene%joint_at(self%place)), it => now%joint(scene%joint_at(self%place)), &
+    associate (joint => scene%joints(scene%joint_at(self%spot)), it => now%joint(scene%joint_at(self%spot)), &
       row => self%kept(:, self%n))
-      turn = 0
-      if (joint%bearing_turns) turn = scene%chain%body_angle(now%motion, joint%site%bearing)
-      axes = reshape([cos(turn), -sin(turn), sin(turn), cos(turn)], [2, 2])   ! from x, y to those of the bearing
+      turned = scene%turned(now, scene%joint_at(self%spot))
+      associate (turn => turned(2))
+        axes = reshape([cos(turn), -sin(turn), sin(turn), cos(turn)], [2, 2])   ! from x, y to those of the bearing
+      end associate
       row(of_time) = t
       row(of_angle) = now%motion%crank_angle
       row(of_speed) = it%pin_angular_speed - it%bearing_speed

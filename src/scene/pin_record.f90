@@ -4,7 +4,7 @@ module pin_record
   use ode_method, only: ode_method_t
   use run_state, only: run_state_t
   use chain_motion, only: body_pin
-  use joint_places, only: places, name_prefix
+  use joint_places, only: spot_prefix, name_prefix
   use machine_record, only: turning_point
   use scene_problem, only: scene_t, evaluation_t, phase_contact, event_contact_begins
   use result_ledger, only: ledger_t
@@ -18,7 +18,7 @@ module pin_record
   public :: pin_record_t
 
   type :: pin_record_t
-    integer :: pin = 0                         !! index in `places`
+    integer :: pin = 0                         !! spot, see `joint_places`
     integer :: joint = 0                       !! index of the scene's joint at this pin; 0: the pin is ideal
     real(dp) :: validity_limit = huge(1.0_dp)  !! largest impact speed for which the contact law is valid [m/s]
     real(dp) :: deepest = huge(1.0_dp)         !! largest penetration for which the contact geometry is valid [m]
@@ -42,7 +42,7 @@ contains
   !> Prepare the record of a pin of a scene.
   subroutine prepare(self, pin, scene)
     class(pin_record_t), intent(out) :: self
-    integer, intent(in) :: pin   !! index in `places`
+    integer, intent(in) :: pin   !! spot
     type(scene_t), intent(in) :: scene
     self%pin = pin
     self%joint = scene%joint_at(pin)
@@ -129,7 +129,7 @@ contains
     class(pin_record_t), intent(in) :: self
     type(ledger_t), intent(in) :: ledger
     real(dp) :: penetration, force
-    call ledger%find_contact(places(self%pin)%prefix, penetration, force)
+    call ledger%find_contact(spot_prefix(self%pin), penetration, force)
     is_too_deep = penetration > self%deepest
   end function is_too_deep
 
@@ -142,10 +142,10 @@ contains
     type(evaluation_t), intent(in) :: now
     real(dp), intent(out) :: angle
     type(cycle_watch_t), intent(inout), optional :: cycles
-    real(dp) :: turn(3), span, rise, farthest
-    associate (joint => scene%joints(self%joint), it => now%joint(self%joint))
-      turn = [t, scene%chain%body_angle(now%motion, joint%site%pin_body), it%pin_angular_speed - it%bearing_speed]
-      if (joint%bearing_turns) turn(2) = turn(2) - scene%chain%body_angle(now%motion, joint%site%bearing)
+    real(dp) :: turn(3), angles(2), span, rise, farthest
+    associate (it => now%joint(self%joint))
+      angles = scene%turned(now, self%joint)
+      turn = [t, angles(1) - angles(2), it%pin_angular_speed - it%bearing_speed]
     end associate
     span = turn(1) - self%turn(1)
     rise = turn(2) - self%turn(2)
@@ -176,11 +176,11 @@ contains
       call self%contact%change(kind, kind == event_contact_begins, t, now%motion%crank_angle, relative%penetration_rate)
       event = self%contact
       if (kind == event_contact_begins) then
-        call ledger%begin_contact(places(self%pin)%prefix, scene, t, now)
+        call ledger%begin_contact(spot_prefix(self%pin), scene, t, now)
       else
         if (self%is_too_deep(ledger)) f%contacts_beyond_validity = f%contacts_beyond_validity + 1
-        call ledger%find_contact(places(self%pin)%prefix, event%max_penetration, event%max_normal_force)
-        call ledger%end_contact(places(self%pin)%prefix)
+        call ledger%find_contact(spot_prefix(self%pin), event%max_penetration, event%max_normal_force)
+        call ledger%end_contact(spot_prefix(self%pin))
       end if
     end associate
   end subroutine record_contact

@@ -22,7 +22,7 @@ module result_ledger
 
   !> A result over the run, or over its last cycle.
   type :: kept_result_t
-    character(len=13) :: place = ''                    !! prefix of its name
+    character(len=16) :: place = ''                    !! prefix of its name
     character(len=48) :: name = ''
     character(len=name_length) :: unit = ''
     logical :: is_of_cycle = .false.

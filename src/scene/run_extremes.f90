@@ -3,7 +3,7 @@ module run_extremes
   use kinds, only: dp
   use run_state, only: run_state_t
   use ode_method, only: ode_method_t
-  use joint_places, only: places, n_places, name_prefix
+  use joint_places, only: spot_prefix, name_prefix
   use scene_problem, only: scene_t, evaluation_t, of_guide, phase_contact
   use joint_events, only: penetration_and_rate, may_lose_force, may_touch, find_lost_force
   use piston_guide, only: n_corners, corner_names
@@ -108,11 +108,11 @@ contains
     do i = 1, self%n_pins
       associate (pin => self%pins(i)%pin, joint => self%pins(i)%joint)
         if (joint > 0) then
-          call cycles%record_pin(pin, ledger%of_revolution(trim(places(pin)%prefix)//'max_force'), &
-            ledger%of_revolution(trim(places(pin)%prefix)//'min_film_thickness'), may_touch(scene%joints(joint)), &
-            nint(ledger%of_revolution(trim(places(pin)%prefix)//'impacts')))
+          call cycles%record_pin(pin, ledger%of_revolution(trim(spot_prefix(pin))//'max_force'), &
+            ledger%of_revolution(trim(spot_prefix(pin))//'min_film_thickness'), may_touch(scene%joints(joint)), &
+            nint(ledger%of_revolution(trim(spot_prefix(pin))//'impacts')))
         else
-          call cycles%record_pin(pin, ledger%of_revolution(trim(places(pin)%prefix)//'max_pin_force'))
+          call cycles%record_pin(pin, ledger%of_revolution(trim(spot_prefix(pin))//'max_pin_force'))
         end if
       end associate
     end do
@@ -122,17 +122,17 @@ contains
     end do
   end subroutine end_revolution
 
-  !> Largest depths by which a bin of the pin and one of the bore at a place have worn in the last revolutions [m]; negative where
+  !> Largest depths by which a bin of the pin and one of the bore at a spot have worn in the last revolutions [m]; negative where
   !> wear is not counted.
-  pure function wear_growth(self, scene, place, revolutions) result(depth)
+  pure function wear_growth(self, scene, spot, revolutions) result(depth)
     class(run_extremes_t), intent(in) :: self
     type(scene_t), intent(in) :: scene
-    integer, intent(in) :: place, revolutions
+    integer, intent(in) :: spot, revolutions
     real(dp) :: depth(2)
     integer :: i
     depth = -1
     do i = 1, self%n_pins
-      if (self%pins(i)%pin == place .and. allocated(self%pins(i)%wear)) depth = self%pins(i)%wear%growth(scene, revolutions)
+      if (self%pins(i)%pin == spot .and. allocated(self%pins(i)%wear)) depth = self%pins(i)%wear%growth(scene, revolutions)
     end do
   end function wear_growth
 
@@ -233,7 +233,7 @@ contains
     type(ledger_t), intent(inout) :: ledger
     integer :: i
     do i = 1, self%n_pins
-      if (self%pins(i)%is_touching(scene)) call ledger%begin_contact(places(self%pins(i)%pin)%prefix)
+      if (self%pins(i)%is_touching(scene)) call ledger%begin_contact(spot_prefix(self%pins(i)%pin))
     end do
     if (.not. self%guide%is_present) return
     do i = 1, n_corners
@@ -278,8 +278,8 @@ contains
     integer :: i, revolutions
     revolutions = scene%forced_revolutions()
     do i = 1, size(scene%joints)
-      associate (place => scene%joints(i)%place)
-        self%figures%pin(place)%film_change = cycles%film_change(place, revolutions)
+      associate (spot => scene%joints(i)%spot)
+        self%figures%pin(spot)%film_change = cycles%film_change(spot, revolutions)
       end associate
     end do
   end subroutine find_film_changes

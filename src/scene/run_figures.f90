@@ -2,7 +2,7 @@
 module run_figures
   use kinds, only: dp
   use run_state, only: run_state_t
-  use joint_places, only: n_places
+  use joint_places, only: n_spots
   use piston_guide, only: n_corners
   use film_heat, only: heat_totals_t
   implicit none
@@ -47,7 +47,7 @@ module run_figures
   end type elastic_figures_t
 
   type :: run_figures_t
-    type(pin_figures_t) :: pin(n_places)        !! by place
+    type(pin_figures_t) :: pin(n_spots)         !! by spot, see `joint_places`
     type(pin_figures_t) :: corner(n_corners)
     type(elastic_figures_t) :: elastic
     type(floating_figures_t) :: floating

@@ -141,7 +141,13 @@ contains
     type(accelerations_t), intent(in) :: change   !! change of the accelerations by 1 N
     real(dp), intent(in) :: moment                !! change of the moment on the crank by 1 N [m]
     type(evaluation_t) :: trial
-    trial = now
+    trial%motion = now%motion
+    trial%accelerations = now%accelerations
+    trial%loads = now%loads
+    trial%joint(:scene%n_joints) = now%joint(:scene%n_joints)
+    trial%guide = now%guide
+    trial%crank_moment = now%crank_moment
+    trial%power = now%power
     call add_friction(scene, friction, change, moment, trial)
     if (scene%may_stick) call hold_surfaces(scene%chain, joints, trial%motion, trial%joint, trial%loads, &
       trial%accelerations, trial%crank_moment, trial%power)

@@ -7,7 +7,7 @@ module scene_builder
   use ode_method, only: ode_settings_t
   use chain_motion, only: body_crank, body_big_end, body_piston
   use bearing_load, only: bearing_load_t
-  use joint_places, only: in_order, piston_pin, small_end
+  use joint_places, only: in_order, piston_pin, small_end, place_of
   use chain_bodies, only: crank_t, rod_t, piston_t, drive_t, new_bodies
   use joint_events, only: may_touch, may_pass_static
   use load_elements, only: add_elements
@@ -131,23 +131,28 @@ contains
     type(case_t), intent(in) :: case
     logical, intent(in) :: ideal_joint, makes_tables
     type(scene_t), allocatable, intent(out) :: scene
-    integer, allocatable :: of_clearance(:), carried(:)   ! places
+    integer, allocatable :: of_clearance(:)   ! places
+    integer, allocatable :: carried(:)        ! spots
     integer :: n
     allocate (scene)
     scene%chain%drive = drive_t(case%drive%kind == 'free', case%drive%torque, case%drive%damping, 0.0_dp, 0.0_dp)
     call vary_drive(case, scene)
     of_clearance = pack(in_order, case%joints(in_order)%has_clearance() .and. .not. ideal_joint)
-    carried = pack(in_order, case%joints(in_order)%is_carried() .and. .not. ideal_joint)
+    allocate (carried(0))
+    do n = 1, size(in_order)
+      if (case%joints(in_order(n))%is_carried() .and. .not. ideal_joint) carried = [carried, case%spots(in_order(n))]
+    end do
     scene%n_joints = size(of_clearance)
     allocate (scene%joints(size(of_clearance) + size(carried)), scene%carried(size(carried)))
     do n = 1, size(scene%joints)
       if (n <= scene%n_joints) then
         call build_joint(case, of_clearance(n), makes_tables, scene%joints(n))
       else
-        associate (place => carried(n - scene%n_joints), bearing => scene%carried(n - scene%n_joints))
-          call build_joint(case, place, makes_tables, scene%joints(n))
+        associate (spot => carried(n - scene%n_joints), bearing => scene%carried(n - scene%n_joints))
+          call build_joint(case, place_of(spot), makes_tables, scene%joints(n))
+          scene%joints(n)%spot = spot
           bearing%joint = n
-          bearing%load_share = case%joints(place)%load_share
+          bearing%load_share = case%joints(place_of(spot))%load_share
         end associate
       end if
     end do

@@ -6,7 +6,7 @@ module scene_problem
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, small_end, turn_crank, follow_rod, follow_piston
   use train_motion, only: most_cylinders
-  use joint_places, only: places, n_places, in_order
+  use joint_places, only: places, n_places, n_spots, in_order
   use chain_loads, only: loads_t, force_size
   use mechanism_chain, only: chain_t
   use crank_rod, only: accelerate_crank_rod
@@ -74,8 +74,9 @@ module scene_problem
     type(clearance_joint_t), allocatable :: joints(:)      !! these, and then the joints of the carried bearings
     type(carried_bearing_t), allocatable :: carried(:)     !! bearings without influence on the mechanism
     type(bearing_load_t), allocatable :: given_load        !! of a bearing by itself; there is no mechanism
-    integer :: joint_at(n_places) = 0   !! index of the joint at each place; 0: an ideal pin, or none
-    integer, allocatable :: reported(:) !! places with results: the first one, and those with a joint
+    integer :: joint_at(n_spots) = 0    !! index of the joint at each spot; 0: an ideal pin, or none
+    integer, allocatable :: reported(:) !! spots with results: the first one, and those with a joint
+    logical :: has_numbers = .false.    !! some of the carried bearings are numbered
     type(piston_guide_t), allocatable :: guide   !! not allocated: the guide is ideal
     type(working_gas_t), allocatable :: gas
     type(other_cylinders_t), allocatable :: other_gas   !! in the other cylinders of an engine with gas
@@ -136,6 +137,7 @@ module scene_problem
     procedure :: measure_works
     procedure :: works
     procedure :: pin_force
+    procedure :: turned
     procedure :: force_integrals
     procedure :: joint_loss
     procedure :: energy_scale
@@ -239,6 +241,14 @@ module scene_problem
       type(evaluation_t), intent(inout) :: now
       logical, intent(out) :: in_domain
     end subroutine look_at_carried
+
+    !> Angles by which pin and bearing of a joint have turned, from x to y [rad].
+    pure module function turned(self, now, joint)
+      class(scene_t), intent(in) :: self
+      type(evaluation_t), intent(in) :: now
+      integer, intent(in) :: joint
+      real(dp) :: turned(2)
+    end function turned
 
     !> Set the motion of crank and rod in a scene without mechanism. `in_domain` is false if there is no rod angle.
     pure module subroutine move_without_mechanism(self, t, y, now, in_domain)
@@ -532,9 +542,11 @@ contains
     integer :: i
     self%joint_at = 0
     do i = 1, size(self%joints)
-      self%joint_at(self%joints(i)%place) = i
+      self%joint_at(self%joints(i)%spot) = i
     end do
-    self%reported = pack(in_order, in_order == in_order(1) .or. self%joint_at(in_order) > 0)
+    self%reported = [pack(in_order, in_order == in_order(1) .or. self%joint_at(in_order) > 0), &
+      pack([(i, i=n_places + 1, n_spots)], self%joint_at(n_places + 1:) > 0)]
+    self%has_numbers = any(self%joint_at(n_places + 1:) > 0)
     self%highest_mode = n_phases**self%n_joints - 1
     if (allocated(self%guide)) self%highest_mode = 2*(self%highest_mode + 1) - 1
     self%crank_moves = self%chain%drive%free_crank .or. self%chain%has_crankshaft()
@@ -608,24 +620,24 @@ contains
       .or. allocated(self%chain%train))
   end function work_tells
 
-  !> Force of the joint at a place on its pin [N]; at a place without joint that on the pin of its ideal pin.
-  pure function pin_force(self, now, place) result(force)
+  !> Force of the joint at a spot on its pin [N]; at a place without joint that on the pin of its ideal pin.
+  pure function pin_force(self, now, spot) result(force)
     class(scene_t), intent(in) :: self
     type(evaluation_t), intent(in) :: now
-    integer, intent(in) :: place
+    integer, intent(in) :: spot
     real(dp) :: force(2)
-    if (self%joint_at(place) > 0) then
-      force = now%joint(self%joint_at(place))%force
+    if (self%joint_at(spot) > 0) then
+      force = now%joint(self%joint_at(spot))%force
     else
-      force = now%loads%force(:, places(place)%pin)
+      force = now%loads%force(:, places(spot)%pin)
     end if
   end function pin_force
 
-  !> Integrals of the magnitudes of the forces on the pins so far [N s], in a scene that computes them; 0 at places without results.
+  !> Integrals of the magnitudes of the forces on the pins so far [N s], in a scene that computes them; 0 at spots without results.
   pure function force_integrals(self, y) result(integrals)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: y(:)
-    real(dp) :: integrals(n_places)
+    real(dp) :: integrals(n_spots)
     integrals = 0
     if (self%measures%last < self%measures%first) return
     integrals(self%reported) = y(self%measures%first:self%measures%first + size(self%reported) - 1)

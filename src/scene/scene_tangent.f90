@@ -1,6 +1,6 @@
 !> Derivatives of the accelerations of a scene with respect to its state, for implicit integration.
 submodule (scene_problem) scene_tangent
-  use ode_problem, only: difference_jacobian
+  use ode_problem, only: difference_jacobian, difference_by_parts
   use chain_bodies, only: drive_t
   use chain_loads, only: bearing_moment
   use load_element, only: n_motions, by_pin_speed, by_bearing_speed
@@ -31,7 +31,11 @@ contains
       if (has_closed_form) has_closed_form = .not. any(now%joint(:self%n_joints)%sticks)
     end if
     if (.not. has_closed_form) then
-      call difference_jacobian(self, t, y, a_p, a_v)
+      if (size(self%carried) > 1) then
+        call difference_by_parts(self, t, y, carried_parts(self, size(a_p, 2) + size(a_v, 1)), a_p, a_v)
+      else
+        call difference_jacobian(self, t, y, a_p, a_v)
+      end if
       return
     else if (allocated(self%chain%floating)) then
       call floating_jacobian(self, now, a_p, a_v)
@@ -73,6 +77,21 @@ contains
       a_v = slope(1 + skip:3 + n, 4 + skip:6 + n)
     end if
   end procedure jacobian
+
+  !> Which states belong to which carried bearing: nothing else depends on them.
+  pure function carried_parts(scene, n) result(part)
+    class(scene_t), intent(in) :: scene
+    integer, intent(in) :: n   !! number of positions, rates and states
+    integer :: part(n)
+    integer :: i
+    part = 0
+    do i = 1, size(scene%carried)
+      associate (it => scene%carried(i))
+        part(it%place%first:it%place%last) = i
+        if (allocated(scene%joints(it%joint)%heat)) part(scene%joints(it%joint)%heat%at%first) = i
+      end associate
+    end do
+  end function carried_parts
 
   !> Make the slopes of a joint whose pin belongs to the piston those of the chain's pin: of the load on the rod, which takes what
   !> the bearing takes, with respect to the opposite of the eccentricity and to the angular speed of the rod.

@@ -16,7 +16,6 @@ module simulation
   use crank_turns, only: all_made, turned_back
   use trace_columns, only: column_list_t, all_columns
   use cycle_watch, only: cycle_watch_t
-  use joint_places, only: places
   use cycle_answers, only: answer_t, find_answers, cycle_quantities
   use period_watch, only: period_watch_t
   use lyapunov, only: exponent_t, measurement_t
@@ -25,7 +24,7 @@ module simulation
   use run_figures, only: run_figures_t
   use film_snapshots, only: film_field_t
   use history_record, only: history_record_t
-  use joint_places, only: n_places, in_order
+  use joint_places, only: n_places, in_order, spot_prefix
   use wear_record, only: wear_profile_t
   use train_record, only: train_result_t
   use result_ledger, only: kept_result_t, find_result
@@ -106,7 +105,7 @@ contains
       associate (it => self%answers(i))
         if (it%text /= '') cycle
         if (it%place > 0) then
-          if (trim(places(it%place)%prefix)//cycle_quantities(it%quantity)%name /= name) cycle
+          if (trim(spot_prefix(it%place))//cycle_quantities(it%quantity)%name /= name) cycle
         else if (cycle_quantities(it%quantity)%name /= name) then
           cycle
         end if
@@ -192,7 +191,10 @@ contains
     type(history_record_t), allocatable, intent(out) :: histories(:)
     integer, allocatable :: at(:)
     integer :: i
-    at = pack(in_order, [(allocated(case%joints(in_order(i))%history%march), i=1, n_places)])
+    allocate (at(0))
+    do i = 1, n_places
+      if (allocated(case%joints(in_order(i))%history%march)) at = [at, case%spots(in_order(i))]
+    end do
     if (size(at) == 0) return
     allocate (histories(size(at)))
     do i = 1, size(at)

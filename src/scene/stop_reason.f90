@@ -6,7 +6,7 @@ module stop_reason
   use ode_method, only: ode_settings_t, step_too_small, tolerance_too_small, start_outside, left_domain
   use ode_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached
   use scene_problem, only: scene_t, evaluation_t, phase_free
-  use joint_places, only: in_order
+  use joint_places, only: in_order, n_places, pin_title
   use film_heat, only: hottest
   implicit none
   private
@@ -126,7 +126,7 @@ contains
   !> Whether no place but the first has a joint with clearance, so that texts need not name it.
   pure logical function has_plain_names(scene)
     type(scene_t), intent(in) :: scene
-    has_plain_names = all(scene%joint_at(in_order(2:)) == 0)
+    has_plain_names = all(scene%joints%spot == in_order(1))
   end function has_plain_names
 
   !> The name of the pin of a joint, for messages.
@@ -135,6 +135,7 @@ contains
     integer, intent(in) :: i
     character(len=:), allocatable :: text
     text = trim(scene%joints(i)%site%title)
+    if (scene%joints(i)%spot > n_places) text = pin_title(scene%joints(i)%spot)
   end function joint_name
 
   !> Text that says why no step size was small enough.

@@ -7,7 +7,7 @@ module trace_columns
   use chain_motion, only: motion_t, accelerations_t, piston_pin, small_end, body_pin
   use chain_reactions, only: reactions_t
   use joint_columns, only: add_joint_columns, add_pin_force, add_rod_load
-  use joint_places, only: places, in_order
+  use joint_places, only: places, n_places, in_order
   use guide_columns, only: add_guide_columns
   use elastic_columns, only: add_elastic_columns
   use train_columns, only: add_train_columns
@@ -144,7 +144,7 @@ contains
     type(evaluation_t), intent(in) :: now
     type(trace_row_t), intent(inout) :: row
     type(reactions_t) :: reaction
-    real(dp) :: energy
+    real(dp) :: energy, rod(2)
     integer :: i
     call row%add('time[s]', t, 'time since the start of the run')
     if (allocated(scene%given_load)) then
@@ -170,7 +170,9 @@ contains
       'energy minus initial energy minus the work of all non-conservative forces and of the drive; 0 for an exact integration')
     do i = 1, size(scene%joints)
       call add_joint_columns(scene%joints(i), now%joint(i), row)
-      if (places(scene%joints(i)%place)%pin > 0) call add_rod_load(scene%joints(i)%place, now%motion, now%joint(i)%force, row)
+      rod = now%joint(i)%rod
+      if (scene%joints(i)%spot <= n_places) rod = rod_of(now%motion)
+      if (places(scene%joints(i)%place)%pin > 0) call add_rod_load(scene%joints(i)%spot, rod, now%joint(i)%force, row)
     end do
     if (allocated(scene%chain%floating)) call add_floating_pin(scene, now, row)
     if (allocated(scene%guide)) &
@@ -180,6 +182,13 @@ contains
       call add_train_columns(scene%chain%train, now%motion, now%accelerations, reaction, row)
     if (allocated(scene%gas)) call scene%gas%add_columns(now%motion%sin_crank, now%motion%cos_crank, now%cylinder_pressure, row)
   end subroutine add_columns
+
+  !> Cosine and sine of the angle of the rod.
+  pure function rod_of(motion) result(rod)
+    type(motion_t), intent(in) :: motion
+    real(dp) :: rod(2)
+    rod = [motion%cos_rod, motion%sin_rod]
+  end function rod_of
 
   !> Add the columns of a floating pin.
   pure subroutine add_floating_pin(scene, now, row)
@@ -243,7 +252,7 @@ contains
     call row%add('pin_force_y[N]', now%loads%force(2, piston_pin), 'the same along y')
     if (all(scene%joints%place /= in_order(1))) then
       call add_pin_force(scene%pin_force(now, in_order(1)), row)
-      call add_rod_load(in_order(1), now%motion, now%loads%force(:, piston_pin), row)
+      call add_rod_load(in_order(1), rod_of(now%motion), now%loads%force(:, piston_pin), row)
     end if
     if (row%wants(7) .or. allocated(scene%chain%train) .and. .not. row%is_naming) &
       reaction = scene%chain%reactions(now%motion, now%accelerations, now%loads)

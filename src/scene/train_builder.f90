@@ -81,6 +81,7 @@ contains
     train%n_throws = maxval(throw)
     train%full_axial_position = case%cylinders(full)%axial_position
     train%full = max(1, case%cylinders(full)%station)
+    train%throw_station(throw) = max(1, case%cylinders%station)
     allocate (others(size(case%cylinders) - 1))
     gravity = axis_gravity(case)
     n = 0
@@ -112,6 +113,7 @@ contains
     deallocate (train%rings)
     allocate (train%rings(0))
     train%cylinders%station = 1
+    train%throw_station = 1
     train%n = 1
     train%full = 1
     train%driven = 1

@@ -15,7 +15,7 @@ module wear_record
 
   !> The worn surfaces of a joint at the end of a run. Arrays have one element, or column, for the pin and one for the bore.
   type :: wear_profile_t
-    integer :: place = 0                       !! pin of the chain
+    integer :: place = 0                       !! spot of the pin
     real(dp), allocatable :: depth(:, :)       !! mean depth of wear in each bin [m]
     real(dp), allocatable :: volume(:, :)      !! volume worn from each bin [m^3]
     logical :: bore_changes = .false.          !! the following numbers belong to a bore whose shape changes
@@ -310,24 +310,11 @@ contains
         samples%load(i) = scene%joints(k)%sliding_load(now%joint(k))
         if (samples%load(i) < negligible) samples%load(i) = 0
         samples%angle(i, :) = before + modulo(atan2(now%joint(k)%normal(2), now%joint(k)%normal(1)) &
-          - turned(scene, k, now) - before + pi, 2*pi) - pi
+          - scene%turned(now, k) - before + pi, 2*pi) - pi
       end associate
     end do
     self%evaluations = self%evaluations + n_nodes
   end subroutine evaluate_nodes
-
-  !> Angles by which pin and bore of a joint have turned, from x to y [rad].
-  pure function turned(scene, joint, now) result(angles)
-    type(scene_t), intent(in) :: scene
-    integer, intent(in) :: joint
-    type(evaluation_t), intent(in) :: now
-    real(dp) :: angles(2)
-    associate (site => scene%joints(joint)%site)
-      angles(of_pin) = scene%chain%body_angle(now%motion, site%pin_body)
-      angles(of_bore) = 0
-      if (scene%joints(joint)%bearing_turns) angles(of_bore) = scene%chain%body_angle(now%motion, site%bearing)
-    end associate
-  end function turned
 
   !> Largest angle that the line of centres passes over on a surface [rad].
   pure real(dp) function sweep(samples)
@@ -378,7 +365,7 @@ contains
     real(dp) :: radius
     integer :: k
     associate (joint => scene%joints(self%joint), n => size(self%surface(1)%load_path))
-      worn%place = joint%place
+      worn%place = joint%spot
       worn%bore_changes = joint%has_worn_bore()
       worn%turns = self%turns
       worn%step_ratios = self%step_ratios

@@ -83,7 +83,7 @@ contains
     logical, intent(in) :: has_strobes
     integer :: i
     self%has_strobes = has_strobes
-    self%has_place = base%joints%has_bearing()
+    self%has_place = [(base%joints(i)%has_bearing() .and. .not. base%has_numbers(i), i=1, n_places)]
     self%has_place(in_order(1)) = .true.
     self%has_guide = base%has_loose_guide() .or. any(keys == 'guide.kind')
     self%has_wear = base%has_wear() .or. any(index(keys, 'wear.') > 0)

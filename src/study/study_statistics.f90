@@ -3,7 +3,7 @@ module study_statistics
   use kinds, only: dp
   use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: nearest_word, allowed, replaced, integer_text
-  use joint_places, only: places, n_places
+  use joint_places, only: places, n_places, spot_prefix
   use case_definition, only: case_t
   use trace_row, only: column_list_t, kept_t, least, largest, largest_size, spread, mean, root_mean_square, of_run, of_cycle
   use trace_columns, only: all_columns, unit_in
@@ -156,7 +156,8 @@ contains
     type(case_t), intent(in) :: case
     type(column_list_t), intent(in) :: list
     type(quantity_t), allocatable, intent(out) :: known(:)
-    integer :: i, place
+    integer, allocatable :: spots(:)
+    integer :: i, k, place
     allocate (known(0))
     do i = 1, size(list%kept)
       associate (kept => list%kept(i))
@@ -169,8 +170,11 @@ contains
       if (cycle_quantities(i)%unit == '') cycle
       call add(cycle_quantities(i)%name, cycle_quantities(i)%unit)
       do place = 1, n_places
-        if (places(place)%prefix /= '' .and. case%joints(place)%has_bearing()) &
-          call add(trim(places(place)%prefix)//cycle_quantities(i)%name, cycle_quantities(i)%unit)
+        if (places(place)%prefix == '' .or. .not. case%joints(place)%has_bearing()) cycle
+        spots = case%spots(place)
+        do k = 1, size(spots)
+          call add(trim(spot_prefix(spots(k)))//cycle_quantities(i)%name, cycle_quantities(i)%unit)
+        end do
       end do
     end do
 

@@ -65,6 +65,8 @@ def bearings_of(run: Run) -> list[Bearing]:
     loads = {"piston_pin": ("pin_force", 1.0, rod, rest), "crank_pin": ("crankpin_force", -1.0, turn, rod), "main_bearing": ("crank_bearing_force", 1.0, turn, rest)}
     for place, (name, sign, journal, bearing) in loads.items():
         own = run.at(place)
+        if f"{PLACES[place]}eccentricity_x" not in columns:   # ideal, or numbered bearings of several cylinders, which are not judged
+            continue
         if own.text("joint.kind") != "quasi_static" or place != "piston_pin" and f"{place}.joint.kind" not in run.case:
             continue
         sign *= own.number("joint.load_share", 1.0) if place == "main_bearing" else 1.0

@@ -117,7 +117,7 @@ def without_carried(case: Values, columns: Columns) -> Columns:
     own = ("eccentricity_", "film_", "phase", "asperity_", "friction_", "sliding_", "wall_", "bore_wear", "pin_wear", "max_film", "neglected_")
     for place, prefix in (("", ""), ("crank_pin.", "crank_pin_"), ("main_bearing.", "main_bearing_")):
         if case.get(f"{place}joint.kind") == ["quasi_static"]:
-            columns = {name: column for name, column in columns.items() if not name.startswith(tuple(prefix + what for what in own))}
+            columns = {name: column for name, column in columns.items() if not re.match(rf"{prefix}(\d+_)?({'|'.join(own)})", name)}
     return columns
 
 
