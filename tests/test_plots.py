@@ -1419,6 +1419,27 @@ class Columns(unittest.TestCase):
         self.assertTrue(set(range(0, 361, 90)) <= set(np.round(drawing.axes[0].get_xticks()).astype(int)))
         plt.close(drawing)
 
+    def test_bearings_of_an_engine_stand_along_its_shaft(self) -> None:
+        """Circles of main bearings at the journals, of big ends at their throws; two rods on one throw stand beside each other."""
+        angle = np.radians(np.arange(0, 721, 4.0))
+        columns, rows = {"time": angle / 100, "crank_angle": angle}, {"cycle_thinnest_bearing": "crank_pin_2", "cycle_bearings_power": "30"}
+        names = [f"main_bearing_{b}" for b in (1, 2)] + [f"crank_pin_{i}" for i in (1, 2)]
+        for k, name in enumerate(names):
+            x, y = (5e-6 + k * 1e-6) * np.cos(angle), 4e-6 * np.sin(angle)
+            columns |= {f"{name}_eccentricity_x": x, f"{name}_eccentricity_y": y, f"{name}_film_thickness": 1e-5 - np.hypot(x, y)}
+            rows |= {f"{name}_cycle_min_film_thickness": f"{5e-6 - k * 1e-6}", f"{name}_cycle_min_film_thickness_angle": "180", f"{name}_cycle_mean_film_power": f"{5 * (k + 1)}"}
+        made = run(columns)
+        made.summary.update({name: (value, "") for name, value in rows.items()})
+        made.case.update(cylinder_1={"phase_deg": 0.0, "throw": 1.0}, cylinder_2={"phase_deg": 0.0, "throw": 1.0})
+        self.assertEqual(bearing_pictures.numbered(made), {"main_bearing": (1, 2), "crank_pin": (1, 2)})
+        drawing = bearing_pictures.engine(made, "made")
+        shaft, losses = drawing.axes
+        self.assertEqual({text.get_text().split("\n")[0]: text.get_position()[0] for text in shaft.texts},
+                         {"main bearing 1": 0.0, "main bearing 2": 2.0, "big end 1": 0.55, "big end 2": 1.45})
+        self.assertEqual([bar.get_height() for bar in losses.patches], [5.0, 10.0, 15.0, 20.0])
+        self.assertIn("thinnest film 2 µm at big end 2", drawing.get_suptitle())
+        plt.close(drawing)
+
     def test_orbits_have_the_angles_of_the_trace(self) -> None:
         """A last cycle of two revolutions that begins at an odd one: each number at the orbit is the angle of the trace at this place."""
         angle = np.radians(np.arange(0, 9 * 360 + 1))

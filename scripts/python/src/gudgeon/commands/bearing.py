@@ -1,10 +1,12 @@
-"""Draws the orbit of a pin in its clearance circle over the last cycle of a run, in fixed axes and in those of the load.
+"""Draws the orbit of a pin in its clearance circle over the last cycle of a run, in fixed axes and in those of the load; of an engine
+with numbered bearings all of them along the shaft, and their losses.
 
     gudgeon-plot bearing cases/bearings/big_end.nml    its results, or the case is run
     gudgeon-plot bearing engine --place main_bearing   of results/engine.csv
+    gudgeon-plot bearing cases/cylinders/inline_four_bearings.nml    all bearings of an engine
     gudgeon-plot bearing --shipped -o cases/bearings   the picture that is shipped
 
-The thinnest film and every 90 degrees of the crank are marked. The load, the force of the pin on its bearing, is drawn to its own scale.
+The thinnest film and, of one bearing, every 90 degrees of the crank are marked. The load, the force of the pin on its bearing, is drawn to its own scale.
 """
 
 import argparse
@@ -29,6 +31,9 @@ def run(options: argparse.Namespace) -> int:
         raise Refused("give a run, or --shipped")
     results, name = located(options.source or shipped_case(SHIPPED), options.results, not options.no_run)
     one = results[name]
+    if not options.place and any(pictures.numbered(one).values()):
+        save(pictures.engine(one, name), options, results.path(name).parent, name)
+        return 0
     place = options.place or next((place for place in pictures.PLACES if pictures.has_film(one, place)), "")
     if not place or not pictures.has_film(one, place):
         raise Refused(f"{name}: no film with columns film_force and eccentricity{f' at {place}' if place else ''}")

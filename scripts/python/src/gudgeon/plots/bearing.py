@@ -1,4 +1,6 @@
-"""Pictures of a bearing under its load: the orbit of the pin in the clearance circle."""
+"""Pictures of a bearing under its load: the orbit of the pin in the clearance circle; all bearings of an engine along its shaft."""
+
+import re
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -6,8 +8,10 @@ from gudgeon import language
 from gudgeon.names import PLACES
 from gudgeon.plots.style import BLACK, BLUE, GREY, ORANGE, VERMILION, WIDTH
 from gudgeon.results import Run
+from gudgeon.results import numbered as numbered_groups
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
+from matplotlib.patches import Rectangle
 
 #: The largest load in the picture, over the radius of the clearance circle.
 LOAD_RADIUS = 1.25
@@ -93,3 +97,82 @@ def draw_orbit(axes: Axes, track: np.ndarray, angle: np.ndarray, thinnest: int, 
     axes.set_xlim(-1.3, 1.3)
     axes.set_ylim(-1.3, 1.3)
     axes.axis("off")
+
+
+def numbered(run: Run) -> dict[str, tuple[int, ...]]:
+    """Numbers of the main bearings and big ends of an engine that the rows of a run have."""
+    return {place: tuple(int(found[1]) for name in run.trace.columns if (found := re.fullmatch(rf"{place}_(\d+)_film_thickness", name)))
+            for place in ("main_bearing", "crank_pin")}
+
+
+def engine(run: Run, name: str) -> Drawing:
+    """Orbits of all numbered bearings along a drawing of the shaft, with their thinnest films, and their losses; x upwards, y to the right."""
+    bearings = numbered(run)
+    cylinders = numbered_groups(run.case, "cylinder")
+    phases = [float(one.get("phase_deg", 0)) for one in cylinders]
+    throws = [int(one.get("throw", 0)) or i + 1 for i, one in enumerate(cylinders)]
+    n = max([*throws, *(number - 1 for number in bearings["main_bearing"])])
+    drawing, (shaft, losses) = plt.subplots(2, 1, figsize=(WIDTH, 0.98 * WIDTH), height_ratios=[3.6, 1], sharex=True)
+    ups = {throw: np.cos(np.radians(phase - phases[0])) >= -1e-9 for throw, phase in zip(throws, phases, strict=True)}
+    draw_shaft(shaft, [ups.get(throw, True) for throw in range(1, n + 1)])
+    labels, places = [], []
+    for place, height in (("main_bearing", -1.6), ("crank_pin", 1.75)):
+        for number in bearings[place]:
+            if place == "main_bearing":
+                at = 2.0 * (number - 1)
+            else:
+                sharing = [i for i, throw in enumerate(throws) if throw == throws[number - 1]]
+                at = 2.0 * throws[number - 1] - 1 + 0.9 * (sharing.index(number - 1) - (len(sharing) - 1) / 2)
+            prefix = f"{place}_{number}_"
+            draw_small_orbit(shaft, run, prefix, at, height)
+            thickness, angle, loss = (float(run.summary[f"{prefix}cycle_{what}"][0]) for what in
+                                      ("min_film_thickness", "min_film_thickness_angle", "mean_film_power"))
+            label = bearing_label(f"{place}_{number}")
+            shaft.text(at, height + 0.9 * np.sign(height), f"{label}\n{1e6 * thickness:.3g} µm\n{angle:.0f}°", ha="center",
+                       va="bottom" if height > 0 else "top", fontsize=6)
+            losses.bar(at, loss, width=0.5, color=BLUE if place == "main_bearing" else ORANGE)
+            labels.append(label)
+            places.append(at)
+    shaft.set_ylim(-3.35, 3.5)
+    shaft.set_xlim(-1, 2 * n + 1)
+    shaft.axis("off")
+    losses.set_ylabel("loss [W]")
+    losses.set_xticks(places, [label.replace("main bearing", "main").replace("big end", "end") for label in labels], fontsize=6)
+    thinnest = run.summary["cycle_thinnest_bearing"][0]
+    thickness = float(run.summary[f"{thinnest}_cycle_min_film_thickness"][0])
+    drawing.suptitle(f"{language.current.keep(name)}: thinnest film {1e6 * thickness:.3g} µm at {bearing_label(thinnest)}, "
+                     f"bearings {float(run.summary['cycle_bearings_power'][0]):.4g} W")
+    return drawing
+
+
+def bearing_label(name: str) -> str:
+    """main_bearing_3: main bearing 3; crank_pin_2: big end 2."""
+    place, _, number = name.rpartition("_")
+    return f"{'main bearing' if place == 'main_bearing' else 'big end'} {number}"
+
+
+def draw_shaft(axes: Axes, ups: list[bool]) -> None:
+    """A crankshaft from the side: journals of the main bearings, and throws up or down."""
+    high = 0.55
+    for b in range(len(ups) + 1):
+        axes.add_patch(Rectangle((2 * b - 0.45, -0.2), 0.9, 0.4, facecolor="#DDDDDD", edgecolor=BLACK, linewidth=0.6))
+    for j, up in enumerate(ups):
+        middle, pin = 2 * j + 1, high if up else -high
+        for side in (-0.45, 0.45):
+            axes.add_patch(Rectangle((middle + side - 0.1, min(-0.2, pin - 0.18)), 0.2, abs(pin) + 0.38, facecolor="white",
+                                     edgecolor=BLACK, linewidth=0.6))
+        axes.add_patch(Rectangle((middle - 0.35, pin - 0.15), 0.7, 0.3, facecolor="#DDDDDD", edgecolor=BLACK, linewidth=0.6))
+
+
+def draw_small_orbit(axes: Axes, run: Run, prefix: str, at: float, height: float) -> None:
+    """The orbit of a bearing in its clearance circle, at a place of the picture, with its thinnest film."""
+    rows = last_cycle(run)
+    x, y, thickness = (run[f"{prefix}{quantity}"][rows] for quantity in ("eccentricity_x", "eccentricity_y", "film_thickness"))
+    clearance = float(np.median(thickness + np.hypot(x, y)))
+    circle = np.exp(1j * np.linspace(0, 2 * np.pi, 181))
+    size = 0.85
+    axes.plot(at + size * circle.imag, height + size * circle.real, color=BLACK, linewidth=0.8)
+    axes.plot(at + size * y / clearance, height + size * x / clearance, color=BLUE)
+    thinnest = int(np.argmin(thickness))
+    axes.plot(at + size * y[thinnest] / clearance, height + size * x[thinnest] / clearance, "o", color=VERMILION, markersize=3)
+    axes.set_aspect("equal")
