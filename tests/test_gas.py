@@ -50,6 +50,7 @@ class Run:
 
     rows: pd.DataFrame
     case: dict
+    answers: dict[str, str]
 
     @property
     def gas(self) -> dict:
@@ -109,7 +110,8 @@ def run(program: Path, case: Path, *settings: str, name: str = "") -> Run:
         made = subprocess.run([*words, str(case)], capture_output=True, text=True, check=False)
         check(made.returncode == 0, f"{case.stem} {name} is run", made.stderr)
         out = Path(folder) / case.stem
-        return Run(pd.read_csv(f"{out}.csv"), f90nml.read(f"{out}.resolved.nml").todict())
+        answers = pd.read_csv(f"{out}.summary.csv", index_col="quantity", dtype=str)["value"].to_dict()
+        return Run(pd.read_csv(f"{out}.csv"), f90nml.read(f"{out}.resolved.nml").todict(), answers)
 
 
 def worst(differences: np.ndarray) -> float:
@@ -362,6 +364,87 @@ def pegging(program: Path) -> None:
     check(made.returncode == 3 and "must be > 0: absolute" in made.stderr, "an offset that leaves a negative pressure is refused", made.stderr[:200])
 
 
+GAS_WITH_MASS = ("working_gas.gas_constant=287", "working_gas.temperature=350")
+WOSCHNI = (*GAS_WITH_MASS, "wall_heat.wall_temperature=450")
+
+
+def charges(program: Path) -> None:
+    """Gas with a mass, heat to the walls and a leak, against independent programs (data/gas). Tolerances are those of the comparison of
+    these programs, of rows beside the jump where the cylinder opens."""
+    facts = pd.read_csv(TOP / "data" / "gas" / "facts.csv").set_index(["case", "quantity"])["value"]
+    for name in ("sim4_woschni", "moped_hohenberg_free"):
+        r = run(program, TOP / "data" / "gas" / f"{name}.nml", name=name)
+        wanted = pd.read_csv(TOP / "data" / "gas" / f"{name}.csv")
+        rows = min(len(r.rows), len(wanted))
+        check(rows >= len(wanted) - 1, f"{name}: every row of the reference", f"{rows} of {len(wanted)}")
+        for column in ("crank_angle[rad]", "crank_speed[rad/s]", "cylinder_volume[m3]", "cylinder_pressure[Pa]", "gas_temperature[K]", "gas_mass[kg]"):
+            a, b = r.column(column)[:rows], wanted[column].to_numpy()[:rows]
+            check(worst(a - b) < 1e-6 * worst(b), f"{name}: {column} is that of the reference", f"{worst(a - b) / worst(b):.2g}")
+        check(float(r.answers["gas_residual_relative"]) < 1e-8, f"{name}: the energy of the gas is kept", r.answers["gas_residual_relative"])
+        if name == "sim4_woschni":
+            for quantity in ("imep", "heat_released", "heat_to_walls", "leak_share", "leak_enthalpy", "opening_temperature"):
+                value, fact = float(r.answers[f"cycle_{quantity}"]), facts[name, quantity]
+                check(abs(value / fact - 1) < 1e-6, f"{name}: {quantity}", f"{value!r} for {fact!r}")
+            efficiency = facts[name, "work"] / facts[name, "heat_released"]
+            check(abs(float(r.answers["cycle_indicated_efficiency"]) / efficiency - 1) < 1e-6, f"{name}: indicated efficiency")
+            for answer, fact in (("cycle_max_gas_temperature", "max_temperature"), ("cycle_max_cylinder_pressure", "max_pressure")):   # facts: of rows
+                check(0 <= float(r.answers[answer]) / facts[name, fact] - 1 < 1e-4, f"{name}: {fact} of the cycle", r.answers[answer])
+        else:
+            speed = r.column("crank_speed[rad/s]")[-1]
+            check(abs(speed / facts[name, "crank_speed_end"] - 1) < 1e-6, f"{name}: speed at the end", f"{speed!r}")
+    motored = run(program, TOP / "data" / "gas" / "sim4_woschni.nml", "combustion.heat=0", name="motored")
+    check(abs(float(motored.answers["cycle_work_gas"]) + 7.7) < 0.05, "an engine without heat takes work", motored.answers["cycle_work_gas"])
+
+
+def limits_of_charges(program: Path) -> None:
+    """Gas with a mass without losses is the gas of a cycle, between hot walls it is isothermal, and it goes on from a state."""
+    engine = TOP / "cases" / "sim_IV.nml"
+    few = (*CLOSE, *HELD, "integrator.revolutions=2", "output.samples_per_revolution=360")
+    plain, alone, by_equations = (run(program, engine, *few, *more, name="limits") for more in ((), GAS_WITH_MASS, (*WOSCHNI, "wall_heat.factor=0")))
+    p, v = plain.column("cylinder_pressure[Pa]"), plain.column("cylinder_volume[m3]")
+    check(np.array_equal(p, alone.column("cylinder_pressure[Pa]")), "&working_gas alone leaves the pressure as it is")
+    degrees = np.rad2deg(plain.column("crank_angle[rad]"))
+    closed = (degrees > 180.01) & (degrees < 539.99)
+    mass = 101325 * plain.volume(np.pi) / (287 * 350)
+    check(worst(alone.column("gas_mass[kg]")[closed] / mass - 1) < 1e-12, "the closed cylinder keeps its mass")
+    check(worst(alone.column("gas_temperature[K]")[closed] * mass * 287 / (p * v)[closed] - 1) < 1e-12, "temperature of the closed cylinder")
+    check(worst(alone.column("gas_temperature[K]")[(degrees < 179.99) | (degrees > 540.01)] - 350) < 1e-9, "temperature of the open cylinder")
+    peak = p[closed].max() - by_equations.column("cylinder_pressure[Pa]")[closed].max()
+    off = worst(by_equations.column("cylinder_pressure[Pa]")[degrees < 539.99] - p[degrees < 539.99]) / p.max()
+    check(off < 1e-9, "without losses the equations give the pressure of the cycle", f"{off:.2g}, at the peak {peak:.2g} Pa")
+    r = run(program, engine, *few, *GAS_WITH_MASS, "wall_heat.law=constant", "wall_heat.heat_transfer_coefficient=1e7", "wall_heat.wall_temperature=400",
+            "combustion.heat=0", "integrator.method=radau", "integrator.relative_tolerance=1e-6", name="isothermal")
+    inside = (degrees > 181) & (degrees < 539)
+    off = worst(r.column("cylinder_pressure[Pa]")[inside] * v[inside] / (mass * 287 * 400) - 1)
+    # 25 kW of the piston over the conductance of the walls, 150 kW/K, are 0.2 K of 400 K
+    check(off < 1e-3, "between walls that conduct well the gas has their temperature", f"{off:.2g}")
+    with tempfile.TemporaryDirectory() as folder:
+        words = [str(program), "-q", "-o", folder]
+        for setting in (*few, *WOSCHNI, "working_gas.leak_area=0.2 mm2"):
+            words += ["-s", setting]
+        whole = run(program, engine, *few, *WOSCHNI, "working_gas.leak_area=0.2 mm2", name="whole")
+        made = subprocess.run([*words, "-s", "integrator.revolutions=1.03", engine], capture_output=True, text=True, check=False)
+        check(made.returncode == 0, "a run that ends while the cylinder is closed", made.stderr)
+        rest = run(program, engine, *few, *WOSCHNI, "working_gas.leak_area=0.2 mm2", f"initial.from={folder}/sim_IV.state.nml", name="rest")
+        last = [one.column("cylinder_pressure[Pa]")[np.isclose(one.column("crank_angle[rad]"), np.deg2rad(500))][0] for one in (whole, rest)]
+        check(abs(last[1] / last[0] - 1) < 1e-8, "gas with a mass goes on from a state", f"{last}")
+    four = TOP / "cases" / "cylinders" / "inline_four.nml"
+    r = run(program, four, "output.digits=17", "integrator.relative_tolerance=1e-10", *WOSCHNI, "working_gas.leak_area=0.2 mm2", "output.sampling=crank_angle",
+            "output.samples_per_revolution=90", "output.columns=standard, cylinder_4_gas_force", name="four cylinders")
+    first, fourth = r.column("gas_force[N]"), r.column("cylinder_4_gas_force[N]")
+    at = np.arange(180, 350)
+    off = worst(np.delete(fourth[at] - first[at - 90], np.flatnonzero((at * 4 - 360) % 720 == 540))) / worst(first)
+    check(off < 1e-8, "a cylinder a turn later has the gas of the first one", f"{off:.2g}")
+    for case, settings, says in (
+        (GAS / "compressor.nml", GAS_WITH_MASS, "needs the cycle of an engine"), (engine, ("wall_heat.wall_temperature=450",), "needs &working_gas"),
+        (GAS / "measured.nml", GAS_WITH_MASS, "needs the cycle of an engine"), (engine, (*WOSCHNI, "combustion.wiebe_form=0.9"), "must be >= 1 with &wall_heat"),
+        (four, (*GAS_WITH_MASS, "cylinder_2.pressure_scale=0.9"), "must be 1 with &working_gas"),
+        (engine, (*GAS_WITH_MASS, "wall_heat.law=reynolds", "wall_heat.wall_temperature=450"), "coefficient")):
+        words = [word for setting in settings for word in ("--set", setting)]
+        made = subprocess.run([program, "--check", *words, case], capture_output=True, text=True, check=False)
+        check(made.returncode == 3 and says in made.stderr, f"refused: {says}", made.stderr[:300])
+
+
 def heat_of_a_pressure(program: Path) -> None:
     """The heat that a pressure shows is the one that made it: Wiebe's function, 165 J (1 - exp(-5)) and the angles of its parts."""
     r = run(program, TOP / "cases" / "sim_IV.nml", *CLOSE, *HELD, "integrator.revolutions=2", name="heat of a pressure")
@@ -446,6 +529,8 @@ def main() -> int:
     measured_pressure(program)
     offset_axis(program)
     pegging(program)
+    charges(program)
+    limits_of_charges(program)
     heat_of_a_pressure(program)
     what_check_says(program)
     return assertions.report()

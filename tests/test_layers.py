@@ -33,7 +33,7 @@ LAYERS = [
 MOST = 132  # largest number of characters in a line
 
 #: The registries, whose `use` statements name all laws. Only files of the same folder may do so too.
-REGISTRIES = ["contact/contact_laws", "friction/friction_laws", "film/films", "gas/gas_laws"]
+REGISTRIES = ["contact/contact_laws", "friction/friction_laws", "film/films", "gas/gas_laws", "gas/wall_laws"]
 
 RANK = {folder: rank for rank, row in enumerate(LAYERS) for folder in row}
 

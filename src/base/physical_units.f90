@@ -54,7 +54,8 @@ module physical_units
     unit_t('K', 'K'), unit_t('K', 'degC', 0, offset=273.15_dp), unit_t('K', 'degF', 0, 5/9.0_dp, 459.67_dp), &
     unit_t('m^3/s', 'm3/s'), unit_t('m^3/s', 'l/min', -3, 1/60.0_dp), unit_t('m^3/s', 'ml/min', -6, 1/60.0_dp), &
     unit_t('m^3/s', 'mm3/s', -9), unit_t('W/K', 'W/K'), unit_t('W/K', 'mW/K', -3), unit_t('J/K', 'J/K'), &
-    unit_t('J/K', 'kJ/K', 3), unit_t('J/(kg K)', 'J/kg/K'), unit_t('J/(kg K)', 'kJ/kg/K', 3)]
+    unit_t('J/K', 'kJ/K', 3), unit_t('J/(kg K)', 'J/kg/K'), unit_t('J/(kg K)', 'kJ/kg/K', 3), unit_t('W/(m K)', 'W/m/K'), &
+    unit_t('W/(m K)', 'mW/m/K', -3), unit_t('W/(m^2 K)', 'W/m2/K'), unit_t('W/(m^2 K)', 'kW/m2/K', 3)]
 
   type(unit_t), parameter :: all_units(*) = [units_of_bodies, units_of_forces, units_of_oils]
 
@@ -66,7 +67,8 @@ module physical_units
     dimension_t('Pa', 'a pressure'), dimension_t('1/Pa', 'an inverse pressure'), dimension_t('N m', 'a moment'), &
     dimension_t('J', 'an energy'), dimension_t('m^2/N', 'a wear rate'), dimension_t('Pa s', 'a viscosity'), &
     dimension_t('m^2/s', 'a kinematic viscosity'), dimension_t('K', 'a temperature'), dimension_t('m^3/s', 'a flow'), &
-    dimension_t('W/K', 'a conductance'), dimension_t('J/K', 'a heat capacity'), dimension_t('J/(kg K)', 'a specific heat')]
+    dimension_t('W/K', 'a conductance'), dimension_t('J/K', 'a heat capacity'), dimension_t('J/(kg K)', 'a specific heat'), &
+    dimension_t('W/(m K)', 'a thermal conductivity'), dimension_t('W/(m^2 K)', 'a heat transfer')]
 
   character(len=*), parameter :: digits = '0123456789', letters = 'abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ'
   character(len=*), parameter :: no_break_space = char(194)//char(160)   !! U+00A0

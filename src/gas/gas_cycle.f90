@@ -47,6 +47,7 @@ module gas_cycle
   contains
     procedure :: pressure
     procedure :: pressure_slope
+    procedure :: heat_slope
     procedure :: part_at
     procedure :: next_part
   end type gas_cycle_t
@@ -306,6 +307,21 @@ contains
     if (part == part_combustion .and. self%grading > 1) xi = max(xi, 0.0_dp)**(1.0_dp/self%grading)
     pressure = self%table(part)%value(xi)
   end function pressure
+
+  !> Heat that is released for each angle of the crank, at an angle q in a part of the cycle [J/rad].
+  pure real(dp) function heat_slope(self, q, part, cycle_start)
+    class(gas_cycle_t), intent(in) :: self
+    real(dp), intent(in) :: q
+    integer, intent(in) :: part
+    real(dp), intent(in) :: cycle_start
+    real(dp) :: unused
+    heat_slope = 0
+    if (part /= part_combustion) return
+    associate (reach => self%bound(part) - self%bound(part - 1))
+      call heat_slopes(self%release, 1.0_dp, (q - cycle_start - self%bound(part - 1))/reach, heat_slope, unused)
+      heat_slope = heat_slope/reach
+    end associate
+  end function heat_slope
 
   !> Derivative of the pressure with respect to the crank angle [Pa/rad]. Where the combustion table is graded it is (A.9) at the
   !> pressure of the table, since the slope of the table over that of the grading is 0/0 at the start of combustion.

@@ -17,6 +17,7 @@ module gas_law
     procedure :: fastest_piston
     procedure :: heat_of_cycle
     procedure :: filling_pressure
+    procedure :: burns_abruptly => burns_smoothly
     procedure :: description
     procedure :: misfit => no_misfit
     procedure :: add_bore
@@ -62,6 +63,12 @@ contains
     class(gas_law_t), intent(in) :: self
     filling_pressure = 0
   end function filling_pressure
+
+  !> Whether heat begins to be released at an infinite rate.
+  pure logical function burns_smoothly(self) result(burns_abruptly)
+    class(gas_law_t), intent(in) :: self
+    burns_abruptly = .false.
+  end function burns_smoothly
 
   !> The gas in a few words, for the user.
   function description(self) result(text)

@@ -8,6 +8,8 @@ module other_cylinders
   use valve_gas, only: valve_gas_t, n_valve_events
   use gas_cycle, only: gas_cycle_t
   use working_gas, only: working_gas_t
+  use cylinder_charge, only: charge_motion_t
+  use gas_cycle, only: part_open
   implicit none
   private
   public :: other_cylinders_t, n_other_events
@@ -26,11 +28,15 @@ module other_cylinders
     integer, allocatable :: part(:)              !! present part of the cycle
     real(dp), allocatable :: cycle_start(:)      !! angle at which the present cycle began [rad]
     type(valve_gas_t), allocatable :: valves(:)
-    type(gas_cycle_t), allocatable :: cycles(:)  !! where cylinders have different heats; else all have the gas's own
+    type(gas_cycle_t), allocatable :: cycles(:)  !! with different heats or states of the gas; else all have
+                                                 !! that of the mechanism
   contains
     procedure :: start
     procedure :: declare
     procedure, non_overridable :: find_forces
+    procedure :: set_charges
+    procedure :: set_rates
+    procedure :: heat
     procedure :: n_events
     procedure :: events
     procedure :: pass
@@ -58,10 +64,11 @@ contains
   end subroutine start
 
   !> Declare the states, from which those of a cycle follow by the angles.
-  subroutine declare(self, list, gas, angle, speed)
+  subroutine declare(self, list, gas, y, angle, speed)
     class(other_cylinders_t), intent(inout) :: self
     type(run_state_t), intent(inout) :: list
-    type(working_gas_t), intent(in) :: gas
+    type(working_gas_t), intent(inout) :: gas
+    real(dp), intent(inout) :: y(:)
     real(dp), intent(in) :: angle(:), speed(:)
     integer :: i
     if (allocated(self%valves)) then
@@ -71,19 +78,54 @@ contains
     else if (list%sets) then
       call self%start(gas, angle, speed(1))
     end if
+    if (.not. gas%has_states()) return
+    do i = 1, size(angle)
+      call gas%charge%declare(list, i + 1, y, 'cylinder_'//integer_text(self%number(i))//'_')
+    end do
   end subroutine declare
 
-  !> Forces of the gas on the pistons at crank angles from their axes [rad], towards the shaft [N]; unchanged where there is none.
-  pure subroutine find_forces(self, gas, angle, force)
+  !> Set the states of gas that has a mass at the start of a run, at crank angles from the axes of the cylinders [rad].
+  pure subroutine set_charges(self, gas, angle, y)
     class(other_cylinders_t), intent(in) :: self
     type(working_gas_t), intent(in) :: gas
-    real(dp), intent(in) :: angle(*)
+    real(dp), intent(in) :: angle(:)
+    real(dp), intent(inout) :: y(:)
+    integer :: i
+    do i = 1, size(angle)
+      call gas%charge%set_start(self%cycles(i), i + 1, gas%sense*gas%angle(angle(i)), self%part(i), self%cycle_start(i), y)
+    end do
+  end subroutine set_charges
+
+  !> Rates of these states, at crank angles [rad] and speeds [rad/s].
+  pure subroutine set_rates(self, gas, angle, speed, y, dydt)
+    class(other_cylinders_t), intent(in) :: self
+    type(working_gas_t), intent(in) :: gas
+    real(dp), intent(in) :: angle(:), speed(:), y(:)
+    real(dp), intent(inout) :: dydt(:)
+    type(charge_motion_t) :: now
+    integer :: i
+    do i = 1, size(angle)
+      call gas%charge%move(self%cycles(i), i + 1, gas%sense*gas%angle(angle(i)), gas%sense*speed(i), self%part(i), &
+        self%cycle_start(i), y, now)
+      dydt(gas%charge%pressures%first + i) = now%pressure_rate
+      dydt(gas%charge%masses%first + i) = now%mass_rate
+    end do
+  end subroutine set_rates
+
+  !> Forces of the gas on the pistons at crank angles from their axes [rad], towards the shaft [N]; unchanged where there is none.
+  pure subroutine find_forces(self, gas, y, angle, force)
+    class(other_cylinders_t), intent(in) :: self
+    type(working_gas_t), intent(in) :: gas
+    real(dp), intent(in) :: y(:), angle(*)
     real(dp), intent(inout) :: force(*)
     real(dp) :: pressure
     integer :: i
     do i = 1, size(self%has_gas)
       if (.not. self%has_gas(i)) cycle
-      if (allocated(self%cycles)) then
+      if (gas%has_states()) then
+        pressure = gas%cycle%intake_pressure
+        if (self%part(i) /= part_open) pressure = y(gas%charge%pressures%first + i)
+      else if (allocated(self%cycles)) then
         pressure = self%cycles(i)%pressure(gas%sense*gas%angle(angle(i)), self%part(i), self%cycle_start(i))
       else if (allocated(gas%cycle)) then
         pressure = gas%cycle%pressure(gas%sense*gas%angle(angle(i)), self%part(i), self%cycle_start(i))
@@ -97,6 +139,14 @@ contains
       force(i) = (self%scale(i)*pressure - gas%crankcase_pressure)*gas%cylinder%area
     end do
   end subroutine find_forces
+
+  !> Heat of all of them that have gas together in a cycle [J].
+  pure real(dp) function heat(self, gas)
+    class(other_cylinders_t), intent(in) :: self
+    type(working_gas_t), intent(in) :: gas
+    heat = count(self%has_gas)*gas%cycle%release%heat
+    if (allocated(self%cycles)) heat = sum(self%cycles%release%heat, self%has_gas)
+  end function heat
 
   !> Number of the event functions of all of them together.
   pure integer function n_events(self, gas)
@@ -144,14 +194,15 @@ contains
 
   !> Handle an event: all cylinders of which it is one. With `is_own` at least one of them has it; otherwise it is one of the
   !> mechanism's cylinder.
-  subroutine pass(self, gas, event, angle, speed, is_own)
+  subroutine pass(self, gas, event, angle, speed, is_own, y)
     class(other_cylinders_t), intent(inout) :: self
-    type(working_gas_t), intent(in) :: gas
+    type(working_gas_t), intent(inout) :: gas
     integer, intent(in) :: event
     real(dp), intent(in) :: angle(:), speed(:)
     logical, intent(in) :: is_own
+    real(dp), intent(inout) :: y(:)   !! state of the scene
     real(dp) :: g(n_valve_events, size(angle)), g_rate(n_valve_events), largest
-    integer :: i
+    integer :: i, from
     do i = 1, size(angle)
       call own_events(self, gas, i, angle(i), speed(i), g(:, i), g_rate)
     end do
@@ -164,7 +215,10 @@ contains
       if (allocated(self%valves)) then
         call self%valves(i)%pass(event, gas%angle(angle(i)), speed(i))
       else
+        from = self%part(i)
         call gas%cycle%next_part(event == 1, self%part(i), self%cycle_start(i))
+        if (gas%has_states()) call gas%charge%change_part(self%cycles(i), i + 1, gas%sense*gas%angle(angle(i)), from, &
+          self%part(i), self%cycle_start(i), y)
       end if
     end do
   end subroutine pass

@@ -26,6 +26,7 @@ module wiebe_law
     procedure, non_overridable :: wiebe_parameters
     procedure :: prepare
     procedure :: heat_of_cycle
+    procedure :: burns_abruptly
     procedure :: description
     procedure :: misfit => wiebe_misfit
     procedure, non_overridable :: wiebe_misfit
@@ -125,6 +126,11 @@ contains
     class(wiebe_law_t), intent(in) :: self
     heat_of_cycle = self%heat
   end function heat_of_cycle
+
+  pure logical function burns_abruptly(self)
+    class(wiebe_law_t), intent(in) :: self
+    burns_abruptly = self%form < 1
+  end function burns_abruptly
 
   function description(self) result(text)
     class(wiebe_law_t), intent(in) :: self

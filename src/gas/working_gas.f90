@@ -10,6 +10,9 @@ module working_gas
   use cylinder, only: cylinder_t
   use gas_cycle, only: gas_cycle_t
   use valve_gas, only: valve_gas_t, n_valve_events
+  use cylinder_charge, only: charge_t, charge_motion_t, n_charge_sums, of_balance, moved
+  use gas_cycle, only: part_open
+  use trace_row, only: largest, of_cycle
   implicit none
   private
   public :: working_gas_t
@@ -17,7 +20,7 @@ module working_gas
   !> Events of a cycle: the crank passes from one part to the next, forwards or backwards.
   integer, parameter :: n_cycle_events = 2
 
-  !> At most one of the last three components is allocated; without them the pressure is `held_pressure`. The second derivative of
+  !> At most one of cycle, valves and curve is allocated; without them the pressure is `held_pressure`. The second derivative of
   !> a measured pressure is discontinuous at its points. There are no events for this: the error control detects it and reduces the
   !> order of the method.
   type :: working_gas_t
@@ -34,6 +37,7 @@ module working_gas
     type(gas_cycle_t), allocatable :: cycle
     type(valve_gas_t), allocatable :: valves
     type(monotone_cubic_t), allocatable :: curve   !! measured pressure [Pa] over the crank angle [rad]
+    type(charge_t), allocatable :: charge          !! mass and temperature of the gas of a cycle; not allocated: not asked for
   contains
     procedure :: start
     procedure, non_overridable :: angle => gas_angle
@@ -42,6 +46,11 @@ module working_gas
     procedure :: is_external
     procedure, non_overridable :: pressure
     procedure, non_overridable :: force
+    procedure :: set_charge
+    procedure :: find_charge
+    procedure :: charge_totals
+    procedure :: charge_residual
+    procedure :: has_states
     procedure :: force_slope
     procedure :: events
     procedure :: pass
@@ -71,16 +80,69 @@ contains
   end function gas_angle
 
   !> Declare the state of the gas at the angle and the speed of the crank, from which that of a cycle follows.
-  subroutine declare(self, list, crank_angle, crank_speed)
+  subroutine declare(self, list, y, crank_angle, crank_speed)
     class(working_gas_t), intent(inout) :: self
     type(run_state_t), intent(inout) :: list
+    real(dp), intent(inout) :: y(:)
     real(dp), intent(in) :: crank_angle, crank_speed   !! [rad], [rad/s]
     if (allocated(self%valves)) then
       call self%valves%declare(list, self%angle(crank_angle), crank_speed, '')
     else if (list%sets) then
       call self%start(crank_angle, crank_speed)
     end if
+    if (.not. self%has_states()) return
+    call self%charge%declare(list, 1, y, '')
+    if (list%sets .and. .not. list%goes_on) &
+      y(self%charge%sums%first) = self%charge%energy(self%cycle, self%sense*self%angle(crank_angle), y)
   end subroutine declare
+
+  !> Whether pressure and mass are states.
+  pure logical function has_states(self)
+    class(working_gas_t), intent(in) :: self
+    has_states = .false.
+    if (allocated(self%charge)) has_states = self%charge%is_state
+  end function has_states
+
+  !> Set the states at the start of a run.
+  pure subroutine set_charge(self, crank_angle, y)
+    class(working_gas_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle   !! [rad]
+    real(dp), intent(inout) :: y(:)
+    call self%charge%set_start(self%cycle, 1, self%sense*self%angle(crank_angle), self%part, self%cycle_start, y)
+  end subroutine set_charge
+
+  !> Mass and temperature of the gas at an angle [rad] and a speed [rad/s] of the crank.
+  pure subroutine find_charge(self, crank_angle, crank_speed, y, now)
+    class(working_gas_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle, crank_speed, y(:)
+    type(charge_motion_t), intent(out) :: now
+    associate (angle => self%sense*self%angle(crank_angle), speed => self%sense*crank_speed)
+      if (self%charge%is_state) then
+        call self%charge%move(self%cycle, 1, angle, speed, self%part, self%cycle_start, y, now)
+      else
+        call self%charge%move_adiabatic(self%cycle, angle, speed, self%part, self%cycle_start, now)
+      end if
+    end associate
+  end subroutine find_charge
+
+  !> See `totals` of `charge_t`; 0 without states.
+  pure function charge_totals(self, crank_angle, y) result(totals)
+    class(working_gas_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle, y(:)
+    real(dp) :: totals(n_charge_sums)
+    totals = 0
+    if (self%has_states()) totals = self%charge%totals(self%cycle, self%sense*self%angle(crank_angle), y)
+  end function charge_totals
+
+  !> Size of the error of the gas's energy over that of its work, or over the energy if that is larger [-].
+  pure real(dp) function charge_residual(self, crank_angle, y) result(residual)
+    class(working_gas_t), intent(in) :: self
+    real(dp), intent(in) :: crank_angle, y(:)
+    real(dp) :: totals(n_charge_sums)
+    totals = self%charge_totals(crank_angle, y)
+    residual = abs(totals(of_balance))/max(totals(moved), &
+      self%charge%energy(self%cycle, self%sense*self%angle(crank_angle), y))
+  end function charge_residual
 
   !> Largest crank angle in a step, so that no step passes over a peak [rad]; 0: no limit. A cycle needs no limit, since events
   !> divide it into smooth parts. For a measured pressure it is the smallest distance of its points, but at least 0.25 and at most 5
@@ -122,18 +184,27 @@ contains
   end function force
 
   !> Add pressure [Pa], force and volume at a crank angle with this sine and cosine to a row; nothing of a gas that does not act.
-  pure subroutine add_columns(self, sin_crank, cos_crank, pressure, row)
+  pure subroutine add_columns(self, sin_crank, cos_crank, pressure, charge, row)
     class(working_gas_t), intent(in) :: self
     real(dp), intent(in) :: sin_crank, cos_crank, pressure
+    type(charge_motion_t), intent(in) :: charge
     type(trace_row_t), intent(inout) :: row
     real(dp) :: volume
     if (.not. self%has_force) return
     call row%add('cylinder_pressure[Pa]', pressure, 'absolute pressure of the gas in the cylinder')
+    if (self%has_states()) call row%keep('max_cylinder_pressure', largest, 'largest pressure of the gas in the cylinder', &
+      rate=charge%pressure_rate, told=of_cycle, has_angle=.true.)
     volume = 0
     if (row%wants(1)) volume = self%cylinder%volume_at(sin_crank, cos_crank)
     call row%add('cylinder_volume[m3]', volume, 'volume of the gas in the cylinder')
     call row%add('gas_force[N]', self%force(pressure), &
       'force of the gas on the piston along -x: pressure difference to the crankcase times bore area')
+    if (.not. allocated(self%charge)) return
+    call row%add('gas_temperature[K]', charge%temperature, 'temperature of the gas in the cylinder')
+    call row%keep('max_gas_temperature', largest, 'largest temperature of the gas in the cylinder', rate=charge%temperature_rate)
+    call row%add('gas_mass[kg]', charge%mass, 'mass of the gas in the cylinder')
+    call row%add_on_request('wall_heat_flow[W]', charge%heat_flow, 'heat of the gas to the walls of the cylinder')
+    call row%add_on_request('leak_flow[kg/s]', charge%leak_flow, 'flow of gas past the rings, positive out of the cylinder')
   end subroutine add_columns
 
   !> Derivative of the force with respect to the crank angle [N/rad].
@@ -169,12 +240,20 @@ contains
   end subroutine events
 
   !> Handle an event: the crank enters the next part of the cycle, or a valve opens or closes.
-  subroutine pass(self, event, crank_angle, crank_speed)
+  subroutine pass(self, event, crank_angle, crank_speed, y)
     class(working_gas_t), intent(inout) :: self
     integer, intent(in) :: event
     real(dp), intent(in) :: crank_angle, crank_speed
+    real(dp), intent(inout), optional :: y(:)   !! state of the scene, where the gas has a mass
+    type(charge_motion_t) :: before
+    integer :: from
     if (allocated(self%cycle)) then
+      from = self%part
+      if (allocated(self%charge)) call self%find_charge(crank_angle, crank_speed, y, before)
       call self%cycle%next_part(event == 1, self%part, self%cycle_start)
+      if (.not. allocated(self%charge)) return
+      if (event == 1 .and. self%part == part_open) self%charge%opening_temperature = before%temperature
+      call self%charge%change_part(self%cycle, 1, self%sense*self%angle(crank_angle), from, self%part, self%cycle_start, y)
     else if (allocated(self%valves)) then
       call self%valves%pass(event, self%angle(crank_angle), crank_speed)
     end if

@@ -115,8 +115,8 @@ contains
     type(case_t), intent(in) :: c
     type(case_values_t), intent(inout) :: values
     character(len=*), parameter :: only = 'is for a mechanism; this case has &bearing_load', &
-      groups(9) = [character(len=17) :: 'mechanism', 'pin', 'guide', 'elastic_rod', 'crankshaft', 'combustion', &
-      'cylinder_pressure', 'rings.lubrication', 'rings.asperities'], &
+      groups(11) = [character(len=17) :: 'mechanism', 'pin', 'guide', 'elastic_rod', 'crankshaft', 'combustion', &
+      'cylinder_pressure', 'rings.lubrication', 'rings.asperities', 'working_gas', 'wall_heat'], &
       of_drive(4) = [character(len=16) :: 'torque', 'damping', 'flywheel_inertia', 'torque_table'], &
       of_initial(5) = [character(len=18) :: 'pin_speed', 'piston_offset', 'piston_offset_rate', 'piston_tilt', &
       'piston_tilt_rate']
@@ -229,6 +229,7 @@ contains
       call c%combustion%misfit(c%mechanism%linkage(), sign(1.0_dp, c%initial%crank_speed), key, wanted)
       if (key /= '') call values%refuse('combustion', key, wanted)
     end if
+    call check_charge(c, values)
     if (.not. allocated(c%measured)) return
     call values%forbid(allocated(c%combustion), 'cylinder_pressure', 'table', &
       'cannot be combined with the group combustion: one pressure acts on the piston')
@@ -244,6 +245,22 @@ contains
     call values%forbid(.not. minval(c%measured%curve%y) + c%measured%pressure_offset > 0, 'cylinder_pressure', &
       'pressure_offset', 'must be > '//short_text(-minval(c%measured%curve%y))//': the pressures of the table are absolute with it')
   end subroutine check_gas
+
+  !> Check that gas with a mass is that of an engine, whose heat the equations can follow.
+  subroutine check_charge(c, values)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(inout) :: values
+    logical :: is_engine
+    if (allocated(c%walls) .and. .not. allocated(c%charge)) &
+      call values%refuse_group('wall_heat', 'needs &working_gas, which gives the gas its temperature')
+    if (.not. allocated(c%charge)) return
+    is_engine = allocated(c%combustion)
+    if (is_engine) is_engine = .not. c%combustion%filling_pressure() > 0
+    if (.not. is_engine) call values%refuse_group('working_gas', 'needs the cycle of an engine in &combustion')
+    if (.not. is_engine .or. .not. (allocated(c%walls) .or. c%charge%leak_area > 0)) return
+    call values%forbid(c%combustion%burns_abruptly(), 'combustion', 'wiebe_form', &
+      'must be >= 1 with &wall_heat or leak_area: the rate of its heat would begin without a bound')
+  end subroutine check_charge
 
   !> Check that the keys of a variable drive match its kind, and that there is one flywheel at most.
   subroutine check_drive(c, values)

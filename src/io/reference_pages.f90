@@ -32,7 +32,7 @@ module reference_pages
     'combustion.duration_deg=40'
 
   !> Kinds of scenes that together have every column.
-  type(scene_kind_t), parameter :: kinds(19) = [ &
+  type(scene_kind_t), parameter :: kinds(20) = [ &
     scene_kind_t('Every scene', 'drive.kind=constant_speed'), &
     scene_kind_t('Joint with clearance (the last three columns only with `&contact`)', play//contact), &
     scene_kind_t('Contact with `geometry = ''conformal''`', play//contact//'contact.geometry=conformal'), &
@@ -57,6 +57,8 @@ module reference_pages
     scene_kind_t('Gas', engine), &
     scene_kind_t('Piston rings (the numbers are those of the case)', 'ring_1.height=1.2e-3 ring_1.crown=6e-6 ring_1.tension=8 '// &
       'rings.lubrication.viscosity=0.008 '//engine), &
+    scene_kind_t('Gas with a mass (`&working_gas`)', 'working_gas.gas_constant=287 working_gas.temperature=350 '// &
+      'wall_heat.wall_temperature=450 '//engine), &
     scene_kind_t('Elastic rod', 'elastic_rod.section_area=3e-4 elastic_rod.section_inertia=1.5e-8'), &
     scene_kind_t('Elastic crankshaft', 'crankshaft.flywheel_inertia=0.02 crankshaft.torsional_stiffness=2e4'), &
     scene_kind_t('Several cylinders (the numbers are those of the case)', 'crankshaft.flywheel_inertia=0 '// &
@@ -170,8 +172,8 @@ contains
     type(column_list_t), intent(out) :: list
     type(error_t), allocatable, intent(out) :: error
     character(len=*), parameter :: rigid_and_dry = 'joint.kind=ideal contact=none friction=none lubrication=none guide=none '// &
-      'heat=none wear=none elastic_rod=none crankshaft=none combustion=none film_history=none supply=none '// &
-      'bore=none output.columns=standard output.ideal_twin=F output.film_times='
+      'heat=none wear=none elastic_rod=none crankshaft=none combustion=none working_gas=none wall_heat=none '// &
+      'film_history=none supply=none bore=none output.columns=standard output.ideal_twin=F output.film_times='
     character(len=:), allocatable :: changes
     character(len=60), allocatable :: overrides(:)
     type(case_t) :: case

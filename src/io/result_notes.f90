@@ -54,6 +54,9 @@ contains
     if (report%energy_is_poor) call add_line(energy_warning(case, report))
     if (report%heat_is_poor) call add_line('the heat of a film is kept only to '//short_text(report%figures%heat_residual())// &
       ': compare with a run with a tenth of &integrator relative_tolerance')
+    if (report%gas_is_poor) call add_line('the energy of the gas is kept only to '//short_text(report%figures%gas_residual)// &
+      ': compare with a run with a tenth of &integrator relative_tolerance')
+    call note_gas()
     call note_period()
     call note_power()
     call note_torque_table()
@@ -68,6 +71,20 @@ contains
       character(len=*), intent(in) :: text
       notes = notes//text//achar(10)
     end subroutine add_line
+
+    !> A leak of worn rings, and temperatures of no gas in a cylinder.
+    subroutine note_gas()
+      real(dp), parameter :: largest_share = 0.1_dp, hottest = 4000   ! [-], [K]
+      real(dp) :: temperature
+      logical :: is_known
+      associate (share => machine_answer(report, 'cycle_leak_share'))
+        if (share > largest_share) call add_line('the leak takes '//short_text(100*share, 2)//' % of the charge, usually 0.5 '// &
+          'to 2 %: &working_gas leak_area')
+      end associate
+      call report%value_of('max_gas_temperature', temperature, is_known)
+      if (is_known .and. temperature > hottest) call add_line('the gas reaches '//short_text(temperature, 4)//' K, usually up '// &
+        'to 3000 K: &combustion heat, &working_gas temperature')
+    end subroutine note_gas
 
     !> No period was found, and errors of the integration may be the reason.
     subroutine note_period()

@@ -102,6 +102,7 @@ contains
       call table%add('max_energy_residual', max(f%max_energy_residual, f%row_energy_residual))
       call table%add('max_energy_residual_relative', relative_residual(report))
       if (report%energy_is_poor) call table%add('energy_warning', energy_warning(case, report))
+      if (f%gas_residual >= 0) call table%add('gas_residual_relative', f%gas_residual)
       call add_notes()
       do i = 1, n_places
         if (.not. case%joints(in_order(i))%has_bearing()) cycle

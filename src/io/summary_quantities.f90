@@ -66,6 +66,8 @@ module summary_quantities
     quantity_t('max_energy_residual_relative', '1', &
       'that at the ends of steps over the largest energy: a measure of the integration error'), &
     quantity_t('energy_warning', '', 'written where that is larger than the tolerance explains'), &
+    quantity_t('gas_residual_relative', '1', 'energy of the gas less what it has received by heat, work and leak, over the '// &
+      'size of its work, where pressure and mass are integrated'), &
     quantity_t('note_N', '', 'values of the case or results that are implausible or beyond a model')]
 
   type(quantity_t), parameter :: of_joints(*) = [ &

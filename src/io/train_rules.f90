@@ -161,6 +161,8 @@ contains
             'without a gap: there is no throw '//integer_text(throw(k) - 1))
           call values%forbid(abs(it%heat_scale - 1) > 0 .and. has_no_heat(c), group, 'heat_scale', &
             'is a factor on the heat of an engine: a compressor or a measured pressure has none')
+          call values%forbid(abs(it%pressure_scale - 1) > 0 .and. allocated(c%charge), group, 'pressure_scale', &
+            'must be 1 with &working_gas, whose pressure follows from its mass: heat_scale changes the heat')
           call check_bodies(c, values, k, group, k == full, has_crank(k))
         end associate
       end do

@@ -24,6 +24,8 @@ module case_definition
   use gas_law, only: gas_law_t
   use measured_curve, only: measured_curve_t
   use measured_pressure, only: measured_pressure_t
+  use cylinder_charge, only: charge_case_t
+  use wall_law, only: wall_law_t
   use bearing_load, only: bearing_load_t
   implicit none
   private
@@ -109,6 +111,8 @@ module case_definition
     type(cylinder_case_t), allocatable :: cylinders(:)       !! not allocated: there is one
     class(gas_law_t), allocatable :: combustion
     type(measured_pressure_t), allocatable :: measured   !! used instead of combustion
+    type(charge_case_t), allocatable :: charge           !! not allocated: the gas has no mass and temperature
+    class(wall_law_t), allocatable :: walls              !! not allocated: no heat to the walls
     type(run_length_t) :: run
     type(integrator_case_t) :: integrator
     type(output_case_t) :: output

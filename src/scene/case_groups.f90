@@ -5,7 +5,8 @@ submodule (case_definition) case_groups
   use friction_laws, only: offer_speed_laws
   use joint_case, only: visit_joint, drop_laws, select_contact, select_friction
   use gas_laws, only: offer_gas_cycles
-  use train_case, only: most_rings
+  use wall_laws, only: offer_wall_laws
+  use train_case, only: most_rings, most_cylinders
   use ring_case, only: visit_rings
   implicit none
 
@@ -18,6 +19,7 @@ contains
     type(shaft_case_t) :: shaft
     type(measured_pressure_t) :: measured
     type(bearing_load_t) :: load
+    type(charge_case_t) :: charge
     integer :: i
     call list%group('case', 'All values are in SI units; angles are in degrees only where the key ends in _deg', .false.)
     call list%text('title', case%title, 'title of the case, for pictures and pages', '')
@@ -76,6 +78,16 @@ contains
     call measured%parameters(list)
     if (list%sets) case%measured = measured
     if (list%is_absent()) deallocate (case%measured)
+    call list%group('working_gas', 'Mass and temperature of the gas in the cylinders of an engine, and its leak. Without this '// &
+      'group the pressure follows from the crank angle alone', .true.)
+    call charge%parameters(list)
+    if (list%sets) case%charge = charge
+    if (list%is_absent()) deallocate (case%charge)
+    call list%group('wall_heat', 'Heat of the gas to the walls. `heat` of &combustion is then that of the fuel; without this '// &
+      'group it is the net heat', .true.)
+    call list%choice('law', 'woschni', 'heat transfer coefficient')
+    call offer_wall_laws(list)
+    if (list%sets) call select_walls(list%chosen, case%walls)
     call list%group('run', 'When the run ends. until = ''periodic'' replaces the end given in &integrator', .false.)
     call case%run%parameters(list)
     call list%group('integrator', &
@@ -95,6 +107,17 @@ contains
       allocate (law, source=chosen)
     end select
   end subroutine select_gas
+
+  !> Select the law of the heat to the walls that a case names, if it names one.
+  subroutine select_walls(chosen, law)
+    class(law_t), allocatable, intent(in) :: chosen
+    class(wall_law_t), allocatable, intent(out) :: law
+    if (.not. allocated(chosen)) return
+    select type (chosen)
+    class is (wall_law_t)
+      allocate (law, source=chosen)
+    end select
+  end subroutine select_walls
 
   subroutine visit_dampers(dampers, list)
     type(damper_case_t), allocatable, intent(inout) :: dampers(:)

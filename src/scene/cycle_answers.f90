@@ -20,6 +20,7 @@ module cycle_answers
   use archard_wear, only: of_pin, of_bore
   use gas_cycle, only: released_share
   use ideal_linkage, only: linkage_t
+  use cylinder_charge, only: of_balance, to_walls, leaked, leaked_enthalpy, moved
   use film_heat, only: temperature_sum, heat_to_oil, heat_to_housing
   implicit none
   private
@@ -96,6 +97,13 @@ module cycle_answers
     quantity_t('cycle_imep', 'Pa', 'work of the gas in a cycle of the gas over the displacement'), &
     quantity_t('cycle_heat_released', 'J', &
       'heat that combustion releases in the cylinder of the mechanism in a cycle of the gas'), &
+    quantity_t('cycle_heat_to_walls', 'J', 'heat of that gas to the walls in a cycle of the gas, with `&wall_heat`'), &
+    quantity_t('cycle_leak_share', '1', 'mass that leaks from that cylinder in a cycle of the gas over that closed in'), &
+    quantity_t('cycle_leak_enthalpy', 'J', 'enthalpy that leaves with it'), &
+    quantity_t('cycle_opening_temperature', 'K', 'temperature of that gas when the cylinder opened, with `&working_gas`'), &
+    quantity_t('cycle_indicated_efficiency', '1', 'work of the gas over the heat that combustion releases in all cylinders'), &
+    quantity_t('cycle_gas_energy_residual', '1', 'energy of the gas less what it received by heat, work and leak in the cycle, '// &
+      'over the size of its work: the error of the integration'), &
     quantity_t('cycle_bmep', 'Pa', 'the same of the brake power'), &
     quantity_t('cycle_fmep', 'Pa', 'the same of the losses in joints, guide and elastic members'), &
     quantity_t('cycle_one_way_fmep', 'Pa', &
@@ -251,7 +259,7 @@ contains
       one_way = -sum(cycle%work(scene%n_works + 1:size(scene%parts)))    ! by bearings that the mechanism does not feel
       if (scene%has_numbers) call add_bearings()
       if (.not. allocated(scene%gas)) return
-      if (scene%gas%has_force) then
+      if (scene%gas%has_force .and. .not. scene%has_charge) then   ! else that is kept of its column
         call add('cycle_max_cylinder_pressure', cycle%max_pressure)
         call add('cycle_max_cylinder_pressure_angle', degrees_in_cycle(cycle%max_pressure_angle, revolutions))
       end if
@@ -263,6 +271,7 @@ contains
       call add('cycle_imep', work_of(by_gas)/displacement)
       if (allocated(scene%gas%cycle)) call add('cycle_heat_released', &
         scene%gas%cycle%release%heat*released_share(scene%gas%cycle%release%efficiency))
+      if (allocated(scene%gas%charge)) call add_charge(real(revolutions, dp)/scene%forced_revolutions())
       call add('cycle_bmep', shaft/displacement)
       call add('cycle_fmep', loss/displacement)
       if (scene%n_works < size(scene%parts)) &
@@ -299,6 +308,23 @@ contains
       integer, intent(in) :: joint
       thickness = cycle%pin(scene%joints(joint)%spot)%min_film_thickness
     end function thickness
+
+    !> The gas that has a mass.
+    subroutine add_charge(cycles)
+      real(dp), intent(in) :: cycles   !! of the gas in this cycle
+      real(dp) :: heat   !! released in all cylinders in a cycle of the gas, but for the share that does not burn [J]
+      associate (gas => scene%gas)
+        if (allocated(gas%charge%walls)) call add('cycle_heat_to_walls', cycle%gas(to_walls)/cycles)
+        if (gas%charge%loses_gas()) call add('cycle_leak_share', cycle%gas(leaked)/cycles/gas%charge%closed_mass)
+        if (gas%charge%loses_gas()) call add('cycle_leak_enthalpy', cycle%gas(leaked_enthalpy)/cycles)
+        if (cycle%opening_temperature > 0) call add('cycle_opening_temperature', cycle%opening_temperature)
+        heat = merge(gas%cycle%release%heat, 0.0_dp, gas%has_force)
+        if (allocated(scene%other_gas)) heat = heat + scene%other_gas%heat(gas)
+        if (heat > 0) call add('cycle_indicated_efficiency', &
+          work_of(by_gas)/(cycles*heat*released_share(gas%cycle%release%efficiency)))
+        if (gas%charge%is_state) call add('cycle_gas_energy_residual', cycle%gas(of_balance)/cycle%gas(moved))
+      end associate
+    end subroutine add_charge
 
     !> The hardest impact of the skirt in the cycle.
     subroutine add_slap()

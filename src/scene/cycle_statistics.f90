@@ -3,6 +3,7 @@ module cycle_statistics
   use kinds, only: dp
   use joint_places, only: n_spots
   use film_heat, only: n_sums
+  use cylinder_charge, only: n_charge_sums
   implicit none
   private
   public :: cycle_t, cycle_statistics_t, skirt, most_parts
@@ -37,6 +38,8 @@ module cycle_statistics
     real(dp) :: max_pressure = -huge(1.0_dp)          !! of the gas in the cylinder [Pa]
     real(dp) :: max_pressure_angle = 0                !! crank angle then [rad]
     real(dp) :: pin_turn = 0                          !! of a floating pin [rad]
+    real(dp) :: gas(n_charge_sums) = 0                !! changes of the integrals of the gas, see `totals` of `charge_t`
+    real(dp) :: opening_temperature = 0               !! of the gas when the cylinder last opened; 0: not yet [K]
   end type cycle_t
 
   !> Sums and extremes over the revolutions.
@@ -66,6 +69,8 @@ contains
       if (one%max_pressure > total%max_pressure) total%max_pressure_angle = one%max_pressure_angle
       total%max_pressure = max(total%max_pressure, one%max_pressure)
       total%pin_turn = total%pin_turn + one%pin_turn
+      total%gas = total%gas + one%gas
+      total%opening_temperature = one%opening_temperature
     end associate
     associate (total => self%total%pin, one => cycle%pin)
       total%turning = total%turning + one%turning

@@ -5,6 +5,7 @@ module cycle_watch
   use ode_method, only: ode_method_t
   use joint_places, only: n_spots
   use film_heat, only: n_sums
+  use cylinder_charge, only: n_charge_sums
   use scene_problem, only: scene_t, evaluation_t, phase_contact
   use crank_passage, only: find_passage
   use revolutions, only: revolutions_t
@@ -38,6 +39,7 @@ module cycle_watch
     type(machine_record_t), private :: machine
     real(dp), private :: works(most_parts) = 0, energy = 0   !! at the start of the revolution [J]
     real(dp), private :: heat(n_sums, n_spots) = 0          !! integrals of the heat of films then
+    real(dp), private :: gas(n_charge_sums) = 0              !! integrals of the gas then
     type(cycle_t), private :: present
     integer :: ended = 0                  !! number of revolutions that have ended
     integer :: followed = 0               !! number of those that have results: a run that goes on begins inside one
@@ -96,6 +98,7 @@ contains
     self%works = 0
     if (allocated(scene%parts)) self%works(:size(scene%parts)) = scene%works(t, y)
     self%heat = heat_of(scene, y)
+    self%gas = scene%charge_totals(t, y)
     self%energy = 0
     if (in_domain) self%energy = scene%chain%energy(now%motion)
     self%initial_energy = initial_energy
@@ -274,7 +277,8 @@ contains
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: t, y(:)
     type(evaluation_t), intent(in) :: now
-    real(dp) :: force_integral(n_spots), loss, works(most_parts), energy, heat(n_sums, n_spots)
+    real(dp) :: force_integral(n_spots), loss, works(most_parts), energy, heat(n_sums, n_spots), &
+      gas(n_charge_sums)
     integer :: i
     force_integral = scene%force_integrals(y)
     loss = scene%joint_loss(t, y)
@@ -288,6 +292,12 @@ contains
     self%present%start = self%cycle_start
     self%present%work = works - self%works
     self%present%energy_change = energy - self%energy
+    gas = scene%charge_totals(t, y)
+    self%present%gas = gas - self%gas
+    self%gas = gas
+    if (allocated(scene%gas)) then
+      if (allocated(scene%gas%charge)) self%present%opening_temperature = scene%gas%charge%opening_temperature
+    end if
     if (allocated(scene%chain%floating)) then
       self%present%pin_turn = now%motion%pin_angle - self%pin_angle
       self%pin_angle = now%motion%pin_angle

@@ -189,6 +189,7 @@ contains
         end associate
       end do
       if (f%floating%is_present) f%floating%turn = y(scene%chain%floating%turn%position)
+      f%gas_residual = scene%charge_residual(t, y)
       call self%guide%add_time(scene, t - f%time, f)
       f%time = t
     end associate

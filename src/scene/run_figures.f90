@@ -56,6 +56,7 @@ module run_figures
     real(dp) :: max_energy = 0                !! largest |kinetic + potential energy| [J]
     real(dp) :: max_energy_residual = 0       !! largest |energy residual| at the ends of steps [J]
     real(dp) :: row_energy_residual = 0       !! the same in the rows of the trace, also inside the steps [J]
+    real(dp) :: gas_residual = -1             !! error of the energy of the gas, relative; negative: not known [-]
     real(dp) :: crank_travel = 0              !! crank angle turned through, signed [rad]
     real(dp) :: time = 0                      !! time simulated [s]
     real(dp) :: driven_speeds(2) = [huge(1.0_dp), -huge(1.0_dp)]   !! least and largest speed of the driven part, of a drive that

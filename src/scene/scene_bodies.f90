@@ -18,8 +18,9 @@ contains
     call move_bodies(self, joints, t, y, now, in_domain)
     if (.not. in_domain) return
     call self%find_loads(self%n_joints, joints, y, now)
-    if (allocated(self%gas)) call self%load_gas(now)
-    if (allocated(self%chain%train)) call load_train(self, now)
+    if (allocated(self%gas)) call self%load_gas(y, now, in_domain)
+    if (.not. in_domain) return
+    if (allocated(self%chain%train)) call load_train(self, y, now)
     call load_guide(self, y, now)
     call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment, solvable)
     if (solvable) call add_guide_friction(self, joints, now, solvable)
@@ -67,12 +68,13 @@ contains
   end subroutine place_more_bodies
 
   !> Set the forces of the gas in the other cylinders, and the loads of the stations.
-  pure subroutine load_train(self, now)
+  pure subroutine load_train(self, y, now)
     class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: y(self%n)
     type(evaluation_t), intent(inout) :: now
     associate (train => self%chain%train, at => now%motion%train)
       at%gas_force(:size(train%cylinders)) = 0
-      if (allocated(self%gas)) call self%other_gas%find_forces(self%gas, at%angle, at%gas_force)
+      if (allocated(self%gas)) call self%other_gas%find_forces(self%gas, y, at%angle, at%gas_force)
       call train%load_stations(now%motion)
     end associate
   end subroutine load_train

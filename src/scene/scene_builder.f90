@@ -15,6 +15,8 @@ module scene_builder
   use guide_elements, only: build_guide
   use train_builder, only: build_train, build_other_gas, axis_gravity
   use film_heat, only: film_heat_t
+  use cylinder_charge, only: charge_t
+  use ideal_linkage, only: linkage_t
   use clearance_joint, only: clearance_joint_t
   use scene_problem, only: scene_t
   use monotone_cubic, only: new_monotone_cubic
@@ -65,9 +67,9 @@ contains
     scene%start_angle = case%initial%crank_angle_deg*degree
     scene%start_speed = case%initial%crank_speed
     scene%span = simulated_time(case)
-    call scene%claim()
     call prepare_gas(case, scene, error)
     if (allocated(error)) return
+    call scene%claim()
     if (scene%chain%drive%free_crank .and. case%run%is_until_periodic()) then
       allocate (scene%turns, source=new_crank_turns(real(case%run%most_revolutions, dp), scene%start_angle, scene%start_speed))
       scene%turns%key = '&run most_revolutions'
@@ -169,6 +171,10 @@ contains
     if (case%has_train()) call build_train(case, ideal_joint, scene%chain%train)
     if (.not. (allocated(case%combustion) .or. allocated(case%measured))) return
     allocate (scene%gas)
+    if (allocated(case%charge)) then
+      allocate (scene%gas%charge)
+      call scene%gas%charge%set_case(case%charge, case%walls)
+    end if
     if (allocated(scene%chain%train) .and. allocated(case%cylinders)) &
       scene%gas%has_force = case%cylinders(scene%chain%train%full_number)%gas
   end subroutine assemble_scene
@@ -233,10 +239,14 @@ contains
     type(error_t), allocatable, intent(out) :: error
     real(dp) :: tolerance
     logical :: has_force
+    type(charge_t), allocatable :: charge
+    type(linkage_t) :: linkage
     if (.not. allocated(scene%gas)) return
     has_force = scene%gas%has_force   ! a law begins the gas anew
+    call move_alloc(scene%gas%charge, charge)
     tolerance = gas_margin*case%integrator%relative_tolerance
-    associate (linkage => case%mechanism%linkage(), sense => sign(1.0_dp, scene%start_speed))
+    linkage = case%mechanism%linkage()
+    associate (sense => sign(1.0_dp, scene%start_speed))
       if (allocated(case%measured)) then
         call case%measured%prepare(linkage, sense, tolerance, scene%gas, error)
       else
@@ -245,6 +255,9 @@ contains
     end associate
     if (allocated(error)) return
     scene%gas%has_force = has_force
+    if (allocated(charge)) call charge%prepare(scene%gas%cycle, case%combustion%bore, &
+      linkage%stroke(), case%combustion%crankcase_pressure)
+    call move_alloc(charge, scene%gas%charge)
     call scene%gas%start(scene%start_angle, merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
     if (.not. allocated(scene%chain%train)) return
     associate (train => scene%chain%train)

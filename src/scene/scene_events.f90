@@ -127,7 +127,7 @@ contains
     associate (i => self%event_of(index)%joint, event => self%event_of(index)%event)
       if (i == of_gas) then
         if (allocated(self%other_gas)) call pass_others(self, event, t, y, .false.)
-        call self%gas%pass(event, self%crank_angle(t, y), self%crank_speed(t, y))
+        call self%gas%pass(event, self%crank_angle(t, y), self%crank_speed(t, y), y)
       else if (i == of_other_gas) then
         call pass_others(self, event, t, y, .true.)
       else if (i == of_turns) then
@@ -162,17 +162,18 @@ contains
   subroutine pass_others(scene, event, t, y, is_own)
     class(scene_t), intent(inout) :: scene
     integer, intent(in) :: event
-    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
     logical, intent(in) :: is_own   !! the event is that of the other cylinders
     real(dp) :: angles(most_cylinders), speeds(most_cylinders), g(scene%gas%n_events), g_rate(scene%gas%n_events)
     integer :: n
     n = size(scene%chain%train%cylinders)
     call other_cranks(scene, t, y, angles, speeds)
-    if (is_own .or. allocated(scene%gas%cycle)) call scene%other_gas%pass(scene%gas, event, angles(:n), speeds(:n), is_own)
+    if (is_own .or. allocated(scene%gas%cycle)) call scene%other_gas%pass(scene%gas, event, angles(:n), speeds(:n), is_own, y)
     if (.not. (is_own .and. allocated(scene%gas%cycle))) return
     call scene%gas%events(scene%crank_angle(t, y), scene%crank_speed(t, y), g, g_rate)
     if (scene%other_gas%is_now(g(event), scene%crank_angle(t, y))) &
-      call scene%gas%pass(event, scene%crank_angle(t, y), scene%crank_speed(t, y))
+      call scene%gas%pass(event, scene%crank_angle(t, y), scene%crank_speed(t, y), y)
   end subroutine pass_others
 
   !> The discrete state, for the choice of the integration method.

@@ -20,6 +20,7 @@ module scene_problem
   use piston_guide, only: piston_guide_t, guide_loads_t
   use working_gas, only: working_gas_t
   use other_cylinders, only: other_cylinders_t
+  use cylinder_charge, only: charge_motion_t, n_charge_sums
   use crank_turns, only: crank_turns_t, wear_cycle_t
   implicit none
   private
@@ -41,6 +42,7 @@ module scene_problem
     type(guide_loads_t) :: guide    !! of a guide that is not ideal
     real(dp) :: crank_moment        !! moment of the drive on the crank [N m]
     real(dp) :: cylinder_pressure   !! [Pa]
+    type(charge_motion_t) :: charge !! gas of the cylinder, where it has a mass
     real(dp) :: power               !! of all non-conservative forces and the drive [W]
   end type evaluation_t
 
@@ -96,6 +98,7 @@ module scene_problem
     type(work_part_t), allocatable :: parts(:)   !! parts of the work, if they are told apart
     integer :: n_works = 0          !! number of them; the following ones are works in carried bearings, which no body feels
     logical :: has_heat = .false.   !! the film of a joint heats up
+    logical :: has_charge = .false. !! pressure and mass of the gas are states
     logical :: clears_loads = .false.       !! the right-hand side needs all loads of a joint, also those that do not act
     integer :: other_part = 0       !! the part that is the whole work without that of the others; 0: none
     logical :: is_plain = .true.    !! rigid bodies, an ideal guide and a drive that does not vary
@@ -143,6 +146,8 @@ module scene_problem
     procedure :: energy_scale
     procedure :: speed_scale
     procedure :: twist_frequency
+    procedure :: charge_totals
+    procedure :: charge_residual
     procedure :: compared_states
   end type scene_t
 
@@ -343,6 +348,7 @@ contains
     do i = 1, self%n_joints
       if (self%joints(i)%has_own_rates) call self%joints(i)%set_own_rates(now%joint(i), y, dydt)
     end do
+    if (self%has_charge) call set_charge_rates(self, now, y, dydt)
     if (allocated(self%parts)) call set_work_rates(self, y, now, dydt)
     if (self%measures%last < self%measures%first) return
     if (self%measures_loss) dydt(self%measures%last) = -sum(now%joint(:self%n_joints)%power)
@@ -350,6 +356,27 @@ contains
       dydt(self%measures%first + i - 1) = force_size(self%pin_force(now, self%reported(i)))
     end do
   end subroutine derivatives
+
+  !> Rates of pressure and mass of the gas in all cylinders.
+  pure subroutine set_charge_rates(self, now, y, dydt)
+    class(scene_t), intent(in) :: self
+    type(evaluation_t), intent(in) :: now
+    real(dp), intent(in) :: y(self%n)
+    real(dp), intent(inout) :: dydt(self%n)
+    real(dp) :: speed(most_cylinders)
+    integer :: i, n
+    associate (charge => self%gas%charge)
+      dydt(charge%pressures%first) = now%charge%pressure_rate
+      dydt(charge%masses%first) = now%charge%mass_rate
+      dydt(charge%sums%first:charge%sums%last) = now%charge%rates
+    end associate
+    if (.not. allocated(self%other_gas)) return
+    n = size(self%chain%train%cylinders)
+    do i = 1, n
+      speed(i) = now%motion%train%speed(self%chain%train%cylinders(i)%station)
+    end do
+    call self%other_gas%set_rates(self%gas, now%motion%train%angle(:n), speed(:n), y, dydt)
+  end subroutine set_charge_rates
 
   !> Rates of the states of the joints.
   pure subroutine set_rates(n, joints, now, dydt)
@@ -387,6 +414,9 @@ contains
       call self%joints(i)%complete(evaluation%motion, in_domain, y, evaluation%joint(i))
     end do
     if (in_domain .and. size(self%carried) > 0) call look_at_carried(self, y, evaluation, in_domain)
+    if (self%has_charge .or. .not. (in_domain .and. allocated(self%gas))) return
+    if (allocated(self%gas%charge)) &
+      call self%gas%find_charge(evaluation%motion%crank_angle, evaluation%motion%crank_speed, y, evaluation%charge)
   end subroutine evaluate
 
   !> Set what forces between the bodies depend on, and what a chain without clearance leaves as it is.
@@ -421,7 +451,8 @@ contains
       call follow_rod(bodies%crank%length, bodies%per_rod_length, bodies%piston%axis_offset, motion, in_domain)
       if (.not. in_domain) return
       call self%find_loads(n, joints, y, now)
-      if (allocated(self%gas)) call self%load_gas(now)
+      if (allocated(self%gas)) call self%load_gas(y, now, in_domain)
+      if (.not. in_domain) return
       if (n == 0) then
         call accelerate_ideal_chain(bodies, drive, motion, now%loads, now%accelerations, now%crank_moment)
       else if (.not. self%chain%is_loose(crank_pin)) then
@@ -528,11 +559,20 @@ contains
     now%loads%axial_force = 0
   end subroutine find_loads
 
-  !> The load of the gas.
-  pure subroutine load_gas(self, now)
+  !> The load of the gas. `in_domain` becomes false if its pressure or its mass is not positive.
+  pure subroutine load_gas(self, y, now, in_domain)
     class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: y(self%n)
     type(evaluation_t), intent(inout) :: now
-    now%cylinder_pressure = self%gas%pressure(now%motion%crank_angle)
+    logical, intent(inout) :: in_domain
+    if (self%has_charge) then
+      in_domain = self%gas%charge%admits(y)
+      if (.not. in_domain) return
+      call self%gas%find_charge(now%motion%crank_angle, now%motion%crank_speed, y, now%charge)
+      now%cylinder_pressure = now%charge%pressure
+    else
+      now%cylinder_pressure = self%gas%pressure(now%motion%crank_angle)
+    end if
     now%loads%axial_force = self%gas%force(now%cylinder_pressure)
   end subroutine load_gas
 
@@ -551,6 +591,8 @@ contains
     if (allocated(self%guide)) self%highest_mode = 2*(self%highest_mode + 1) - 1
     self%crank_moves = self%chain%drive%free_crank .or. self%chain%has_crankshaft()
     if (allocated(self%chain%train)) self%crank_moves = self%chain%train%frees_crank(self%chain%drive)
+    self%has_charge = .false.
+    if (allocated(self%gas)) self%has_charge = self%gas%has_states()
     call claim_states(self)
     call self%layout%count_again()
     call claim_states(self)
@@ -559,7 +601,8 @@ contains
     self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying) &
       .or. allocated(self%chain%train) .or. allocated(self%chain%floating) .or. allocated(self%given_load))
     self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide) &
-      .or. allocated(self%chain%train) .or. allocated(self%chain%floating) .or. size(self%carried) > 0
+      .or. allocated(self%chain%train) .or. allocated(self%chain%floating) .or. size(self%carried) > 0 &
+      .or. self%has_charge
     call self%set_layout()
   end subroutine claim
 
@@ -582,6 +625,10 @@ contains
     if (allocated(self%chain%train)) call claim_train(self)
     call self%layout%claim_quadratures(1, self%energy_scale(), work)
     self%work_at = work%first
+    if (.not. self%has_charge) return
+    i = 1
+    if (allocated(self%chain%train)) i = 1 + size(self%chain%train%cylinders)
+    call self%gas%charge%claim(self%layout, i)
   end subroutine claim_states
 
   !> Pass the parts of the layout that the integrator needs to it.
@@ -677,7 +724,28 @@ contains
     end do
     if (allocated(self%chain%floating)) call self%chain%floating%set_start(y)
     if (allocated(self%guide)) call self%guide%set_start(y)
+    if (.not. self%has_charge) return
+    call self%gas%set_charge(self%start_angle, y)
+    if (allocated(self%other_gas)) &
+      call self%other_gas%set_charges(self%gas, self%start_angle + self%chain%train%cylinders%shift, y)
   end function initial_state
+
+  !> Integrals of the gas so far, see `totals` of `charge_t`; 0 where its pressure and mass are no states.
+  pure function charge_totals(self, t, y) result(totals)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp) :: totals(n_charge_sums)
+    totals = 0
+    if (self%has_charge) totals = self%gas%charge_totals(self%crank_angle(t, y), y)
+  end function charge_totals
+
+  !> Error of the energy of the gas so far, relative; negative where there is none to know.
+  pure real(dp) function charge_residual(self, t, y) result(residual)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    residual = -1
+    if (self%has_charge) residual = self%gas%charge_residual(self%crank_angle(t, y), y)
+  end function charge_residual
 
   !> Indices of the states by which motions are compared: all except quadratures, the crank angle, and the angle of a floating pin,
   !> on which nothing depends and which drifts.

@@ -36,11 +36,11 @@ contains
     if (allocated(self%guide)) call self%guide%declare(list, y)
     if (allocated(self%chain%elastic)) call self%chain%elastic%declare(list, t, y, angle, speed)
     if (allocated(self%chain%train)) call self%chain%train%declare(list, t, y, angle, speed)
-    if (allocated(self%gas)) call self%gas%declare(list, angle, speed)
+    if (allocated(self%gas)) call self%gas%declare(list, y, angle, speed)
     if (allocated(self%other_gas)) then
       call other_cranks(self, t, y, angles, speeds)
       n = size(self%chain%train%cylinders)
-      if (n > 0) call self%other_gas%declare(list, self%gas, angles(:n), speeds(:n))
+      if (n > 0) call self%other_gas%declare(list, self%gas, y, angles(:n), speeds(:n))
     end if
     if (.not. allocated(self%wear_cycle)) return
     since_wear = angle - self%wear_cycle%begin

@@ -23,7 +23,7 @@ contains
     integer :: skip, n, i
 
     has_closed_form = self%chain%is_loose(piston_pin) .and. .not. (self%chain%is_loose(crank_pin) .or. allocated(self%guide) &
-      .or. allocated(self%chain%elastic) .or. size(self%carried) > 0)
+      .or. allocated(self%chain%elastic) .or. size(self%carried) > 0 .or. self%has_charge)
     if (has_closed_form) has_closed_form = all(self%joints(:self%n_joints)%has_slopes) .and. &
       .not. (allocated(self%chain%floating) .and. allocated(self%chain%train))
     if (has_closed_form) then

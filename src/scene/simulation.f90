@@ -46,6 +46,7 @@ module simulation
     logical :: can_go_on = .false.  !! the run was stopped from outside or by a limit
     logical :: energy_is_poor = .false.          !! the run is done, but the user must be told of its energy residual
     logical :: heat_is_poor = .false.            !! the same of the heat of a film
+    logical :: gas_is_poor = .false.             !! the same of the energy of the gas
     type(period_watch_t) :: periods              !! search for a periodic motion that ends the run
     type(answer_t), allocatable :: answers(:)    !! of the last whole cycle, if the case asks for them
     type(train_result_t), allocatable :: train(:)    !! of several cylinders on one crankshaft
@@ -417,11 +418,17 @@ contains
         call fail(error, 'heat of a film not kept: the residual is beyond its limit, so the results are wrong; run to '// &
           place(scene, t, y), status_integration)
         report%status = error%message
+      else if (.not. report%figures%gas_residual <= &
+               residual_limit(case%integrator%relative_tolerance, report%figures%crank_travel)) then
+        call fail(error, 'energy of the gas not kept: the residual is beyond its limit, so the results are wrong; run to '// &
+          place(scene, t, y), status_integration)
+        report%status = error%message
       else
         report%energy_is_poor = report%figures%max_energy_residual > report%figures%max_energy* &
           remarkable_residual(case%integrator%relative_tolerance)
         report%heat_is_poor = report%figures%heat_residual() > &
           remarkable_residual(case%integrator%relative_tolerance)
+        report%gas_is_poor = report%figures%gas_residual > remarkable_residual(case%integrator%relative_tolerance)
       end if
     end associate
   end subroutine finish

@@ -180,7 +180,8 @@ contains
     if (allocated(scene%chain%elastic)) call add_elastic_columns(scene%chain%elastic, now%motion, now%accelerations, row)
     if (allocated(scene%chain%train)) &
       call add_train_columns(scene%chain%train, now%motion, now%accelerations, reaction, row)
-    if (allocated(scene%gas)) call scene%gas%add_columns(now%motion%sin_crank, now%motion%cos_crank, now%cylinder_pressure, row)
+    if (allocated(scene%gas)) call scene%gas%add_columns(now%motion%sin_crank, now%motion%cos_crank, now%cylinder_pressure, &
+      now%charge, row)
   end subroutine add_columns
 
   !> Cosine and sine of the angle of the rod.

@@ -138,7 +138,8 @@ contains
       other%has_gas(i) = case%cylinders(other%number(i))%gas
     end do
     gas%scale = case%cylinders(train%full_number)%pressure_scale
-    if (.not. allocated(gas%cycle) .or. all(case%cylinders%heat_scale >= 1 .and. case%cylinders%heat_scale <= 1)) return
+    if (.not. allocated(gas%cycle)) return
+    if (all(abs(case%cylinders%heat_scale - 1) <= 0) .and. .not. gas%has_states()) return
     allocate (other%cycles(size(train%cylinders)))
     do i = 1, size(train%cylinders)
       other%cycles(i) = gas%cycle

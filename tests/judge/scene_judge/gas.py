@@ -71,6 +71,7 @@ class Gas(Cylinder):
                                                     n("combustion.wiebe_efficiency"), n("combustion.wiebe_form"))
         self.start, self.duration = math.radians(n("combustion.start_deg")), math.radians(n("combustion.duration_deg"))
         self.intake = n("combustion.intake_pressure")
+        self.loses = "wall_heat.wall_temperature" in run.case or n("working_gas.leak_area", 0.0) > 0   # then not of the angle alone
         self.dead = self.displacement / (n("combustion.compression_ratio") - 1)
         two_strokes = run.text("combustion.cycle") == "two_stroke"
         self.period = (2 if two_strokes else 4) * math.pi
@@ -107,6 +108,9 @@ class Gas(Cylinder):
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
         return half * sum(w * (self.source(middle) if x == 0 else self.source(middle - x * half) + self.source(middle + x * half))
                           for x, w in GAUSS_5)
+
+    def wanted(self, i: int, q: float) -> float | None:
+        return None if self.loses else super().wanted(i, q)
 
     def pressure(self, q: float) -> float:
         """Pressure at the angle q [Pa]."""

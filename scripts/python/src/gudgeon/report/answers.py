@@ -125,6 +125,11 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
         found.append(("Hardest slap", text))
     if text := rows.shown("cycle_max_cylinder_pressure", "bar", 1e-5):
         found.append(("Cylinder pressure", text))
+    gas = [f"{name} {text}" for name, text in (
+        ("up to", rows.shown("cycle_max_gas_temperature", "K", 1)), ("to the walls", rows.shown("cycle_heat_to_walls", "J", 1)),
+        ("leak", rows.shown("cycle_leak_share", "%", 100)), ("efficiency", rows.shown("cycle_indicated_efficiency", "%", 100))) if text]
+    if gas:
+        found.append(("Gas", ", ".join(gas)))
     speed = rows(rows.of("", "cycle_mean_crank_speed", "mean_crank_speed"))
     if speed is not None:
         text = f"{number(speed * 9.549296585513721)} rpm"

@@ -1,0 +1,273 @@
+!> The gas in the cylinders of an engine as a mass with a temperature: m and p V = m R_g T. While the cylinder is closed
+!>
+!>     m' = -m_l,    p' = ((g - 1)(Q_b' - Q_w' - H_l') - g p V')/V
+!>
+!> with the heat Q_b' of combustion, Q_w' to the walls, the flow m_l past the rings to the crankcase and its enthalpy
+!> H_l' = c_p T_l m_l, where gas that comes back has the temperature at which the cylinder was closed. While the cylinder is open
+!> its pressure is that of the intake and its temperature that of the fresh charge. Without walls and leak the mass is constant and
+!> the pressure follows from the crank angle alone (`gas_cycle`); else p and m are states.
+module cylinder_charge
+  use kinds, only: dp
+  use model_parameters, only: has_parameters_t, parameter_list_t
+  use state_layout, only: layout_t, slice_t
+  use run_state, only: run_state_t
+  use gas_cycle, only: gas_cycle_t, part_open
+  use wall_law, only: wall_law_t, chamber_t, hot_gas_t
+  use nozzle_flow, only: orifice_flow
+  implicit none
+  private
+  public :: charge_case_t, charge_t, charge_motion_t, n_charge_sums
+  public :: of_balance, to_walls, leaked, leaked_enthalpy, moved
+
+  !> Integrals over time, of the mechanism's cylinder: energy that the gas has received by heat, work and flow, with its energy at
+  !> the start, so that it is that of the gas but for errors of the integration [J]; heat to the walls [J], mass lost [kg] with its
+  !> enthalpy [J], and the size of the work [J].
+  integer, parameter :: of_balance = 1, to_walls = 2, leaked = 3, leaked_enthalpy = 4, moved = 5, n_charge_sums = 5
+
+  !> The group &working_gas.
+  type, extends(has_parameters_t) :: charge_case_t
+    real(dp) :: gas_constant = 0   !! R_g [J/(kg K)]
+    real(dp) :: temperature = 0    !! of the charge when the cylinder closes [K]
+    real(dp) :: leak_area = 0      !! [m^2]
+  contains
+    procedure :: parameters
+  end type charge_case_t
+
+  !> The gas of one cylinder at an instant.
+  type :: charge_motion_t
+    real(dp) :: pressure, mass, temperature                  !! [Pa], [kg], [K]
+    real(dp) :: pressure_rate, mass_rate, temperature_rate   !! [Pa/s], [kg/s], [K/s]
+    real(dp) :: heat_flow                                    !! Q_w', to the walls [W]
+    real(dp) :: leak_flow                                    !! m_l, out of the cylinder [kg/s]
+    real(dp) :: rates(n_charge_sums)                         !! of the integrals
+  end type charge_motion_t
+
+  !> What all cylinders share.
+  type :: charge_t
+    type(charge_case_t) :: given
+    class(wall_law_t), allocatable :: walls     !! not allocated: no heat to the walls
+    logical :: is_state = .false.               !! p and m are states
+    type(chamber_t), private :: chamber
+    real(dp), private :: crankcase_pressure = 0 !! [Pa]
+    real(dp) :: closed_mass = 0                 !! m when the cylinder closes [kg]
+    real(dp) :: opening_temperature = 0         !! T when the mechanism's cylinder last opened; 0: it has not [K]
+    type(slice_t) :: pressures, masses          !! of all cylinders in the state vector, the mechanism's first
+    type(slice_t) :: sums                       !! the integrals
+  contains
+    procedure :: set_case
+    procedure :: prepare
+    procedure :: claim
+    procedure :: declare
+    procedure :: set_start
+    procedure :: admits
+    procedure, non_overridable :: move
+    procedure :: move_adiabatic
+    procedure :: energy
+    procedure :: totals
+    procedure :: change_part
+    procedure :: loses_gas
+  end type charge_t
+
+contains
+
+  subroutine parameters(self, list)
+    class(charge_case_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%add('gas_constant', self%gas_constant, 'specific gas constant; air 287, R134a 81.5, R600a 143, nitrogen 297', &
+      'J/(kg K)', '> 0', example='287.0', usual='50 to 4200')
+    call list%add('temperature', self%temperature, 'temperature of the gas where the cylinder closes', 'K', '> 0', &
+      example='350.0', usual='230 to 500')
+    call list%add('leak_area', self%leak_area, 'effective area of the gap past the rings to the crankcase', 'm^2', '>= 0', &
+      default='0.0', usual='1e-9 to 1e-4')
+  end subroutine parameters
+
+  !> Take over the groups of a case.
+  subroutine set_case(self, given, walls)
+    class(charge_t), intent(inout) :: self
+    type(charge_case_t), intent(in) :: given
+    class(wall_law_t), allocatable, intent(in) :: walls
+    self%given = given
+    if (allocated(walls)) allocate (self%walls, source=walls)
+    self%is_state = allocated(walls) .or. given%leak_area > 0
+  end subroutine set_case
+
+  !> Prepare for the cycle of an engine.
+  subroutine prepare(self, cycle, bore, stroke, crankcase_pressure)
+    class(charge_t), intent(inout) :: self
+    type(gas_cycle_t), intent(in) :: cycle
+    real(dp), intent(in) :: bore, stroke, crankcase_pressure
+    associate (c => self%chamber)
+      c%bore = bore
+      c%stroke = stroke
+      c%displacement = cycle%cylinder%displacement
+      c%gas_constant = self%given%gas_constant
+      c%heat_capacity_ratio = cycle%heat_capacity_ratio
+      c%closing_pressure = cycle%intake_pressure
+      c%closing_volume = cycle%cylinder%volume(cycle%closes)
+      c%closing_temperature = self%given%temperature
+      self%closed_mass = c%closing_pressure*c%closing_volume/(c%gas_constant*c%closing_temperature)
+    end associate
+    self%crankcase_pressure = crankcase_pressure
+  end subroutine prepare
+
+  !> Claim pressures and masses of a number of cylinders, and the integrals, which have no influence on the steps.
+  subroutine claim(self, layout, cylinders)
+    class(charge_t), intent(inout) :: self
+    type(layout_t), intent(inout) :: layout
+    integer, intent(in) :: cylinders
+    call layout%claim_states(cylinders, self%chamber%closing_pressure, self%pressures)
+    call layout%claim_states(cylinders, self%closed_mass, self%masses)
+    call layout%claim_quadratures(n_charge_sums, 0.0_dp, self%sums)
+  end subroutine claim
+
+  !> Declare the states of cylinder i, with a prefix for their names, and with the first one the integrals.
+  subroutine declare(self, list, i, y, prefix)
+    class(charge_t), intent(inout) :: self
+    type(run_state_t), intent(inout) :: list
+    integer, intent(in) :: i
+    real(dp), intent(inout) :: y(:)
+    character(len=*), intent(in) :: prefix
+    call list%add(prefix//'gas_pressure', y(self%pressures%first + i - 1), 'Pa', 'pressure of the gas in the cylinder')
+    call list%add(prefix//'gas_mass', y(self%masses%first + i - 1), 'kg', 'its mass')
+    if (i > 1) return
+    list%of_totals = .true.
+    call list%add('gas_sums', y(self%sums%first:self%sums%last), '', &
+      'integrals over time: energy of the gas, heat to the walls [J], mass lost [kg], its enthalpy, size of the work [J]')
+    call list%add('opening_temperature', self%opening_temperature, 'K', 'temperature of the gas when the cylinder last opened')
+    list%of_totals = .false.
+  end subroutine declare
+
+  !> Set the states of cylinder i at an angle of its cycle [rad], in a part: those of the adiabatic cycle.
+  pure subroutine set_start(self, cycle, i, angle, part, cycle_start, y)
+    class(charge_t), intent(in) :: self
+    type(gas_cycle_t), intent(in) :: cycle
+    integer, intent(in) :: i, part
+    real(dp), intent(in) :: angle, cycle_start
+    real(dp), intent(inout) :: y(:)
+    associate (p => y(self%pressures%first + i - 1), m => y(self%masses%first + i - 1))
+      p = cycle%pressure(angle, part, cycle_start)
+      m = self%closed_mass
+      if (part == part_open) m = fresh_mass(self, cycle%cylinder%volume(angle))
+    end associate
+    if (i == 1) y(self%sums%first) = self%energy(cycle, angle, y)
+  end subroutine set_start
+
+  !> Mass of the fresh charge in a volume [kg].
+  pure real(dp) function fresh_mass(self, volume)
+    class(charge_t), intent(in) :: self
+    real(dp), intent(in) :: volume
+    fresh_mass = self%chamber%closing_pressure*volume/(self%chamber%gas_constant*self%chamber%closing_temperature)
+  end function fresh_mass
+
+  !> Whether the pressures and masses of a state are possible.
+  pure logical function admits(self, y)
+    class(charge_t), intent(in) :: self
+    real(dp), intent(in) :: y(:)
+    admits = all(y(self%pressures%first:self%pressures%last) > 0) .and. all(y(self%masses%first:self%masses%last) > 0)
+  end function admits
+
+  !> The gas of cylinder i at an angle [rad] and a speed [rad/s] of its cycle.
+  pure subroutine move(self, cycle, i, angle, speed, part, cycle_start, y, now)
+    class(charge_t), intent(in) :: self
+    type(gas_cycle_t), intent(in) :: cycle
+    integer, intent(in) :: i, part
+    real(dp), intent(in) :: angle, speed, cycle_start, y(:)
+    type(charge_motion_t), intent(out) :: now
+    real(dp), parameter :: per_turn = 0.318309886183790672_dp   ! 1/pi: two strokes a turn [1/rad]
+    real(dp) :: volume, rate, burning, enthalpy
+    volume = cycle%cylinder%volume(angle)
+    rate = cycle%cylinder%volume_slope(angle)*speed
+    associate (g => self%chamber%heat_capacity_ratio, constant => self%chamber%gas_constant)
+      now%heat_flow = 0
+      now%leak_flow = 0
+      if (part == part_open) then
+        now%pressure = self%chamber%closing_pressure
+        now%temperature = self%chamber%closing_temperature
+        now%mass = fresh_mass(self, volume)
+        now%mass_rate = fresh_mass(self, rate)
+        now%pressure_rate = 0
+        now%temperature_rate = 0
+        now%rates = 0
+        now%rates(of_balance) = now%pressure*rate/(g - 1)
+        return
+      end if
+      now%pressure = y(self%pressures%first + i - 1)
+      now%mass = y(self%masses%first + i - 1)
+      now%temperature = now%pressure*volume/(now%mass*constant)
+      burning = cycle%heat_slope(angle, part, cycle_start)*speed
+      if (allocated(self%walls)) now%heat_flow = self%walls%heat_flow(self%chamber, &
+        hot_gas_t(now%pressure, now%temperature, volume, self%chamber%stroke*abs(speed)*per_turn))
+      now%leak_flow = orifice_flow(self%given%leak_area, constant, g, [now%pressure, self%crankcase_pressure], &
+        [now%temperature, self%given%temperature])
+      enthalpy = g*constant/(g - 1)*now%leak_flow*merge(now%temperature, self%given%temperature, now%leak_flow > 0)
+      now%pressure_rate = ((g - 1)*(burning - now%heat_flow - enthalpy) - g*now%pressure*rate)/volume
+      now%mass_rate = -now%leak_flow
+      now%temperature_rate = now%temperature*(now%pressure_rate/now%pressure + rate/volume - now%mass_rate/now%mass)
+      now%rates = [burning - now%heat_flow - enthalpy - now%pressure*rate, now%heat_flow, now%leak_flow, enthalpy, &
+        abs(now%pressure*rate)]
+    end associate
+  end subroutine move
+
+  !> The gas of the mechanism's cylinder where it has no states.
+  pure subroutine move_adiabatic(self, cycle, angle, speed, part, cycle_start, now)
+    class(charge_t), intent(in) :: self
+    type(gas_cycle_t), intent(in) :: cycle
+    real(dp), intent(in) :: angle, speed, cycle_start
+    integer, intent(in) :: part
+    type(charge_motion_t), intent(out) :: now
+    real(dp) :: volume, rate
+    volume = cycle%cylinder%volume(angle)
+    rate = cycle%cylinder%volume_slope(angle)*speed
+    now%pressure = cycle%pressure(angle, part, cycle_start)
+    now%pressure_rate = cycle%pressure_slope(angle, part, cycle_start)*speed
+    now%mass = self%closed_mass
+    now%mass_rate = 0
+    if (part == part_open) now%mass = fresh_mass(self, volume)
+    if (part == part_open) now%mass_rate = fresh_mass(self, rate)
+    now%temperature = now%pressure*volume/(now%mass*self%chamber%gas_constant)
+    now%temperature_rate = now%temperature*(now%pressure_rate/now%pressure + rate/volume - now%mass_rate/now%mass)
+    now%heat_flow = 0
+    now%leak_flow = 0
+    now%rates = 0
+  end subroutine move_adiabatic
+
+  !> Energy of the gas in the mechanism's cylinder, p V/(g - 1), at an angle of its cycle [rad] [J].
+  pure real(dp) function energy(self, cycle, angle, y)
+    class(charge_t), intent(in) :: self
+    type(gas_cycle_t), intent(in) :: cycle
+    real(dp), intent(in) :: angle, y(:)
+    energy = y(self%pressures%first)*cycle%cylinder%volume(angle)/(self%chamber%heat_capacity_ratio - 1)
+  end function energy
+
+  !> The integrals so far; in the place of the balance its error, energy of the gas less what it has received [J].
+  pure function totals(self, cycle, angle, y)
+    class(charge_t), intent(in) :: self
+    type(gas_cycle_t), intent(in) :: cycle
+    real(dp), intent(in) :: angle, y(:)
+    real(dp) :: totals(n_charge_sums)
+    totals = y(self%sums%first:self%sums%last)
+    totals(of_balance) = self%energy(cycle, angle, y) - totals(of_balance)
+  end function totals
+
+  !> Cylinder i has passed from one part of its cycle to another: where it opens or closes, its gas is exchanged.
+  pure subroutine change_part(self, cycle, i, angle, from, part, cycle_start, y)
+    class(charge_t), intent(inout) :: self
+    type(gas_cycle_t), intent(in) :: cycle
+    integer, intent(in) :: i, from, part
+    real(dp), intent(in) :: angle, cycle_start
+    real(dp), intent(inout) :: y(:)
+    real(dp) :: before
+    if ((from == part_open) .eqv. (part == part_open)) return
+    if (.not. self%is_state) return
+    before = y(self%sums%first)
+    if (i == 1) before = before - self%energy(cycle, angle, y)
+    call self%set_start(cycle, i, angle, part, cycle_start, y)
+    if (i == 1) y(self%sums%first) = before + self%energy(cycle, angle, y)
+  end subroutine change_part
+
+  !> Whether gas leaves the closed cylinder.
+  pure logical function loses_gas(self)
+    class(charge_t), intent(in) :: self
+    loses_gas = self%given%leak_area > 0
+  end function loses_gas
+end module cylinder_charge
