@@ -6,7 +6,7 @@ submodule (case_definition) case_groups
   use joint_case, only: visit_joint, drop_laws, select_contact, select_friction
   use gas_laws, only: offer_gas_cycles
   use wall_laws, only: offer_wall_laws
-  use train_case, only: most_rings, most_cylinders
+  use train_case, only: most_rings
   use ring_case, only: visit_rings
   implicit none
 
