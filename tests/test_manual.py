@@ -476,6 +476,10 @@ def check_new_answer(copy: Path) -> None:
 
 
 def run_in(folder: Path, command: str) -> subprocess.CompletedProcess:
+    """Run a command there; `fpm run` with the flags of the tests, whose objects are there already."""
+    strict = re.search(r"^@strict$.*?^options (--profile .*?)$.*?^options (--flag .*?)$", (folder / "fpm.rsp").read_text(), re.MULTILINE | re.DOTALL)
+    assert strict
+    command = command.replace("fpm run ", f"fpm run {strict[1]} {strict[2]} ")
     return subprocess.run(command, shell=True, cwd=folder, capture_output=True, text=True)
 
 
