@@ -84,7 +84,7 @@ contains
       i = i + 1
       text = trim(arguments(i))
       if (text == '') then
-        call refuse('an empty argument is no case file')
+        call refuse(error, 'an empty argument is no case file')
       else if (text == 'sweep' .and. .not. (line%sweep .or. only_cases) .and. size(line%cases) == 0) then
         line%sweep = .true.
       else if (text == '-') then
@@ -94,199 +94,224 @@ contains
       else if (text == '--') then
         only_cases = .true.
       else if (index(text, '--') == 1) then
-        call read_long_option()
+        call read_long_option(arguments, i, line, error)
       else
-        call read_short_options()
+        call read_short_options(arguments, i, line, error)
       end if
     end do
-    if (allocated(error) .or. line%help .or. line%version) return
+    if (.not. (allocated(error) .or. line%help .or. line%version)) call check_line(line, error)
+  end subroutine parse_command_line
+
+  !> Check that the options belong together.
+  subroutine check_line(line, error)
+    type(command_line_t), intent(in) :: line
+    type(error_t), allocatable, intent(inout) :: error
     if (line%template .or. line%manual .or. line%reference//line%completion /= '') then
       if (line%option_count > 1 .or. size(line%cases) > 0) then
-        call refuse('--template, --reference, --completion and --man are not combined with other options or with files')
+        call refuse(error, '--template, --reference, --completion and --man are not combined with other options or with files')
       else if (line%sweep .and. line%kind /= '') then
-        call refuse('gudgeon sweep --template has no kinds')
+        call refuse(error, 'gudgeon sweep --template has no kinds')
       end if
       return
     end if
     if (size(line%cases) == 0) then
-      call refuse('no '//trim(merge('study', 'case ', line%sweep))//' file given')
+      call refuse(error, 'no '//trim(merge('study', 'case ', line%sweep))//' file given')
     else if (line%name /= '' .and. (line%sweep .or. size(line%cases) > 1)) then
-      call refuse('--name is for one case')
+      call refuse(error, '--name is for one case')
     else if (line%sweep .and. (line%certify .or. line%resolved)) then
-      call refuse('--certify and --resolved are not for gudgeon sweep')
+      call refuse(error, '--certify and --resolved are not for gudgeon sweep')
     else if (line%sweep .and. line%from /= '') then
-      call refuse('--from is not for gudgeon sweep: give &initial from in the base case')
+      call refuse(error, '--from is not for gudgeon sweep: give &initial from in the base case')
     else if (.not. line%sweep .and. (line%fresh .or. line%last_row > 0)) then
-      call refuse('--fresh and --rows are for gudgeon sweep')
+      call refuse(error, '--fresh and --rows are for gudgeon sweep')
     else if (line%fresh .and. line%last_row > 0) then
-      call refuse('--fresh would discard the results of other rows: not with --rows')
+      call refuse(error, '--fresh would discard the results of other rows: not with --rows')
     else
-      call check_names()
+      call check_names(line, error)
     end if
+  end subroutine check_line
 
-  contains
+  !> An error of the command line.
+  subroutine refuse(error, message)
+    type(error_t), allocatable, intent(inout) :: error
+    character(len=*), intent(in) :: message
+    call fail(error, message//'; gudgeon --help lists the options', status_command_line)
+  end subroutine refuse
 
-    subroutine refuse(message)
-      character(len=*), intent(in) :: message
-      call fail(error, message//'; gudgeon --help lists the options', status_command_line)
-    end subroutine refuse
+  !> `--name`, `--name value` or `--name=value`.
+  subroutine read_long_option(arguments, i, line, error)
+    character(len=*), intent(in) :: arguments(:)
+    integer, intent(inout) :: i   !! the last argument used
+    type(command_line_t), intent(inout) :: line
+    type(error_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: text, name, near
+    character(len=10) :: names(size(options))
+    integer :: equals, place
+    text = trim(arguments(i))
+    equals = index(text, '=')
+    name = text(3:)
+    if (equals > 0) name = text(3:equals - 1)
+    place = findloc(options%long == name, .true., 1)
+    if (place == 0) then
+      names = options%long
+      near = nearest_word(name, names)
+      if (near /= '') near = '; did you mean --'//near//'?'
+      call refuse(error, '--'//printable(name, 40)//': unknown option'//near)
+    else if (equals == 0) then
+      call read_option(arguments, i, line, error, options(place), '--'//name)
+    else if (options(place)%takes_value .or. options(place)%may_take_value) then
+      call set_option(line, error, options(place)%long, text(equals + 1:), has_value=.true.)
+    else
+      call refuse(error, '--'//name//': takes no value')
+    end if
+  end subroutine read_long_option
 
-    !> `--name`, `--name value` or `--name=value`.
-    subroutine read_long_option()
-      character(len=:), allocatable :: name, near
-      character(len=10) :: names(size(options))
-      integer :: equals, place
-      equals = index(text, '=')
-      name = text(3:)
-      if (equals > 0) name = text(3:equals - 1)
-      place = findloc(options%long == name, .true., 1)
+  !> `-s VALUE`, `-sVALUE`, `-q`, or several options without values together, such as `-qh`.
+  subroutine read_short_options(arguments, i, line, error)
+    character(len=*), intent(in) :: arguments(:)
+    integer, intent(inout) :: i   !! the last argument used
+    type(command_line_t), intent(inout) :: line
+    type(error_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: text
+    integer :: k, place
+    text = trim(arguments(i))
+    do k = 2, len(text)
+      place = findloc(options%short == text(k:k) .and. options%short /= '', .true., 1)
       if (place == 0) then
-        names = options%long
-        near = nearest_word(name, names)
-        if (near /= '') near = '; did you mean --'//near//'?'
-        call refuse('--'//printable(name, 40)//': unknown option'//near)
-      else if (equals == 0) then
-        call read_option(options(place), '--'//name)
-      else if (options(place)%takes_value .or. options(place)%may_take_value) then
-        call set_option(options(place)%long, text(equals + 1:), has_value=.true.)
+        call refuse(error, printable(text, 40)//': unknown option')
+      else if (options(place)%takes_value .and. k < len(text)) then
+        call set_option(line, error, options(place)%long, text(k + 1:))
+        return
       else
-        call refuse('--'//name//': takes no value')
+        call read_option(arguments, i, line, error, options(place), '-'//text(k:k))
       end if
-    end subroutine read_long_option
+      if (allocated(error)) return
+    end do
+  end subroutine read_short_options
 
-    !> `-s VALUE`, `-sVALUE`, `-q`, or several options without values together, such as `-qh`.
-    subroutine read_short_options()
-      integer :: k, place
-      do k = 2, len(text)
-        place = findloc(options%short == text(k:k) .and. options%short /= '', .true., 1)
-        if (place == 0) then
-          call refuse(printable(text, 40)//': unknown option')
-        else if (options(place)%takes_value .and. k < len(text)) then
-          call set_option(options(place)%long, text(k + 1:))
-          return
-        else
-          call read_option(options(place), '-'//text(k:k))
-        end if
-        if (allocated(error)) return
-      end do
-    end subroutine read_short_options
+  !> Carry out an option to which no value is attached: if it takes one, that is the next argument.
+  subroutine read_option(arguments, i, line, error, option, shown)
+    character(len=*), intent(in) :: arguments(:)
+    integer, intent(inout) :: i   !! the last argument used
+    type(command_line_t), intent(inout) :: line
+    type(error_t), allocatable, intent(inout) :: error
+    type(option_t), intent(in) :: option
+    character(len=*), intent(in) :: shown
+    if (.not. option%takes_value) then
+      call set_option(line, error, option%long, '')
+    else if (i == size(arguments)) then
+      call refuse(error, shown//': a value is missing')
+    else
+      i = i + 1
+      call set_option(line, error, option%long, trim(arguments(i)))
+    end if
+  end subroutine read_option
 
-    !> Carry out an option to which no value is attached: if it takes one, that is the next argument.
-    subroutine read_option(option, shown)
-      type(option_t), intent(in) :: option
-      character(len=*), intent(in) :: shown
-      if (.not. option%takes_value) then
-        call set_option(option%long, '')
-      else if (i == size(arguments)) then
-        call refuse(shown//': a value is missing')
-      else
-        i = i + 1
-        call set_option(option%long, trim(arguments(i)))
-      end if
-    end subroutine read_option
+  !> Carry out one option.
+  subroutine set_option(line, error, name, value, has_value)
+    type(command_line_t), intent(inout) :: line
+    type(error_t), allocatable, intent(inout) :: error
+    character(len=*), intent(in) :: name, value
+    logical, intent(in), optional :: has_value   !! of an option that may do without
+    character(len=:), allocatable :: wanted, groups
+    type(key_table_t) :: table
+    line%option_count = line%option_count + 1
+    select case (name)
+    case ('out')
+      line%out = value
+      if (value == '') wanted = 'must name a folder'
+    case ('set')
+      if (.not. is_override(value)) wanted = 'must have the form GROUP.KEY=VALUE or GROUP=none'
+      line%overrides = [character(len=len(line%overrides)) :: line%overrides, value]
+    case ('from')
+      line%from = value
+      if (value == '') wanted = 'must name a file'
+    case ('accuracy')
+      line%accuracy = value
+      if (.not. is_listed(value, accuracy_levels)) &
+        wanted = 'must be one of '//accuracy_levels//likely_word(value, accuracy_levels)
+    case ('jobs')
+      line%jobs = 0
+      if (value /= '' .and. verify(value, '0123456789') == 0 .and. len(value) < 6) read (value, *) line%jobs
+      if (line%jobs < 1 .or. line%jobs > most_jobs) wanted = 'must be a whole number from 1 to 1024'
+    case ('progress')
+      line%progress = value
+      if (.not. is_listed(value, progress_words)) wanted = 'must be auto, always or never'
+    case ('check')
+      line%check = .true.
+    case ('resolved')
+      line%check = .true.
+      line%resolved = .true.
+    case ('template')
+      line%template = .true.
+      line%kind = value
+      if (present(has_value) .and. .not. is_listed(value, template_kinds)) &
+        wanted = 'must be one of '//template_kinds//likely_word(value, template_kinds)
+    case ('name')
+      line%name = value
+      if (value == '' .or. index(value, '/') > 0 .or. value == '.' .or. value == '..') &
+        wanted = 'must be a name without folder; --out gives the folder'
+      if (index(value, '-') == 1) wanted = 'must not begin with -'
+      if (.not. is_clean(value)) wanted = 'must not contain control characters or bytes that are not UTF-8'
+    case ('reference')
+      line%reference = value
+      call case_schema_of(table)
+      groups = joined(group_names(table%groups))
+      if (.not. is_listed(value, subjects) .and. find_group(table%groups, value) == 0 .and. &
+          find_group(table%groups, value//'_1') == 0) &
+        wanted = 'must be '//subjects//' or a group of cases: '//groups//likely_word(value, subjects//', '//groups)
+    case ('completion')
+      line%completion = value
+      if (.not. is_listed(value, shells)) wanted = 'must be bash, zsh or fish'
+    case ('man')
+      line%manual = .true.
+    case ('quiet')
+      line%quiet = .true.
+    case ('certify')
+      line%certify = .true.
+    case ('fresh')
+      line%fresh = .true.
+    case ('rows')
+      call read_rows(value, line%first_row, line%last_row)
+      if (line%last_row == 0) wanted = 'must have the form A:B, 1 <= A <= B'
+    case ('help')
+      line%help = .true.
+    case default
+      line%version = .true.
+    end select
+    if (allocated(wanted)) call refuse(error, '--'//trim(name)//' '//printable(value, 60)//': '//wanted)
+  end subroutine set_option
 
-    !> Carry out one option.
-    subroutine set_option(name, value, has_value)
-      character(len=*), intent(in) :: name, value
-      logical, intent(in), optional :: has_value   !! of an option that may do without
-      character(len=:), allocatable :: wanted, groups
-      type(key_table_t) :: table
-      line%option_count = line%option_count + 1
-      select case (name)
-      case ('out')
-        line%out = value
-        if (value == '') wanted = 'must name a folder'
-      case ('set')
-        if (.not. is_override(value)) wanted = 'must have the form GROUP.KEY=VALUE or GROUP=none'
-        line%overrides = [character(len=len(arguments)) :: line%overrides, value]
-      case ('from')
-        line%from = value
-        if (value == '') wanted = 'must name a file'
-      case ('accuracy')
-        line%accuracy = value
-        if (.not. is_listed(value, accuracy_levels)) &
-          wanted = 'must be one of '//accuracy_levels//likely_word(value, accuracy_levels)
-      case ('jobs')
-        line%jobs = 0
-        if (value /= '' .and. verify(value, '0123456789') == 0 .and. len(value) < 6) read (value, *) line%jobs
-        if (line%jobs < 1 .or. line%jobs > most_jobs) wanted = 'must be a whole number from 1 to 1024'
-      case ('progress')
-        line%progress = value
-        if (.not. is_listed(value, progress_words)) wanted = 'must be auto, always or never'
-      case ('check')
-        line%check = .true.
-      case ('resolved')
-        line%check = .true.
-        line%resolved = .true.
-      case ('template')
-        line%template = .true.
-        line%kind = value
-        if (present(has_value) .and. .not. is_listed(value, template_kinds)) &
-          wanted = 'must be one of '//template_kinds//likely_word(value, template_kinds)
-      case ('name')
-        line%name = value
-        if (value == '' .or. index(value, '/') > 0 .or. value == '.' .or. value == '..') &
-          wanted = 'must be a name without folder; --out gives the folder'
-        if (index(value, '-') == 1) wanted = 'must not begin with -'
-        if (.not. is_clean(value)) wanted = 'must not contain control characters or bytes that are not UTF-8'
-      case ('reference')
-        line%reference = value
-        call case_schema_of(table)
-        groups = joined(group_names(table%groups))
-        if (.not. is_listed(value, subjects) .and. find_group(table%groups, value) == 0 .and. &
-            find_group(table%groups, value//'_1') == 0) &
-          wanted = 'must be '//subjects//' or a group of cases: '//groups//likely_word(value, subjects//', '//groups)
-      case ('completion')
-        line%completion = value
-        if (.not. is_listed(value, shells)) wanted = 'must be bash, zsh or fish'
-      case ('man')
-        line%manual = .true.
-      case ('quiet')
-        line%quiet = .true.
-      case ('certify')
-        line%certify = .true.
-      case ('fresh')
-        line%fresh = .true.
-      case ('rows')
-        call read_rows(value, line%first_row, line%last_row)
-        if (line%last_row == 0) wanted = 'must have the form A:B, 1 <= A <= B'
-      case ('help')
-        line%help = .true.
-      case default
-        line%version = .true.
-      end select
-      if (allocated(wanted)) call refuse('--'//trim(name)//' '//printable(value, 60)//': '//wanted)
-    end subroutine set_option
-
-    !> Check that no two files would have results of the same name, as a/x.nml and b/x.nml, and that no name ends as those of the
-    !> results of another one.
-    subroutine check_names()
-      character(len=:), allocatable :: one, path, ending
-      integer :: first, second
-      one = ''
-      path = ''
-      ending = ''
-      do first = 1, size(line%cases)
-        path = printable(trim(line%cases(first)), 100)
-        one = case_name(trim(line%cases(first)))
-        do second = first + 1, size(line%cases)
-          if (one /= case_name(trim(line%cases(second)))) cycle
-          call fail(error, path//' and '//printable(trim(line%cases(second)), 100)// &
-            ': their results would have the same names; run them separately with --out', status_command_line)
-          return
-        end do
-        if (line%name /= '') one = line%name
-        ending = ending_of_results(one)
-        if (line%sweep) ending = ''
-        if (line%sweep .and. index(one, chunks, back=.true.) == max(2, len(one) - len(chunks) + 1)) ending = chunks
-        if (ending == '') cycle
-        call fail(error, path//': '//printable(one(:len(one) - len(ending)), 100)//' has results whose names begin with '// &
-          printable(one, 100)//': give another name'//trim(merge('            ', ' with --name', line%sweep)), &
-          status_command_line)
+  !> Check that no two files would have results of the same name, as a/x.nml and b/x.nml, and that no name ends as those of the
+  !> results of another one.
+  subroutine check_names(line, error)
+    type(command_line_t), intent(in) :: line
+    type(error_t), allocatable, intent(inout) :: error
+    character(len=:), allocatable :: one, path, ending
+    integer :: first, second
+    one = ''
+    path = ''
+    ending = ''
+    do first = 1, size(line%cases)
+      path = printable(trim(line%cases(first)), 100)
+      one = case_name(trim(line%cases(first)))
+      do second = first + 1, size(line%cases)
+        if (one /= case_name(trim(line%cases(second)))) cycle
+        call fail(error, path//' and '//printable(trim(line%cases(second)), 100)// &
+          ': their results would have the same names; run them separately with --out', status_command_line)
         return
       end do
-    end subroutine check_names
-  end subroutine parse_command_line
+      if (line%name /= '') one = line%name
+      ending = ending_of_results(one)
+      if (line%sweep) ending = ''
+      if (line%sweep .and. index(one, chunks, back=.true.) == max(2, len(one) - len(chunks) + 1)) ending = chunks
+      if (ending == '') cycle
+      call fail(error, path//': '//printable(one(:len(one) - len(ending)), 100)//' has results whose names begin with '// &
+        printable(one, 100)//': give another name'//trim(merge('            ', ' with --name', line%sweep)), &
+        status_command_line)
+      return
+    end do
+  end subroutine check_names
 
   !> Whether a text has the form GROUP.KEY=VALUE or GROUP=none.
   pure logical function is_override(text)
