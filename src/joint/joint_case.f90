@@ -4,7 +4,6 @@
 !> to be compiled again.
 module joint_case
   use kinds, only: dp
-  use text_tools, only: integer_text
   use model_parameters, only: has_parameters_t, parameter_list_t, law_t
   use bearing_size, only: bearing_t
   use contact_law, only: contact_law_t
@@ -86,15 +85,19 @@ contains
   pure logical function wants_number(self, number)
     class(joint_case_t), intent(in) :: self
     integer, intent(in) :: number
-    character(len=:), allocatable :: list
-    integer :: i
+    integer, parameter :: largest = 10**6   ! no number of a bearing
+    integer :: i, found
     wants_number = self%numbers == '' .or. self%numbers == 'all'
-    if (wants_number) return
-    list = ','
+    found = 0
     do i = 1, len(self%numbers)
-      if (self%numbers(i:i) /= ' ') list = list//self%numbers(i:i)
+      if (self%numbers(i:i) == ',') then
+        wants_number = wants_number .or. found == number
+        found = 0
+      else if (self%numbers(i:i) /= ' ') then
+        found = min(largest, 10*found + index('123456789', self%numbers(i:i)))
+      end if
     end do
-    wants_number = index(list//',', ','//integer_text(number)//',') > 0
+    wants_number = wants_number .or. found == number
   end function wants_number
 
   !> Whether the joint has a film between elastic walls.
