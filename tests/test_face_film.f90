@@ -1,0 +1,192 @@
+!> The film between a face of a piston's skirt and its bore: states of an independent program, closed forms with their order,
+!> losses, symmetry.
+module test_face_film
+  use kinds, only: dp
+  use constants, only: pi, degree
+  use checks, only: checks_t
+  use data_tables, only: load_table
+  use random_numbers, only: random_numbers_t
+  use face_film, only: face_film_t, face_motion_t, face_loads_t, no_loads
+  implicit none
+  private
+  public :: run_test_face_film
+
+contains
+
+  subroutine run_test_face_film(check)
+    class(checks_t), intent(inout) :: check
+    call states_of_another_program(check)
+    call a_rectangle_is_squeezed(check)
+    call a_plane_slides(check)
+    call losses_are_positive(check)
+  end subroutine run_test_face_film
+
+  !> One of the skirts of data/film/skirt_states.csv.
+  subroutine make(number, is_gumbel, film)
+    integer, intent(in) :: number
+    logical, intent(in) :: is_gumbel
+    type(face_film_t), intent(out) :: film
+    real(dp), parameter :: sizes(6, 4) = reshape([45.0_dp, 40e-6_dp, 20e-6_dp, 0.0_dp, 8e-3_dp, 1e-6_dp, &
+      45.0_dp, 22e-6_dp, 20e-6_dp, 0.0_dp, 10e-3_dp, 0.6e-6_dp, 45.0_dp, 60e-6_dp, 35e-6_dp, 0.0_dp, 6e-3_dp, 1.5e-6_dp, &
+      35.0_dp, 35e-6_dp, 15e-6_dp, 60e-6_dp, 8e-3_dp, 1e-6_dp], [6, 4])
+    film%radius = 0.0424_dp
+    film%height = [6e-3_dp, -39e-3_dp]
+    film%widest = -16.5e-3_dp
+    film%half_angle = sizes(1, number)*degree
+    film%clearance = sizes(2, number)
+    film%barrel = sizes(3, number)
+    film%ovality = sizes(4, number)
+    film%viscosity = sizes(5, number)
+    film%cuts_suction = is_gumbel
+    associate (rough => film%asperities)
+      rough%roughness = sizes(6, number)
+      rough%density_product = 0.05_dp
+      rough%sharpness = 0.01_dp
+      rough%integral = 'exact'
+      rough%youngs_modulus = [70e9_dp, 120e9_dp]
+      rough%poissons_ratio = [0.33_dp, 0.26_dp]
+      rough%coefficient = 0.1_dp
+      rough%transition_speed = 0.01_dp
+    end associate
+    call film%prepare()
+  end subroutine make
+
+  !> Loads of both faces on the grid of the independent program. Its states have eight digits, which is 4e-7 of the largest force
+  !> and moment, and 4e-6 of a film of 0.5 um.
+  subroutine states_of_another_program(check)
+    class(checks_t), intent(inout) :: check
+    character(len=40), allocatable :: names(:)
+    real(dp), allocatable :: rows(:, :)
+    ! of each column, in its unit
+    real(dp), parameter :: allowed(7) = [1e-3_dp, 2e-5_dp, 1e-5_dp, 1e-4_dp, 2e-12_dp, 2.0_dp, 5e-3_dp]
+    real(dp) :: found(7)
+    type(face_film_t) :: film
+    type(face_loads_t) :: loads
+    type(face_motion_t) :: motion
+    integer :: i, k
+    call load_table('film/skirt_states.csv', names, rows)
+    do i = 1, size(rows, 2)
+      call make(nint(rows(1, i)), rows(2, i) > 0.5_dp, film)
+      motion = face_motion_t(rows(3, i), rows(4, i), rows(5, i), rows(6, i), rows(7, i))
+      loads = no_loads
+      call film%find_loads(1, motion, loads)
+      call film%find_loads(-1, motion, loads)
+      found = [loads%force, loads%moment, loads%friction, power(loads, motion), loads%least_gap, loads%pressure, loads%asperities]
+      do k = 1, size(found)
+        call check%close_to(found(k), rows(7 + k, i), allowed(k) + 3e-6_dp*abs(rows(7 + k, i)), 'skirt: '//trim(names(7 + k)))
+      end do
+    end do
+  end subroutine states_of_another_program
+
+  !> Power that the loads take from the piston [W].
+  pure real(dp) function power(loads, motion)
+    type(face_loads_t), intent(in) :: loads
+    type(face_motion_t), intent(in) :: motion
+    power = -(loads%force*motion%offset_rate + loads%moment*motion%tilt_rate + loads%friction*motion%velocity)
+  end function power
+
+  !> A flat face of width a and length b = 40 mm that approaches at a speed V: the load of the series, with an error of second order
+  !> in the size of the cells.
+  subroutine a_rectangle_is_squeezed(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: ratio(3) = [1.0_dp, 1.5_dp, 3.0_dp], load(3) = [0.03514425374_dp, 0.04894017722_dp, 0.06582923275_dp]
+    real(dp), parameter :: length = 0.04_dp, gap = 20e-6_dp, speed = 0.1_dp, mu = 0.01_dp
+    real(dp) :: miss(2)
+    type(face_film_t) :: film
+    type(face_loads_t) :: loads
+    integer :: i, k
+    do i = 1, size(ratio)
+      do k = 1, 2
+        film = flat(ratio(i)*length, length, gap, mu)
+        film%around = 6*k
+        film%along = 24*k
+        call film%prepare()
+        loads = no_loads
+        call film%find_loads(1, face_motion_t(0.0_dp, 0.0_dp, speed, 0.0_dp, 0.0_dp), loads)
+        miss(k) = -loads%force/(12*mu*speed*ratio(i)*length**4/gap**3)/load(i) - 1
+      end do
+      call check%close_to(miss(2), 0.0_dp, 6e-3_dp, 'skirt: squeeze of a rectangle')
+      call check%close_to(miss(1)/miss(2), 4.0_dp, 0.6_dp, 'skirt: squeeze of a rectangle, order of the error')
+    end do
+  end subroutine a_rectangle_is_squeezed
+
+  !> A flat, smooth face, a part of a cylinder of a large radius.
+  type(face_film_t) function flat(width, length, gap, viscosity) result(film)
+    real(dp), intent(in) :: width, length, gap, viscosity
+    film%half_angle = 1e-5_dp
+    film%radius = 0.5_dp*width/film%half_angle
+    film%height = [0.5_dp*length, -0.5_dp*length]
+    film%clearance = gap
+    film%viscosity = viscosity
+    film%asperities%roughness = 1e-12_dp
+    film%asperities%integral = 'exact'
+    film%asperities%youngs_modulus = 1e11_dp
+    film%asperities%transition_speed = 1
+  end function flat
+
+  !> A wide plane slider: load, friction of the wall, and centre of pressure from the thick end, in closed form (Rayleigh), for
+  !> gaps at the ends in the ratios K; the grid is within 3e-3. The wall takes the opposite of the friction on the face.
+  subroutine a_plane_slides(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: k(3) = [1.5_dp, 2.1887_dp, 4.0_dp], &
+      load(3) = [0.131162594596_dp, 0.160243141338_dp, 0.124196240747_dp], &
+      friction(3) = [0.843720864865_dp, 0.75420220052_dp, 0.648392481493_dp], &
+      centre(3) = [0.54042006_dp, 0.577429145_dp, 0.63378718_dp]
+    real(dp), parameter :: length = 0.045_dp, width = 1e3_dp*length, thin = 10e-6_dp, speed = 8, mu = 0.01_dp
+    type(face_film_t) :: film
+    type(face_loads_t) :: loads
+    type(face_motion_t) :: motion
+    integer :: i, side
+    real(dp) :: at
+    do i = 1, size(k)
+      do side = -1, 1, 2
+        film = flat(width, length, 0.5_dp*(1 + k(i))*thin, mu)
+        call film%prepare()
+        motion = face_motion_t(0.0_dp, -side*(k(i) - 1)*thin/length, 0.0_dp, 0.0_dp, speed)   ! moves up, and opens upwards
+        loads = no_loads
+        call film%find_loads(side, motion, loads)
+        call check%close_to(-side*loads%force/(mu*speed*length**2/thin**2*width), load(i), 5e-3_dp*load(i), &
+          'skirt: load of a slider')
+        call check%close_to(-loads%friction/(mu*speed*length/thin*width), friction(i), 1e-3_dp*friction(i), &
+          'skirt: friction of a slider')
+        at = (loads%moment + side*film%radius*loads%friction)/loads%force   ! height of the centre of pressure
+        call check%close_to(0.5_dp - at/length, centre(i), 2e-3_dp, 'skirt: centre of pressure of a slider')
+      end do
+    end do
+  end subroutine a_plane_slides
+
+  !> In random states the loads of both faces never give power to the piston between smooth walls, and the mirror image of a state
+  !> has the mirror image of its loads.
+  subroutine losses_are_positive(check)
+    class(checks_t), intent(inout) :: check
+    type(face_film_t) :: film
+    type(face_loads_t) :: loads, mirrored
+    type(face_motion_t) :: motion
+    type(random_numbers_t) :: random
+    real(dp) :: least, unlike, u(5)
+    integer :: i, k
+    least = huge(least)
+    unlike = 0
+    call random%begin(7)
+    do i = 1, 2000
+      call make(1 + mod(i, 4), mod(i, 3) == 0, film)
+      do k = 1, size(u)
+        call random%uniform(u(k))
+      end do
+      u = (2*u - 1)*[20e-6_dp, 3e-4_dp, 0.1_dp, 5.0_dp, 15.0_dp]
+      motion = face_motion_t(u(1), u(2), u(3), u(4), u(5))
+      if (film%least_relief_gap(motion%offset, motion%tilt) < 9*film%asperities%roughness) cycle
+      loads = no_loads
+      mirrored = no_loads
+      call film%find_loads(1, motion, loads)
+      call film%find_loads(-1, motion, loads)
+      call film%find_loads(1, face_motion_t(-u(1), -u(2), -u(3), -u(4), u(5)), mirrored)
+      call film%find_loads(-1, face_motion_t(-u(1), -u(2), -u(3), -u(4), u(5)), mirrored)
+      least = min(least, power(loads, motion))
+      unlike = max(unlike, abs(loads%force + mirrored%force)/(abs(loads%force) + 1), &
+        abs(loads%friction - mirrored%friction)/(abs(loads%friction) + 1))
+    end do
+    call check%that(least >= 0, 'skirt: no state gives power')
+    call check%close_to(unlike, 0.0_dp, 1e-10_dp, 'skirt: mirror image')
+  end subroutine losses_are_positive
+end module test_face_film
