@@ -70,6 +70,7 @@ module face_film
     procedure :: prepare
     procedure :: find_loads
     procedure :: least_relief_gap
+    procedure :: ends
     procedure, private :: pressures
   end type face_film_t
 
@@ -111,6 +112,21 @@ contains
     gap = self%clearance + minval(self%relief - abs(offset + self%z*tilt))
   end function least_relief_gap
 
+  !> Negative gaps at the thrust axis of both faces, top and bottom, first those of the side +1 [m], and their rates [m/s].
+  pure subroutine ends(self, motion, depth, depth_rate)
+    class(face_film_t), intent(in) :: self
+    type(face_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: depth(4), depth_rate(4)
+    real(dp) :: z(2), relief(2)
+    z = self%height
+    relief = [self%relief(self%along), self%relief(0)]
+    depth(:2) = motion%offset + z*motion%tilt
+    depth_rate(:2) = motion%offset_rate + z*motion%tilt_rate
+    depth(3:) = -depth(:2) - self%clearance - relief
+    depth_rate(3:) = -depth_rate(:2)
+    depth(:2) = depth(:2) - self%clearance - relief
+  end subroutine ends
+
   !> Add the loads of the face on one side, +1 or -1.
   pure subroutine find_loads(self, side, motion, loads)
     class(face_film_t), intent(in) :: self
@@ -118,8 +134,8 @@ contains
     type(face_motion_t), intent(in) :: motion
     type(face_loads_t), intent(inout) :: loads
     real(dp), dimension(self%around, 0:self%along) :: gap, mean, slope
-    real(dp) :: mean_half(self%around, self%along), p(0:self%around + 1, 0:self%along)
-    real(dp) :: speed, area, pressing, boundary, change, unused
+    real(dp) :: mean_half(self%around, 0:self%along + 1), p(0:self%around + 1, 0:self%along)   ! mean_half: 0 beyond the ends
+    real(dp) :: speed, area, pressing, boundary, friction, unused
     integer :: i, j
     speed = motion%velocity - side*self%arm*motion%tilt_rate
     do j = 0, self%along
@@ -127,7 +143,11 @@ contains
         gap(i, j) = self%clearance + self%relief(j) + self%oval(i, 1) - &
           side*(motion%offset + self%z(j)*motion%tilt)*self%cosine(i, 1)
         call see(self, gap(i, j), mean(i, j), slope(i, j))
-        if (j == 0) cycle
+      end do
+    end do
+    mean_half = 0
+    do j = 1, self%along
+      do i = 1, self%around
         call see(self, self%clearance + self%relief_half(j) + self%oval(i, 1) - &
           side*(motion%offset + self%z_half(j)*motion%tilt)*self%cosine(i, 1), mean_half(i, j), unused)
       end do
@@ -142,12 +162,10 @@ contains
         loads%force = loads%force - side*pressing
         loads%moment = loads%moment - side*pressing*self%z(j)
         loads%asperities = loads%asperities + boundary*self%cosine(i, 1)*area
-        change = 0
-        if (j > 0 .and. j < self%along) change = mean_half(i, j + 1) - mean_half(i, j)
-        change = -self%viscosity*speed/mean(i, j)*area - 0.5_dp*p(i, j)*change*2*self%step + &
+        friction = -self%viscosity*speed/mean(i, j)*area - p(i, j)*(mean_half(i, j + 1) - mean_half(i, j))*self%step + &
           self%asperities%friction_force(speed, boundary*area)
-        loads%friction = loads%friction + change
-        loads%moment = loads%moment - side*self%arm*change
+        loads%friction = loads%friction + friction
+        loads%moment = loads%moment - side*self%arm*friction
       end do
     end do
     loads%least_gap = min(loads%least_gap, minval(gap))
@@ -173,7 +191,7 @@ contains
     integer, intent(in) :: side
     type(face_motion_t), intent(in) :: motion
     real(dp), intent(in) :: speed
-    real(dp), intent(in) :: mean_half(self%around, self%along), slope(self%around, 0:self%along)
+    real(dp), intent(in) :: mean_half(self%around, 0:self%along + 1), slope(self%around, 0:self%along)
     real(dp), intent(out) :: p(0:self%around + 1, 0:self%along)
     real(dp), dimension(self%around, self%along - 1) :: source, x, inflow
     real(dp) :: along(self%around, self%along), round(0:self%around, self%along - 1)   ! conductances

@@ -45,9 +45,9 @@ contains
       'piston_tilt_rate']
     integer :: i
     if (c%has_loose_guide()) then
-      do i = 1, size(sizes)
+      do i = 1, merge(size(sizes), size(sizes) - 1, c%has_skirt_corners())
         call values%demand(values%is_said(values%place_of('guide', trim(sizes(i)))), 'guide', trim(sizes(i)), &
-          'with kind = ''clearance''')
+          'with kind = '''//c%guide%kind//'''')
       end do
       if (values%is_said(values%place_of('guide', 'dissipation'))) call values%check_family('guide', 'dissipation')
       if (.not. values%problems%concerns('guide')) call check_piston_start(c, values)
@@ -59,9 +59,41 @@ contains
       if (allocated(c%guide)) call values%forbid(values%is_said(values%place_of('guide', 'bore_clearance')) .and. &
         .not. values%is_given('guide', 'kind'), 'guide', 'bore_clearance', 'needs kind = ''clearance''; the default is friction')
     end if
+    call check_skirt_film(c, values)
     if (.not. allocated(c%guide)) return
     if (allocated(c%guide%friction)) call check_guide_friction(c, values)
   end subroutine check_guide
+
+  !> Check that a lubricated skirt has oil and rough surfaces and nothing of dry corners, and that it starts in its bore.
+  subroutine check_skirt_film(c, values)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(inout) :: values
+    character(len=*), parameter :: groups(2) = [character(len=17) :: 'guide.lubrication', 'guide.asperities'], &
+      of_corners(6) = [character(len=11) :: 'contact_law', 'restitution', 'exponent', 'law', 'coefficient', 'stiffness'], &
+      needed = 'needs the groups lubrication and asperities with place = ''guide'''
+    logical :: is_wanted
+    integer :: i, place
+    is_wanted = .false.
+    if (allocated(c%guide)) is_wanted = c%guide%is_lubricated()
+    do i = 1, size(groups)
+      associate (is_there => values%is_present(find_group(values%groups, trim(groups(i)))))
+        if (is_wanted .and. .not. is_there) call values%refuse('guide', 'kind', needed)
+        if (is_there .and. .not. is_wanted) call values%refuse_group(trim(groups(i)), 'needs &guide kind = ''lubricated''')
+      end associate
+    end do
+    if (.not. is_wanted) return
+    do i = 1, size(of_corners)
+      place = values%place_of('guide', trim(of_corners(i)))
+      if (place > 0) call values%forbid(values%is_given('guide', trim(of_corners(i))), 'guide', trim(of_corners(i)), &
+        'is for kind = ''clearance'': a lubricated skirt has no dry corners')
+    end do
+    if (values%problems%concerns('guide') .or. .not. allocated(c%skirt_film%asperities)) return
+    call check_oil(c%skirt_film%oil%oil, trim(groups(1)), values)
+    call values%forbid(c%skirt_film%oil%oil%thinning_ratio < 1, trim(groups(1)), 'thinning_ratio', &
+      'must be 1 in the oil of a skirt')
+    call values%forbid(c%skirt_film%asperities%roughness >= c%guide%bore_clearance, 'guide.asperities', 'roughness', &
+      'must be < bore_clearance = '//short_text(c%guide%bore_clearance))
+  end subroutine check_skirt_film
 
   !> Check that rings have oil and a bore, and that the pressure of the gas does not rise from ring to ring.
   subroutine check_rings(c, values)

@@ -230,7 +230,9 @@ contains
     associate (guide => case%guide)
       text = 'piston on the axis of the cylinder'
       if (case%has_loose_guide()) text = 'clearance '//quantity_text(guide%bore_clearance, 'm', digits)// &
-        ' around a piston of '//quantity_text(guide%piston_radius, 'm', digits)//' radius; contact '//trim(guide%contact%name)
+        ' around a piston of '//quantity_text(guide%piston_radius, 'm', digits)//' radius'
+      if (case%has_skirt_corners()) text = text//'; contact '//trim(guide%contact%name)
+      if (guide%is_lubricated()) text = text//', with a film at the skirt'
       if (allocated(guide%friction)) text = text//'; friction '//trim(guide%friction%name)
     end associate
   end function guide_text

@@ -47,7 +47,7 @@ contains
       end do
       text = text//bearings_text(case, report)
       if (f%floating%is_present) text = text//'; '//turn_text(f%floating)
-      if (case%has_loose_guide()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
+      if (case%has_skirt_corners()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
         ' contacts, force up to '//quantity_text(maxval(f%corner%max_force), 'N')
       if (allocated(report%histories)) text = text//histories_text(report%histories)
       if (report%exponent%is_known) text = text//'; Lyapunov exponent '//short_text(report%exponent%mean, digits)//' per revolution'

@@ -150,7 +150,7 @@ contains
           call add_joint(table, report, name_prefix(spots(k)), case%joints(in_order(i)), f%pin(spots(k)))
         end do
       end do
-      if (case%has_loose_guide()) then
+      if (case%has_skirt_corners()) then
         do corner = 1, n_corners
           associate (c => f%corner(corner), prefix => corner_names(corner)//'_')
             call add_kept(table, report, prefix, in_cycle=.false.)
@@ -385,7 +385,7 @@ contains
     integer :: pins, i
     pins = mode
     text = ''
-    if (case%has_loose_guide()) then
+    if (case%has_skirt_corners()) then
       pins = mod(mode, size(names)**count(case%joints%has_clearance()))
       text = trim(merge('guide_free   ', 'guide_contact', pins == mode))
     end if

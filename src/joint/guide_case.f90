@@ -6,11 +6,13 @@ module guide_case
   use friction_law, only: friction_law_t
   use piston_skirt, only: skirt_t
   use ring_case, only: ring_pack_t
+  use skirt_film_case, only: skirt_film_case_t
   implicit none
   private
   public :: guide_case_t
 
-  character(len=*), parameter :: guide_friction = 'friction', guide_clearance = 'clearance'   !! the kinds of guide
+  character(len=*), parameter :: guide_friction = 'friction', guide_clearance = 'clearance', &
+    guide_lubricated = 'lubricated'   !! the kinds of guide
 
   type, extends(has_parameters_t) :: guide_case_t
     character(len=:), allocatable :: kind
@@ -20,12 +22,17 @@ module guide_case
     real(dp) :: stiffness = 0, exponent = 1
     class(friction_law_t), allocatable :: friction
     class(contact_law_t), allocatable :: contact
-    type(ring_pack_t) :: rings   !! those of the case, with the bore, set when the guide is built
+    real(dp) :: half_angle_deg = 0, barrel = 0, barrel_height = 0, ovality = 0
+    type(skirt_film_case_t) :: film   !! of a lubricated skirt, as the following set when the guide is built
+    type(ring_pack_t) :: rings   !! those of the case
     real(dp) :: bore = 0         !! of the cylinder [m]
   contains
     procedure :: parameters
     procedure :: lose_clearance
     procedure :: has_clearance
+    procedure :: has_corners
+    procedure :: is_lubricated
+    procedure :: widest_height
     procedure :: skirt
     procedure :: most_friction
   end type guide_case_t
@@ -36,8 +43,9 @@ contains
   subroutine parameters(self, list)
     class(guide_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%word('kind', self%kind, guide_friction//', '//guide_clearance, guide_friction, &
-      'friction: piston on the cylinder axis; clearance: piston moves across its bore and tilts (slap)')
+    call list%word('kind', self%kind, guide_friction//', '//guide_clearance//', '//guide_lubricated, guide_friction, &
+      'friction: piston on the cylinder axis; clearance: piston moves across its bore and tilts (slap), with dry corners; '// &
+      'lubricated: with a film between skirt and bore')
     call list%add('viscous', self%viscous, &
       'viscous friction force per piston velocity, in addition to that of &ring', 'N s/m', '>= 0', default='0.0', usual='0 to 1e4')
     call list%add('bore_clearance', self%bore_clearance, &
@@ -55,6 +63,14 @@ contains
       usual='1e5 to 1e13')
     call list%add('piston_com', self%piston_com, &
       'centre of mass of the piston from the pin, along and across the piston (pin offset)', 'm', default='0.0', usual='0 to 0.5')
+    call list%add('half_angle_deg', self%half_angle_deg, 'lubricated: half width of each face of the skirt around the piston', &
+      'degrees', '> 5 and <= 85', default='45.0', usual='30 to 60')
+    call list%add('barrel', self%barrel, 'lubricated: relief of the skirt at half its length from its widest place', 'm', '>= 0', &
+      default='0.0', usual='1e-6 to 2e-4')
+    call list%add('barrel_height', self%barrel_height, 'lubricated: widest place above the pin, along the piston; 10: the middle', &
+      'm', '>= -2 and <= 2', default='10.0', usual='1e-4 to 1')
+    call list%add('ovality', self%ovality, 'lubricated: relief of the radius at 90 degrees from the thrust axis', 'm', '>= 0', &
+      default='0.0', usual='1e-6 to 5e-4')
     call list%add('exponent', self%exponent, 'exponent of the penetration', range='>= 1', default='1.0', usual='1 to 2')
   end subroutine parameters
 
@@ -90,8 +106,27 @@ contains
   !> Whether the piston has clearance in its bore.
   pure logical function has_clearance(self)
     class(guide_case_t), intent(in) :: self
-    has_clearance = self%kind == guide_clearance
+    has_clearance = any(self%kind == [character(len=10) :: guide_clearance, guide_lubricated])
   end function has_clearance
+
+  !> Whether dry corners of the skirt meet the bore.
+  pure logical function has_corners(self)
+    class(guide_case_t), intent(in) :: self
+    has_corners = self%kind == guide_clearance
+  end function has_corners
+
+  !> Whether there is a film between skirt and bore.
+  pure logical function is_lubricated(self)
+    class(guide_case_t), intent(in) :: self
+    is_lubricated = self%kind == guide_lubricated
+  end function is_lubricated
+
+  !> Height of the widest place of the skirt above the pin [m].
+  pure real(dp) function widest_height(self)
+    class(guide_case_t), intent(in) :: self
+    widest_height = self%barrel_height
+    if (widest_height > 2) widest_height = 0.5_dp*(self%skirt_top - self%skirt_bottom)   ! not given
+  end function widest_height
 
   !> The skirt in its bore, at first without contact.
   pure type(skirt_t) function skirt(self)

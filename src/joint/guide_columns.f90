@@ -28,17 +28,18 @@ contains
     speed = motion%piston_velocity
     if (guide%is_loose) speed = motion%tilting%com_velocity
     call row%add_on_request('guide_friction_power[W]', loads%friction_force*speed, 'power of this friction; negative: a loss')
-    if (guide%is_loose) call add_place(piston, motion%tilting, accelerations, row)
+    if (guide%is_loose) call add_place(piston, motion%tilting, accelerations, guide%touching > 0, row)
     do k = 1, guide%n_elements
       call guide%slots(k)%element%add_columns(loads, row)
     end do
   end subroutine add_guide_columns
 
   !> Add the columns of a piston with clearance in its bore.
-  pure subroutine add_place(piston, at, accelerations, row)
+  pure subroutine add_place(piston, at, accelerations, has_corners, row)
     type(piston_t), intent(in) :: piston
     type(tilting_t), intent(in) :: at
     type(accelerations_t), intent(in) :: accelerations
+    logical, intent(in) :: has_corners   !! dry ones may touch the bore
     type(trace_row_t), intent(inout) :: row
     integer :: i
     call row%add('piston_offset[m]', at%offset, 'centre of mass of the piston from the cylinder axis, along y')
@@ -49,7 +50,9 @@ contains
     call row%add('piston_tilt_acceleration[rad/s2]', accelerations%tilt, 'rate of piston_tilt_rate')
     call row%add_on_request('piston_side_energy[J]', 0.5_dp*(piston%mass*at%offset_rate**2 + piston%inertia*at%tilt_rate**2), &
       'kinetic energy of the piston across its bore and of its tilt')
-    do i = 1, n_corners
+    if (.not. has_corners) call row%keep('max_slap_energy', largest, &
+      'largest kinetic energy of the piston across its bore and of its tilt')
+    do i = 1, merge(n_corners, 0, has_corners)
       row%place = corner_names(i)//'_'
       call row%keep('max_impact_energy', largest, &
         'largest kinetic energy of the piston across its bore and of its tilt when a contact of this corner began', &

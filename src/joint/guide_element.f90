@@ -7,10 +7,11 @@ module guide_element
   use kinds, only: dp
   use state_layout, only: slice_t
   use trace_row, only: trace_row_t
-  use chain_motion, only: motion_t
+  use chain_motion, only: motion_t, tilting_t
   use contact_law, only: contact_law_t
   use piston_skirt, only: skirt_t, corner_t, n_corners
   use guide_case, only: guide_case_t
+  use face_film, only: face_loads_t
   implicit none
   private
   public :: guide_element_t, guide_loads_t, most_guide_states
@@ -30,6 +31,8 @@ module guide_element
     ! of single elements
     real(dp) :: rates(most_guide_states)  !! of the states of the elements
     type(corner_t) :: corner(n_corners)   !! with clearance in the bore
+    type(face_loads_t) :: skirt           !! of the film of the skirt
+    real(dp) :: skirt_power               !! that it takes [W]
   end type guide_loads_t
 
   type, abstract :: guide_element_t
@@ -45,6 +48,7 @@ module guide_element
   contains
     procedure(prepare), deferred :: prepare
     procedure(find_loads), deferred :: find_loads
+    procedure :: admits => all_places
     procedure :: add_columns => no_columns
     procedure, non_overridable :: normal_force
   end type guide_element_t
@@ -69,6 +73,13 @@ module guide_element
   end interface
 
 contains
+
+  !> Whether the element is defined where the piston is: everywhere.
+  pure logical function all_places(self, tilting) result(admits)
+    class(guide_element_t), intent(in) :: self
+    type(tilting_t), intent(in) :: tilting
+    admits = .true.
+  end function all_places
 
   !> Add the columns of the element to a row: none.
   pure subroutine no_columns(self, now, row)

@@ -6,6 +6,7 @@ module guide_elements
   use bore_friction, only: bore_friction_t
   use skirt_corners, only: skirt_corners_t
   use ring_friction, only: ring_friction_t
+  use skirt_film, only: skirt_film_t
   implicit none
   private
   public :: build_guide
@@ -18,7 +19,8 @@ contains
     type(piston_guide_t), intent(out) :: guide
     guide%skirt_t = wanted%skirt()
     call add(bore_friction_t())
-    if (wanted%has_clearance()) call add(skirt_corners_t())
+    if (wanted%has_corners()) call add(skirt_corners_t())
+    if (wanted%is_lubricated()) call add(skirt_film_t())
     if (allocated(wanted%rings%rings)) call add(ring_friction_t())
 
   contains

@@ -38,6 +38,7 @@ module piston_guide
     procedure :: find_loads
     procedure :: set_rates
     procedure :: own_speed
+    procedure :: admits_place
   end type piston_guide_t
 
 contains
@@ -156,6 +157,7 @@ contains
     type(corner_t), intent(inout) :: corners(n_corners)
     type(tilting_t) :: tilting
     integer :: i
+    if (self%touching == 0) return
     call self%read_state(y, tilting)
     call self%place_corners(tilting, corners)
     associate (element => self%slots(self%touching)%element)
@@ -164,6 +166,17 @@ contains
       end do
     end associate
   end subroutine find_contact_state
+
+  !> Whether the position of the piston is admissible, for the bore and for every element.
+  pure logical function admits_place(self, tilting) result(admits)
+    class(piston_guide_t), intent(in) :: self
+    type(tilting_t), intent(in) :: tilting
+    integer :: k
+    admits = self%admits(tilting)
+    do k = 1, self%n_elements
+      if (admits) admits = self%slots(k)%element%admits(tilting)
+    end do
+  end function admits_place
 
   !> Loads of the bore on the piston. With clearance force and moment are set in those of the chain too; the friction is not.
   pure subroutine find_loads(self, motion, y, now, all)

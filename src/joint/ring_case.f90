@@ -2,11 +2,11 @@
 module ring_case
   use kinds, only: dp
   use model_parameters, only: has_parameters_t, parameter_list_t
-  use oil_viscosity, only: oil_t
+  use wall_oil, only: wall_oil_t
   use asperities, only: asperities_t
   implicit none
   private
-  public :: ring_case_t, ring_oil_t, ring_pack_t, visit_rings, most_piston_rings
+  public :: ring_case_t, ring_pack_t, visit_rings, most_piston_rings
 
   integer, parameter :: most_piston_rings = 6
 
@@ -22,19 +22,10 @@ module ring_case
     procedure :: parameters => ring_parameters
   end type ring_case_t
 
-  type, extends(has_parameters_t) :: ring_oil_t
-    character(len=:), allocatable :: law
-    type(oil_t) :: oil
-    real(dp) :: given_viscosity = 0        !! [Pa s]
-  contains
-    procedure :: parameters => oil_parameters
-    procedure :: viscosity
-  end type ring_oil_t
-
   !> All rings of the piston.
   type :: ring_pack_t
     type(ring_case_t), allocatable :: rings(:)         !! from the top; not allocated: the piston has none
-    type(ring_oil_t) :: oil
+    type(wall_oil_t) :: oil
     type(asperities_t), allocatable :: asperities      !! not allocated: smooth surfaces
   end type ring_pack_t
 
@@ -88,20 +79,4 @@ contains
       usual='1e-3 to 1')
     call list%add('gas_below', self%gas_below, 'the same below the ring', range='>= 0 and <= 1', default='0.0', usual='1e-3 to 1')
   end subroutine ring_parameters
-
-  subroutine oil_parameters(self, list)
-    class(ring_oil_t), intent(inout) :: self
-    class(parameter_list_t), intent(inout) :: list
-    call list%word('law', self%law, 'reynolds', 'reynolds', 'film of the rings: Reynolds'' equation, no suction')
-    call self%oil%parameters(list)
-    call list%add('viscosity', self%given_viscosity, 'dynamic viscosity; required unless viscosity_law gives it', 'Pa s', '> 0', &
-      default='0.0', example='0.008', usual='1e-4 to 1')
-  end subroutine oil_parameters
-
-  !> Viscosity of the oil of the rings [Pa s].
-  real(dp) function viscosity(self)
-    class(ring_oil_t), intent(in) :: self
-    viscosity = self%given_viscosity
-    if (self%oil%is_known()) viscosity = self%oil%dynamic_viscosity()
-  end function viscosity
 end module ring_case

@@ -18,6 +18,7 @@ module case_definition
   use pin_case, only: pin_case_t, pin_floating, pin_of_piston
   use guide_case, only: guide_case_t
   use ring_case, only: ring_pack_t
+  use skirt_film_case, only: skirt_film_case_t
   use elastic_rod, only: elastic_rod_t
   use elastic_crankshaft, only: elastic_crankshaft_t
   use train_case, only: cylinder_case_t, shaft_case_t, damper_case_t, number_throws, most_cylinders
@@ -103,6 +104,7 @@ module case_definition
     type(joint_case_t) :: joints(n_places)   !! by place
     type(pin_case_t), allocatable :: pin       !! not allocated: the piston pin is fixed in the rod
     type(guide_case_t), allocatable :: guide   !! not allocated: the guide is ideal
+    type(skirt_film_case_t) :: skirt_film    !! of a lubricated guide
     type(ring_pack_t) :: rings               !! of the piston
     type(elastic_rod_t), allocatable :: elastic_rod          !! not allocated: the rod is rigid
     type(elastic_crankshaft_t), allocatable :: crankshaft    !! not allocated: the crankshaft is rigid, or has stations
@@ -125,6 +127,7 @@ module case_definition
     procedure :: loose_pins
     procedure :: has_wear
     procedure :: has_loose_guide
+    procedure :: has_skirt_corners
     procedure :: has_clearance => has_clearance_anywhere
     procedure :: is_elastic
     procedure :: become_ideal
@@ -157,7 +160,7 @@ contains
   !> Whether a joint has a contact law, or the piston has clearance in its bore.
   pure logical function has_contact(self)
     class(case_t), intent(in) :: self
-    has_contact = any(self%joints%can_touch()) .or. self%has_loose_guide()
+    has_contact = any(self%joints%can_touch()) .or. self%has_skirt_corners()
   end function has_contact
 
   !> Whether at least one joint has clearance.
@@ -206,6 +209,13 @@ contains
     has_loose_guide = .false.
     if (allocated(self%guide)) has_loose_guide = self%guide%has_clearance()
   end function has_loose_guide
+
+  !> Whether dry corners of the skirt meet the bore.
+  pure logical function has_skirt_corners(self)
+    class(case_t), intent(in) :: self
+    has_skirt_corners = .false.
+    if (allocated(self%guide)) has_skirt_corners = self%guide%has_corners()
+  end function has_skirt_corners
 
   !> Whether a pin or the piston in its bore has clearance. The ideal twin has none.
   pure logical function has_clearance_anywhere(self)

@@ -8,6 +8,7 @@ submodule (case_definition) case_groups
   use wall_laws, only: offer_wall_laws
   use train_case, only: most_rings
   use ring_case, only: visit_rings
+  use skirt_film_case, only: visit_skirt_film
   implicit none
 
 contains
@@ -51,6 +52,7 @@ contains
       end do
     end if
     call visit_guide(case%guide, list)
+    call visit_skirt_film(case%skirt_film, list)
     call visit_rings(case%rings, list)
     call list%group('elastic_rod', 'Elastic connecting rod. Without this group the rod is rigid', .true.)
     call rod%parameters(list)

@@ -250,7 +250,7 @@ contains
       call add('cycle_speed_fluctuation', (kept('', 'max_crank_speed') - kept('', 'min_crank_speed'))/mean_speed)
       if (allocated(scene%given_load)) return
       if (allocated(scene%guide)) then
-        if (scene%guide%is_loose) call add_slap()
+        if (scene%guide%touching > 0) call add_slap()
       end if
       associate (bodies => scene%chain%bodies)
         linkage = linkage_t(bodies%crank%length, bodies%rod%length, bodies%piston%axis_offset)

@@ -14,7 +14,7 @@ module guide_record
   public :: guide_record_t
 
   type :: guide_record_t
-    logical :: is_present = .false.      !! the scene has a piston with clearance in its bore
+    logical :: is_present = .false.      !! the corners of a skirt may touch the bore
     type(trace_event_t), private :: contact(n_corners)   !! present or last contact of each corner
   contains
     procedure, non_overridable :: prepare
@@ -31,7 +31,7 @@ contains
     class(guide_record_t), intent(out) :: self
     type(scene_t), intent(in) :: scene
     integer :: i
-    if (allocated(scene%guide)) self%is_present = scene%guide%is_loose
+    if (allocated(scene%guide)) self%is_present = scene%guide%touching > 0
     do i = 1, n_corners
       self%contact(i)%pin = n_places + i
     end do

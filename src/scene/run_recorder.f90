@@ -132,7 +132,7 @@ contains
       if (scene%joints(joint)%phase == phase_contact) call record_event(self, joint, 0, event_contact_begins, scene, t, now)
     end do
     if (.not. allocated(scene%guide)) return
-    do i = 1, merge(size(scene%guide%touches), 0, scene%guide%is_loose)
+    do i = 1, merge(size(scene%guide%touches), 0, scene%guide%touching > 0)
       if (scene%guide%touches(i)) call record_event(self, of_guide, i, event_contact_begins, scene, t, now)
     end do
   end subroutine record_first_contacts

@@ -53,7 +53,7 @@ contains
     in_domain = .true.
     if (self%chain%bodies%piston%is_loose) then
       call self%guide%read_state(y, now%motion%tilting)
-      in_domain = self%guide%admits(now%motion%tilting)
+      in_domain = self%guide%admits_place(now%motion%tilting)
       if (in_domain) call place_piston(self%chain%bodies%piston, now%motion)
     end if
     if (allocated(self%chain%floating)) then

@@ -188,6 +188,7 @@ contains
     integer :: n
     if (allocated(case%guide)) wanted = case%guide
     if (ideal_joint .or. .not. allocated(case%guide)) call wanted%lose_clearance()
+    wanted%film = case%skirt_film
     wanted%rings = case%rings
     if (allocated(case%combustion)) wanted%bore = case%combustion%bore
     if (allocated(case%measured)) wanted%bore = case%measured%bore

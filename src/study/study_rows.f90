@@ -85,7 +85,7 @@ contains
     self%has_strobes = has_strobes
     self%has_place = [(base%joints(i)%has_bearing() .and. .not. base%has_numbers(i), i=1, n_places)]
     self%has_place(in_order(1)) = .true.
-    self%has_guide = base%has_loose_guide() .or. any(keys == 'guide.kind')
+    self%has_guide = base%has_skirt_corners() .or. any(keys == 'guide.kind')
     self%has_wear = base%has_wear() .or. any(index(keys, 'wear.') > 0)
     do i = 1, n_places
       self%has_place(i) = self%has_place(i) .or. any(index(keys, trim(places(i)%name)//'.') == 1)
@@ -288,7 +288,7 @@ contains
       if (row%has_place(in_order(i))) call add_pin(row, s, in_order(i), is_loose, is_loose, with_means)
     end do
     if (.not. row%has_guide) return
-    is_loose = is_known .and. case%has_loose_guide()
+    is_loose = is_known .and. case%has_skirt_corners()
     row%prefix = 'guide_'
     associate (total => s%total%pin(skirt))
       call row%add('contact_time_fraction', total%contact_time/s%total%duration, is_loose)

@@ -1,0 +1,103 @@
+!> Element of the guide: film between both faces of the skirt and the bore, with the contact of their asperities. See `face_film`.
+module skirt_film
+  use kinds, only: dp
+  use constants, only: degree
+  use trace_row, only: trace_row_t, least, largest, largest_size, mean, of_cycle
+  use chain_motion, only: motion_t, tilting_t
+  use piston_skirt, only: skirt_t, n_corners, corner_names
+  use face_film, only: face_film_t, face_motion_t, no_loads
+  use guide_case, only: guide_case_t
+  use guide_element, only: guide_element_t, guide_loads_t
+  implicit none
+  private
+  public :: skirt_film_t
+
+  real(dp), parameter :: deepest = -3   !! least gap over the roughness for which the model of asperities holds
+
+  type, extends(guide_element_t) :: skirt_film_t
+    type(face_film_t) :: film
+  contains
+    procedure :: prepare
+    procedure :: find_loads
+    procedure :: admits
+    procedure :: add_columns
+  end type skirt_film_t
+
+contains
+
+  subroutine prepare(self, wanted)
+    class(skirt_film_t), intent(inout) :: self
+    type(guide_case_t), intent(in) :: wanted
+    type(skirt_t) :: skirt
+    skirt = wanted%skirt()
+    associate (film => self%film)
+      film%radius = skirt%radius
+      film%height = skirt%height
+      film%clearance = skirt%clearance
+      film%half_angle = wanted%half_angle_deg*degree
+      film%barrel = wanted%barrel
+      film%widest = wanted%widest_height() - wanted%piston_com(1)
+      film%ovality = wanted%ovality
+      film%viscosity = wanted%film%oil%viscosity()
+      film%cuts_suction = wanted%film%cuts_suction()
+      film%around = wanted%film%oil%around
+      film%along = wanted%film%oil%along
+      film%asperities = wanted%film%asperities
+      call film%prepare()
+    end associate
+  end subroutine prepare
+
+  pure subroutine find_loads(self, skirt, motion, y, now)
+    class(skirt_film_t), intent(in) :: self
+    type(skirt_t), intent(in) :: skirt
+    type(motion_t), intent(in) :: motion
+    real(dp), intent(in) :: y(*)
+    type(guide_loads_t), intent(inout) :: now
+    type(face_motion_t) :: at
+    associate (it => motion%tilting)
+      at = face_motion_t(it%offset, it%tilt, it%offset_rate, it%tilt_rate, now%speed)
+    end associate
+    now%skirt = no_loads
+    call self%film%find_loads(1, at, now%skirt)
+    call self%film%find_loads(-1, at, now%skirt)
+    now%force = now%force + now%skirt%force
+    now%moment = now%moment + now%skirt%moment
+    now%friction_force = now%friction_force + now%skirt%friction
+    call self%film%ends(at, now%corner%depth, now%corner%depth_rate)
+    now%skirt_power = -(now%skirt%force*at%offset_rate + now%skirt%moment*at%tilt_rate + now%skirt%friction*at%velocity)
+  end subroutine find_loads
+
+  pure logical function admits(self, tilting)
+    class(skirt_film_t), intent(in) :: self
+    type(tilting_t), intent(in) :: tilting
+    admits = self%film%least_relief_gap(tilting%offset, tilting%tilt) > deepest*self%film%asperities%roughness
+  end function admits
+
+  pure subroutine add_columns(self, now, row)
+    class(skirt_film_t), intent(in) :: self
+    type(guide_loads_t), intent(in) :: now
+    type(trace_row_t), intent(inout) :: row
+    integer :: i
+    associate (skirt => now%skirt)
+      call row%add('skirt_force[N]', skirt%force, 'force of the bore on the skirt along y, of film and asperities')
+      call row%keep('max_skirt_force', largest_size, 'largest force of the bore on the skirt')
+      call row%add('skirt_moment[N.m]', skirt%moment, 'moment of film and asperities on the piston about its centre of mass')
+      call row%add('skirt_friction_force[N]', skirt%friction, 'friction of the bore on the skirt, along x')
+      call row%add('skirt_power[W]', now%skirt_power, 'power that film and asperities take from the piston')
+      call row%keep('mean_skirt_power', mean, 'mean power that the film of the skirt takes', told=of_cycle, is_sampled=.true.)
+      call row%add('skirt_min_film_thickness[m]', skirt%least_gap, 'smallest gap of both faces')
+      call row%keep('min_skirt_film_thickness', least, 'smallest gap between skirt and bore', has_angle=.true.)
+      call row%add('skirt_max_film_pressure[Pa]', skirt%pressure, 'largest pressure of the film of both faces')
+      call row%keep('max_skirt_film_pressure', largest, 'largest pressure of the film of the skirt', has_angle=.true.)
+      call row%add('skirt_asperity_force[N]', skirt%asperities, 'force of the asperities of both faces, where it presses')
+      call row%keep('max_skirt_asperity_force', largest, 'largest force of the asperities of the skirt')
+    end associate
+    do i = 1, n_corners
+      row%place = corner_names(i)//'_'
+      call row%add('gap[m]', -now%corner(i)%depth, 'gap between this end of a face of the skirt and the bore')
+      call row%add_on_request('closing_speed[m/s]', now%corner(i)%depth_rate, 'speed at which this gap closes')
+      call row%keep('max_closing_speed', largest, 'largest speed at which this gap closes', told=of_cycle, has_angle=.true.)
+    end do
+    row%place = ''
+  end subroutine add_columns
+end module skirt_film
