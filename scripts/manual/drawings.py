@@ -317,6 +317,57 @@ def skirt() -> str:
     return d.svg("Corners of the skirt, pin offset and tilt")
 
 
+def skirt_film() -> str:
+    """Gaps of the case joints/skirt, drawn larger than the piston; one of its faces unrolled, with the grid of the film."""
+    keys = keys_of("joints/skirt.nml")
+    angle = 45.0   # half_angle_deg, its default
+    top, bottom, clearance, barrel = (keys[f"guide.{name}"][0] for name in ("skirt_top", "skirt_bottom", "bore_clearance", "barrel"))
+    d = Drawing(790, 370, (225, 135), 4.6)
+    radius, wide, tilt, aside = 24.0, 0.26, radians(-1.9), -2.2   # of points: the gaps are 260 times as wide as long
+    middle, half = (top - bottom) / 2, (top + bottom) / 2
+
+    def face(side: int, z: float) -> Point:
+        return z, aside + z * tilt + side * (radius - wide * barrel * ((z - middle) / half) ** 2)
+
+    wall = radius + wide * clearance
+    heights = [middle + half * (i / 12 - 1) for i in range(25)]
+    for side in (-1, 1):
+        d.lines(*[face(side, z) for z in heights], (top, side * wall), (-bottom, side * wall), close=True, fill=OIL, stroke="none")
+        d.hatch((-bottom - 7, side * wall), (top + 9, side * wall), -side)
+    d.lines(*[face(1, z) for z in heights], *[face(-1, z) for z in reversed(heights)], close=True, fill=LIGHT)
+    d.lines((-bottom - 7, 0), (top + 12, 0), stroke=GREY, dash="7 4", width=1)
+    d.lines((-bottom - 4, aside - (bottom + 4) * tilt), (top + 9, aside + (top + 9) * tilt), stroke=BLUE, dash="7 4", width=1)
+    pressed = [face(-1, z) for z in heights]
+    d.lines(*[(z, y + 9.0 * max(0.0, sin(pi * (z - middle + half) / (1.15 * half))) ** 1.5) for z, y in pressed], stroke=RED, width=2)
+    d.text((middle - 0.35 * half, aside - radius + 11), "$p$", RED, anchor="start", dx=14)
+    d.circle((-6, aside - 6 * tilt), 0.6, INK)
+    d.text((-6, aside - 6 * tilt), "$G_p$", dx=16)
+    d.text((top + 8, aside + (top + 8) * tilt), "$b$", BLUE, dx=16, dy=-2)
+    d.text((-bottom - 5, 0.5 * aside), "$y$", BLUE, dy=16)
+    for z, name in ((top, "$z_t$"), (-bottom, "$z_b$")):
+        d.text((z, wall), name, anchor="start", dx=16)
+    d.text((middle, wall), "$h(z, φ)$", anchor="start", dx=16)
+    d.arrow((middle, wall + 3), (middle, wall - 4), width=1)
+    d.text((top + 7, -wall), "side −1", size=14, anchor="end", dx=-14)
+    d.text((top + 7, wall), "side +1", size=14, anchor="start", dx=14)
+    left, across = 62.0, 46.0
+    steps = [middle + half * (0.4 * t + 0.6 * sin(pi * t / 2)) for t in (-1 + i / 12 for i in range(25))]
+    d.lines((-bottom, left), (top, left), (top, left + across), (-bottom, left + across), close=True, fill=OIL)
+    for z in steps:
+        d.lines((z, left), (z, left + across), stroke=GREY, width=0.5)
+    for i in range(1, 12):
+        d.lines((-bottom, left + across * i / 12), (top, left + across * i / 12), stroke=GREY, width=0.5)
+    d.lines((-bottom - 4, left + across / 2), (top + 4, left + across / 2), stroke=INK, dash="7 4", width=1)
+    d.text((top + 4, left + across / 2), "thrust axis, $φ = 0$", dy=-6)
+    d.text((-bottom, left), f"$−{angle:.0f}°$", dy=20)
+    d.text((-bottom, left + across), f"${angle:.0f}°$", dy=20)
+    d.arrow((-bottom - 9, left + across / 2), (-bottom - 9, left + across), BLUE)
+    d.text((-bottom - 9, left + 0.75 * across), "half_angle_deg", BLUE, size=14, dy=18)
+    d.text((middle, left + across), "$p = 0$", RED, anchor="start", dx=8)
+    d.axes((-bottom - 9, wall + 13), 7)
+    return d.svg("Gaps between skirt and bore, and the film on one face")
+
+
 def offset_axis() -> str:
     """The offset is drawn larger, the same crank and rod at both dead centres."""
     keys = keys_of("drive/offset_crank.nml")
@@ -485,7 +536,7 @@ def film() -> str:
     return d.svg("Gap and pressure of a film, unrolled from its thickest place")
 
 
-DRAWINGS = (mechanism, joint, forces, skirt, offset_axis, floating_pin, crank_train, supply, film)
+DRAWINGS = (mechanism, joint, forces, skirt, skirt_film, offset_axis, floating_pin, crank_train, supply, film)
 
 
 def main() -> None:

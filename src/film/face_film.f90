@@ -17,7 +17,7 @@ module face_film
   use constants, only: pi
   use asperities, only: asperities_t
   use bearing_size, only: bearing_t
-  use banded_lu, only: decompose_band, solve_band
+  use monotone_cubic, only: monotone_cubic_t
   implicit none
   private
   public :: face_film_t, face_motion_t, face_loads_t, no_loads
@@ -55,6 +55,7 @@ module face_film
     real(dp) :: clearance = 0          !! c, radial [m]
     real(dp) :: barrel = 0             !! relief at half the length of the skirt from its widest place [m]
     real(dp) :: widest = 0             !! height of that place [m]
+    type(monotone_cubic_t), allocatable :: profile   !! relief over the height [m], instead of the barrel
     real(dp) :: ovality = 0            !! relief at 90 degrees from the thrust axis [m]
     real(dp) :: viscosity = 0          !! [Pa s]
     type(asperities_t) :: asperities
@@ -96,8 +97,15 @@ contains
         self%z(j) = 0.5_dp*sum(self%height) + half*((1 - closer)*t + closer*sin(0.5_dp*pi*t))
       end do
       self%z_half = 0.5_dp*(self%z(:m - 1) + self%z(1:))
-      self%relief = self%barrel*((self%z - self%widest)/half)**2
-      self%relief_half = self%barrel*((self%z_half - self%widest)/half)**2
+      if (allocated(self%profile)) then
+        do j = 0, m
+          self%relief(j) = self%profile%value(self%z(j))
+          if (j > 0) self%relief_half(j) = self%profile%value(self%z_half(j))
+        end do
+      else
+        self%relief = self%barrel*((self%z - self%widest)/half)**2
+        self%relief_half = self%barrel*((self%z_half - self%widest)/half)**2
+      end if
       self%width(1:m - 1) = 0.5_dp*(self%z(2:) - self%z(:m - 2))
       self%width(0) = 0.5_dp*(self%z(1) - self%z(0))
       self%width(m) = 0.5_dp*(self%z(m) - self%z(m - 1))
@@ -135,7 +143,7 @@ contains
     type(face_loads_t), intent(inout) :: loads
     real(dp), dimension(self%around, 0:self%along) :: gap, mean, slope
     real(dp) :: mean_half(self%around, 0:self%along + 1), p(0:self%around + 1, 0:self%along)   ! mean_half: 0 beyond the ends
-    real(dp) :: speed, area, pressing, boundary, friction, unused
+    real(dp) :: speed, area, pressing, boundary, carried, friction, unused
     integer :: i, j
     speed = motion%velocity - side*self%arm*motion%tilt_rate
     do j = 0, self%along
@@ -153,21 +161,24 @@ contains
       end do
     end do
     call self%pressures(side, motion, speed, mean_half, slope, p)
+    friction = 0
+    carried = 0
     do j = 0, self%along
+      area = 2*self%step*self%width(j)   ! with its mirror image
       do i = 1, self%around
-        area = 2*self%step*self%width(j)   ! with its mirror image
         boundary = 0
         if (gap(i, j) < 8*self%asperities%roughness) boundary = self%asperities%pressure(-gap(i, j), 0.0_dp)
         pressing = (p(i, j) + boundary)*self%cosine(i, 1)*area
         loads%force = loads%force - side*pressing
         loads%moment = loads%moment - side*pressing*self%z(j)
         loads%asperities = loads%asperities + boundary*self%cosine(i, 1)*area
-        friction = -self%viscosity*speed/mean(i, j)*area - p(i, j)*(mean_half(i, j + 1) - mean_half(i, j))*self%step + &
-          self%asperities%friction_force(speed, boundary*area)
-        loads%friction = loads%friction + friction
-        loads%moment = loads%moment - side*self%arm*friction
+        friction = friction - self%viscosity*speed/mean(i, j)*area - p(i, j)*(mean_half(i, j + 1) - mean_half(i, j))*self%step
+        carried = carried + boundary*area
       end do
     end do
+    friction = friction + self%asperities%friction_force(speed, carried)
+    loads%friction = loads%friction + friction
+    loads%moment = loads%moment - side*self%arm*friction
     loads%least_gap = min(loads%least_gap, minval(gap))
     loads%pressure = max(loads%pressure, maxval(p))
   end subroutine find_loads
@@ -193,63 +204,165 @@ contains
     real(dp), intent(in) :: speed
     real(dp), intent(in) :: mean_half(self%around, 0:self%along + 1), slope(self%around, 0:self%along)
     real(dp), intent(out) :: p(0:self%around + 1, 0:self%along)
-    real(dp), dimension(self%around, self%along - 1) :: source, x, inflow
+    real(dp) :: source(self%around, self%along - 1)
     real(dp) :: along(self%around, self%along), round(0:self%around, self%along - 1)   ! conductances
-    real(dp) :: a(-self%around:self%around, self%around*(self%along - 1)), mean, unused
-    logical, dimension(self%around, self%along - 1) :: full, before
-    logical :: singular
-    integer :: i, j, k, pass
+    real(dp) :: mean, conducts, squeeze, unused
+    logical :: full(self%around, self%along - 1)
+    integer :: i, j
     associate (n => self%around, m => self%along)
       do j = 1, m
-        along(:, j) = mean_half(:, j)**3/(12*self%viscosity)*self%step/(self%z(j) - self%z(j - 1))
+        along(:, j) = self%step/(12*self%viscosity*(self%z(j) - self%z(j - 1)))*mean_half(:, j)**3
       end do
       round(0, :) = 0   ! the mirror
       do j = 1, m - 1
+        conducts = self%width(j)/(12*self%viscosity*self%step)
+        squeeze = side*(motion%offset_rate + self%z(j)*motion%tilt_rate)*self%step*self%width(j)
         do i = 1, n
           call see(self, self%clearance + self%relief(j) + self%oval(i, 2) - &
             side*(motion%offset + self%z(j)*motion%tilt)*self%cosine(i, 2), mean, unused)
-          round(i, j) = mean**3/(12*self%viscosity)*self%width(j)/self%step
-          source(i, j) = slope(i, j)*side*(motion%offset_rate + self%z(j)*motion%tilt_rate)*self%cosine(i, 1)*self%step* &
-            self%width(j) + 0.5_dp*speed*(mean_half(i, j + 1) - mean_half(i, j))*self%step
+          round(i, j) = conducts*mean**3
+          source(i, j) = squeeze*slope(i, j)*self%cosine(i, 1) + 0.5_dp*speed*(mean_half(i, j + 1) - mean_half(i, j))*self%step
         end do
         round(n, j) = 2*round(n, j)   ! p = 0 half a cell away
       end do
       full = .true.
-      p = 0
-      do pass = 1, most_rounds
-        a = 0
-        x = 0
-        do j = 1, m - 1
-          do i = 1, n
-            k = i + (j - 1)*n
-            a(0, k) = 1
-            if (.not. full(i, j)) cycle
-            a(0, k) = along(i, j) + along(i, j + 1) + round(i - 1, j) + round(i, j)
-            x(i, j) = source(i, j)
-            if (i < n) then
-              if (full(i + 1, j)) a(1, k) = -round(i, j)
-              if (full(i + 1, j)) a(-1, k + 1) = -round(i, j)
-            end if
-            if (j == m - 1) cycle
-            if (full(i, j + 1)) a(n, k) = -along(i, j + 1)
-            if (full(i, j + 1)) a(-n, k + n) = -along(i, j + 1)
-          end do
-        end do
-        call decompose_band(n*(m - 1), n, a, singular)
-        call solve_band(n*(m - 1), n, a, 1, x)
-        p(1:n, 1:m - 1) = x
-        if (self%cuts_suction) exit
-        inflow = source + along(:, :m - 1)*p(1:n, :m - 2) + along(:, 2:)*p(1:n, 2:) + round(:n - 1, :)*p(:n - 1, 1:m - 1) + &
-          round(1:, :)*p(2:, 1:m - 1)
-        before = full
-        where (full)
-          full = .not. x < 0
-        elsewhere
-          full = inflow > least_inflow*maxval(abs(source))
-        end where
-        if (all(full .eqv. before)) exit
-      end do
-      p = max(p, 0.0_dp)
+      if (.not. self%cuts_suction) call guess_full(n, m, along, round, source, full)
+      call balance(n, m, along, round, source, self%cuts_suction, full, p)
     end associate
   end subroutine pressures
+
+  !> Nodes that a grid of half as many cells and intervals, with the same flows, finds full. All of them if it cannot be made.
+  pure subroutine guess_full(n, m, along, round, source, full)
+    integer, intent(in) :: n, m
+    real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1)
+    logical, intent(inout) :: full(n, m - 1)
+    real(dp) :: along_pair(n/2, m/2), round_pair(0:n/2, m/2 - 1), source_pair(n/2, m/2 - 1), p(0:n/2 + 1, 0:m/2)
+    logical :: full_pair(n/2, m/2 - 1)
+    integer :: i, j
+    if (mod(n, 2) + mod(m, 2) > 0) return
+    do j = 1, m/2
+      do i = 1, n/2   ! two flows side by side, each through two conductances one after the other
+        along_pair(i, j) = sum(along(2*i - 1:2*i, 2*j - 1)*along(2*i - 1:2*i, 2*j)/ &
+          (along(2*i - 1:2*i, 2*j - 1) + along(2*i - 1:2*i, 2*j)))
+      end do
+    end do
+    do j = 1, m/2 - 1
+      round_pair(:, j) = 0.5_dp*(round(::2, 2*j) + 0.5_dp*(round(::2, 2*j - 1) + round(::2, 2*j + 1)))
+      do i = 1, n/2
+        source_pair(i, j) = sum(source(2*i - 1:2*i, 2*j) + &
+          0.5_dp*(source(2*i - 1:2*i, 2*j - 1) + source(2*i - 1:2*i, 2*j + 1)))
+      end do
+    end do
+    full_pair = .true.
+    call balance(n/2, m/2, along_pair, round_pair, source_pair, .false., full_pair, p)
+    do j = 1, m - 1
+      do i = 1, n
+        full(i, j) = full_pair((i + 1)/2, min((j + 1)/2, m/2 - 1)) .or. full_pair((i + 1)/2, max(j/2, 1))
+      end do
+    end do
+  end subroutine guess_full
+
+  !> Pressures of the nodes for which the flows balance, by one of both conditions; for Reynolds' from a guess of the nodes that are
+  !> full. Where suction is cut off all must be full.
+  pure subroutine balance(n, m, along, round, source, cuts_suction, full, p)
+    integer, intent(in) :: n, m
+    real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1)
+    logical, intent(in) :: cuts_suction
+    logical, intent(inout) :: full(n, m - 1)
+    real(dp), intent(out) :: p(0:n + 1, 0:m)
+    real(dp) :: a(0:n + 1, n*m + 2), x(n*m + 2)
+    integer :: number(n, m)   ! of a full node among them
+    real(dp) :: inflow, least
+    logical :: changes, is_full
+    integer :: i, j, k, pass
+    least = least_inflow*maxval(abs(source))
+    p = 0
+    number = 0
+    do pass = 1, most_rounds
+      k = 0
+      do j = 1, m - 1
+        do i = 1, n
+          if (.not. full(i, j)) cycle
+          k = k + 1
+          number(i, j) = k
+        end do
+      end do
+      a(:, :k + n + 2) = 0
+      a(0, k + 1:k + n + 2) = 1
+      x(:k + n + 2) = 0
+      do j = 1, m - 1
+        do i = 1, n
+          if (.not. full(i, j)) cycle
+          associate (l => number(i, j))
+            x(l) = source(i, j)
+            a(0, l) = along(i, j) + along(i, j + 1) + round(i - 1, j) + round(i, j)
+            if (i < n) then
+              if (full(i + 1, j)) a(1, l) = -round(i, j)
+            end if
+            if (j == m - 1) cycle
+            if (full(i, j + 1)) a(number(i, j + 1) - l, l) = -along(i, j + 1)
+          end associate
+        end do
+      end do
+      call solve_symmetric(k, n, a, x)
+      do j = 1, m - 1
+        do i = 1, n
+          p(i, j) = 0
+          if (full(i, j)) p(i, j) = x(number(i, j))
+        end do
+      end do
+      if (cuts_suction) exit
+      changes = .false.
+      do j = 1, m - 1
+        do i = 1, n
+          if (full(i, j)) then
+            is_full = .not. p(i, j) < 0
+          else
+            inflow = source(i, j) + along(i, j)*p(i, j - 1) + along(i, j + 1)*p(i, j + 1) + round(i - 1, j)*p(i - 1, j) + &
+              round(i, j)*p(i + 1, j)
+            is_full = inflow > least
+          end if
+          if (is_full .neqv. full(i, j)) changes = .true.
+          full(i, j) = is_full
+        end do
+      end do
+      if (.not. changes) exit
+    end do
+    p = max(p, 0.0_dp)
+  end subroutine balance
+
+  !> Solve a symmetric positive definite system of n equations, whose diagonals are 0 or more above the main one: a(i, k) is the
+  !> element of row k + i and column k. Two columns are eliminated in each pass. Beyond the last equation a must be 0, but for
+  !> ones on the main diagonal; beyond the last diagonal too.
+  pure subroutine solve_symmetric(n, band, a, x)
+    integer, intent(in) :: n, band
+    real(dp), intent(inout) :: a(0:band + 1, n + band + 2), x(n + band + 2)
+    real(dp) :: pivot(2), first, second
+    integer :: i, k, l
+    do k = 1, n, 2
+      pivot(1) = 1/a(0, k)
+      first = a(1, k)*pivot(1)
+      a(0:band, k + 1) = a(0:band, k + 1) - first*a(1:band + 1, k)
+      a(1, k) = first
+      x(k + 1) = x(k + 1) - first*x(k)
+      pivot(2) = 1/a(0, k + 1)
+      do i = 2, band + 1
+        first = a(i, k)*pivot(1)
+        second = a(i - 1, k + 1)*pivot(2)
+        if (.not. (abs(first) > 0 .or. abs(second) > 0)) cycle
+        do l = i, band + 1
+          a(l - i, k + i) = a(l - i, k + i) - first*a(l, k) - second*a(l - 1, k + 1)
+        end do
+        x(k + i) = x(k + i) - first*x(k) - second*x(k + 1)
+        a(i, k) = first
+        a(i - 1, k + 1) = second
+      end do
+      x(k:k + 1) = x(k:k + 1)*pivot
+    end do
+    do k = n, 1, -1
+      do i = 1, band
+        x(k) = x(k) - a(i, k)*x(k + i)
+      end do
+    end do
+  end subroutine solve_symmetric
 end module face_film

@@ -11,6 +11,8 @@ module body_rules
   use friction_law, only: friction_law_t
   use piston_skirt, only: skirt_t, corner_t, n_corners
   use ring_case, only: most_piston_rings
+  use guide_case, only: guide_case_t
+  use skirt_film, only: skirt_film_t
   use chain_motion, only: tilting_t, motion_t, accelerations_t, turn_crank, piston_pin, n_pins
   use chain_bodies, only: rod_t, crank_t, piston_t, bodies_t, new_bodies, drive_t
   use chain_loads, only: loads_t, unloaded
@@ -49,6 +51,8 @@ contains
         call values%demand(values%is_said(values%place_of('guide', trim(sizes(i)))), 'guide', trim(sizes(i)), &
           'with kind = '''//c%guide%kind//'''')
       end do
+      if (c%has_skirt_corners() .and. .not. values%problems%concerns('guide')) call values%forbid(.not. c%guide%stiffness > 0, &
+        'guide', 'stiffness', 'must be > 0 with kind = ''clearance''')
       if (values%is_said(values%place_of('guide', 'dissipation'))) call values%check_family('guide', 'dissipation')
       if (.not. values%problems%concerns('guide')) call check_piston_start(c, values)
     else
@@ -69,7 +73,7 @@ contains
     type(case_t), intent(in) :: c
     type(case_values_t), intent(inout) :: values
     character(len=*), parameter :: groups(2) = [character(len=17) :: 'guide.lubrication', 'guide.asperities'], &
-      of_corners(6) = [character(len=11) :: 'contact_law', 'restitution', 'exponent', 'law', 'coefficient', 'stiffness'], &
+      of_corners(5) = [character(len=11) :: 'contact_law', 'restitution', 'exponent', 'law', 'coefficient'], &
       needed = 'needs the groups lubrication and asperities with place = ''guide'''
     logical :: is_wanted
     integer :: i, place
@@ -87,13 +91,49 @@ contains
       if (place > 0) call values%forbid(values%is_given('guide', trim(of_corners(i))), 'guide', trim(of_corners(i)), &
         'is for kind = ''clearance'': a lubricated skirt has no dry corners')
     end do
+    call values%forbid(c%guide%stiffness > 0, 'guide', 'stiffness', 'must be 0 with kind = ''lubricated'': its faces are rigid')
+    call check_profile(c, values)
     if (values%problems%concerns('guide') .or. .not. allocated(c%skirt_film%asperities)) return
     call check_oil(c%skirt_film%oil%oil, trim(groups(1)), values)
     call values%forbid(c%skirt_film%oil%oil%thinning_ratio < 1, trim(groups(1)), 'thinning_ratio', &
       'must be 1 in the oil of a skirt')
     call values%forbid(c%skirt_film%asperities%roughness >= c%guide%bore_clearance, 'guide.asperities', 'roughness', &
       'must be < bore_clearance = '//short_text(c%guide%bore_clearance))
+    do i = 1, size(groups)
+      if (values%problems%concerns(trim(groups(i)))) return
+    end do
+    if (.not. values%problems%concerns('initial')) call check_first_gap(c, values)
   end subroutine check_skirt_film
+
+  !> Check that a table of the skirt's profile stands instead of a barrel and covers the skirt.
+  subroutine check_profile(c, values)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(inout) :: values
+    if (.not. c%guide%profile%is_wanted()) return
+    call values%forbid(c%guide%barrel > 0, 'guide', 'barrel', 'is in profile_table: one of both')
+    call values%forbid(values%is_given('guide', 'barrel_height'), 'guide', 'barrel_height', 'is in profile_table: one of both')
+    if (.not. allocated(c%guide%profile%x)) return
+    associate (z => c%guide%profile%x)
+      call values%forbid(z(1) > -c%guide%skirt_bottom .or. z(size(z)) < c%guide%skirt_top, 'guide', 'profile_table', &
+        'must cover the skirt, heights from -skirt_bottom = '//short_text(-c%guide%skirt_bottom)//' m to skirt_top = '// &
+        short_text(c%guide%skirt_top)//' m')
+    end associate
+  end subroutine check_profile
+
+  !> Check that there is a gap everywhere between a lubricated skirt and the bore at the start.
+  subroutine check_first_gap(c, values)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(inout) :: values
+    type(guide_case_t) :: guide
+    type(skirt_film_t) :: film
+    real(dp) :: gap
+    guide = c%guide
+    guide%film = c%skirt_film
+    call film%prepare(guide)
+    gap = film%film%least_relief_gap(c%initial%piston_offset, c%initial%piston_tilt)
+    call values%forbid(gap < 0, 'initial', 'piston_offset', 'must leave a gap between skirt and bore: with piston_tilt it is '// &
+      short_text(gap)//' m')
+  end subroutine check_first_gap
 
   !> Check that rings have oil and a bore, and that the pressure of the gas does not rise from ring to ring.
   subroutine check_rings(c, values)

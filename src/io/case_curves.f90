@@ -15,7 +15,7 @@ module case_curves
   use joint_places, only: n_places
   use case_schema, only: shown_group
   use case_values, only: case_values_t
-  use curve_file, only: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque, load
+  use curve_file, only: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque, load, height, relief
   implicit none
   private
   public :: provide_curves, provide_history, period_fault
@@ -44,6 +44,10 @@ contains
     if (allocated(into%load)) then
       if (mod(into%load%period_deg, 360) == 0) call provide(values, into%file, 'bearing_load', 'table', crank_angle, load, &
         into%load%curve, into%load%period_deg)   ! else refused by the rules
+    end if
+    if (allocated(into%guide)) then
+      if (into%guide%profile%is_wanted()) call provide(values, into%file, 'guide', 'profile_table', height, relief, &
+        into%guide%profile)
     end if
     if (.not. allocated(into%measured)) return
     associate (gas => into%measured)

@@ -171,6 +171,7 @@ contains
       written = absolute_path(base//trim(result_suffixes(i)))
       call refuse_table('&drive torque_table', case%drive%table)
       if (.not. allocated(error) .and. allocated(case%measured)) call refuse_table('&cylinder_pressure table', case%measured%curve)
+      if (.not. allocated(error) .and. allocated(case%guide)) call refuse_table('&guide profile_table', case%guide%profile)
       if (.not. allocated(error) .and. allocated(case%load)) call refuse_table('&bearing_load table', case%load%curve)
       if (allocated(error)) return
     end do

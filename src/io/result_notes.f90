@@ -57,6 +57,7 @@ contains
     if (report%gas_is_poor) call add_line('the energy of the gas is kept only to '//short_text(report%figures%gas_residual)// &
       ': compare with a run with a tenth of &integrator relative_tolerance')
     call note_gas()
+    call note_skirt()
     call note_period()
     call note_power()
     call note_torque_table()
@@ -85,6 +86,17 @@ contains
       if (is_known .and. temperature > hottest) call add_line('the gas reaches '//short_text(temperature, 4)//' K, usually up '// &
         'to 3000 K: &combustion heat, &working_gas temperature')
     end subroutine note_gas
+
+    !> A lubricated skirt that runs on its asperities.
+    subroutine note_skirt()
+      real(dp), parameter :: least_ratio = 3   ! of the film to the roughness
+      real(dp) :: thickness
+      logical :: is_known
+      call report%value_of('cycle_min_skirt_film_thickness', thickness, is_known)
+      if (is_known) is_known = thickness < least_ratio*case%skirt_film%asperities%roughness
+      if (is_known) call add_line('the skirt runs on its asperities, its least film is '//quantity_text(thickness, 'm')// &
+        ': more &guide barrel or another barrel_height')
+    end subroutine note_skirt
 
     !> No period was found, and errors of the integration may be the reason.
     subroutine note_period()

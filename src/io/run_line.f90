@@ -49,6 +49,7 @@ contains
       if (f%floating%is_present) text = text//'; '//turn_text(f%floating)
       if (case%has_skirt_corners()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
         ' contacts, force up to '//quantity_text(maxval(f%corner%max_force), 'N')
+      text = text//skirt_text(report)
       if (allocated(report%histories)) text = text//histories_text(report%histories)
       if (report%exponent%is_known) text = text//'; Lyapunov exponent '//short_text(report%exponent%mean, digits)//' per revolution'
       if (remark /= '') text = text//'; '//remark
@@ -91,6 +92,27 @@ contains
     call report%value_of('cycle_bearings_power', power, is_known)
     if (is_known) text = text//', bearings '//quantity_text(power, 'W')
   end function bearings_text
+
+  !> Text about a lubricated skirt, in the last cycle, or of a run without one; empty: there is none.
+  function skirt_text(report) result(text)
+    type(run_report_t), intent(in) :: report
+    character(len=:), allocatable :: text
+    real(dp) :: film, speed
+    logical :: is_known
+    text = ''
+    call last_value('min_skirt_film_thickness', film)
+    if (is_known) call last_value('max_slap_speed', speed)
+    if (is_known) text = '; film at the skirt from '//quantity_text(film, 'm')//', across the bore up to '//quantity_text(speed, 'm/s')
+
+  contains
+
+    subroutine last_value(name, value)
+      character(len=*), intent(in) :: name
+      real(dp), intent(out) :: value
+      call report%value_of('cycle_'//name, value, is_known)
+      if (.not. is_known) call report%value_of(name, value, is_known)
+    end subroutine last_value
+  end function skirt_text
 
   !> Text about the turn of a floating pin.
   function turn_text(pin) result(text)

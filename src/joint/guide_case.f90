@@ -7,6 +7,7 @@ module guide_case
   use piston_skirt, only: skirt_t
   use ring_case, only: ring_pack_t
   use skirt_film_case, only: skirt_film_case_t
+  use measured_curve, only: measured_curve_t
   implicit none
   private
   public :: guide_case_t
@@ -23,6 +24,7 @@ module guide_case
     class(friction_law_t), allocatable :: friction
     class(contact_law_t), allocatable :: contact
     real(dp) :: half_angle_deg = 0, barrel = 0, barrel_height = 0, ovality = 0
+    type(measured_curve_t) :: profile   !! height above the pin [m], relief [m]
     type(skirt_film_case_t) :: film   !! of a lubricated skirt, as the following set when the guide is built
     type(ring_pack_t) :: rings   !! those of the case
     real(dp) :: bore = 0         !! of the cylinder [m]
@@ -49,7 +51,7 @@ contains
     call list%add('viscous', self%viscous, &
       'viscous friction force per piston velocity, in addition to that of &ring', 'N s/m', '>= 0', default='0.0', usual='0 to 1e4')
     call list%add('bore_clearance', self%bore_clearance, &
-      'half of bore diameter minus piston diameter; required with kind = ''clearance'', as the next five keys', &
+      'half of bore diameter minus piston diameter; required with clearance, as the next five keys', &
       'm', '> 0', default='0.0', usual='1e-6 to 1e-3')
     call list%add('skirt_top', self%skirt_top, 'height of the upper corners of the skirt above the pin, along the piston', 'm', &
       '> 0', default='0.0', usual='1e-3 to 1')
@@ -59,8 +61,8 @@ contains
       'm', '> 0', default='0.0', usual='2e-3 to 1')
     call list%add('piston_inertia', self%piston_inertia, &
       'moment of inertia of the piston about its centre of mass', 'kg m^2', '> 0', default='0.0', usual='1e-9 to 1e4')
-    call list%add('stiffness', self%stiffness, 'contact stiffness of a corner of the skirt', 'N/m^exponent', '> 0', default='0.0', &
-      usual='1e5 to 1e13')
+    call list%add('stiffness', self%stiffness, 'contact stiffness of a corner of the skirt, > 0; lubricated: 0, rigid faces', &
+      'N/m^exponent', '>= 0', default='0.0', usual='1e5 to 1e13')
     call list%add('piston_com', self%piston_com, &
       'centre of mass of the piston from the pin, along and across the piston (pin offset)', 'm', default='0.0', usual='0 to 0.5')
     call list%add('half_angle_deg', self%half_angle_deg, 'lubricated: half width of each face of the skirt around the piston', &
@@ -69,6 +71,8 @@ contains
       default='0.0', usual='1e-6 to 2e-4')
     call list%add('barrel_height', self%barrel_height, 'lubricated: widest place above the pin, along the piston; 10: the middle', &
       'm', '>= -2 and <= 2', default='10.0', usual='1e-4 to 1')
+    call self%profile%parameters(list, 'profile_table', 'lubricated: CSV table with the columns height[mm] above the pin and '// &
+      'relief[um], instead of barrel; '''': none', default='')
     call list%add('ovality', self%ovality, 'lubricated: relief of the radius at 90 degrees from the thrust axis', 'm', '>= 0', &
       default='0.0', usual='1e-6 to 5e-4')
     call list%add('exponent', self%exponent, 'exponent of the penetration', range='>= 1', default='1.0', usual='1 to 2')

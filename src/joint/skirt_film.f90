@@ -2,6 +2,7 @@
 module skirt_film
   use kinds, only: dp
   use constants, only: degree
+  use monotone_cubic, only: new_monotone_cubic
   use trace_row, only: trace_row_t, least, largest, largest_size, mean, of_cycle
   use chain_motion, only: motion_t, tilting_t
   use piston_skirt, only: skirt_t, n_corners, corner_names
@@ -39,6 +40,8 @@ contains
       film%widest = wanted%widest_height() - wanted%piston_com(1)
       film%ovality = wanted%ovality
       film%viscosity = wanted%film%oil%viscosity()
+      if (allocated(wanted%profile%x)) &
+        film%profile = new_monotone_cubic(wanted%profile%x - wanted%piston_com(1), wanted%profile%y)
       film%cuts_suction = wanted%film%cuts_suction()
       film%around = wanted%film%oil%around
       film%along = wanted%film%oil%along
@@ -92,11 +95,13 @@ contains
       call row%add('skirt_asperity_force[N]', skirt%asperities, 'force of the asperities of both faces, where it presses')
       call row%keep('max_skirt_asperity_force', largest, 'largest force of the asperities of the skirt')
     end associate
+    call row%add_on_request('slap_speed[m/s]', maxval(abs(now%corner%depth_rate)), &
+      'speed across the bore of the faster end of the skirt')
+    call row%keep('max_slap_speed', largest, 'largest speed of an end of the skirt across the bore: the hardest slap', &
+      has_angle=.true.)
     do i = 1, n_corners
       row%place = corner_names(i)//'_'
       call row%add('gap[m]', -now%corner(i)%depth, 'gap between this end of a face of the skirt and the bore')
-      call row%add_on_request('closing_speed[m/s]', now%corner(i)%depth_rate, 'speed at which this gap closes')
-      call row%keep('max_closing_speed', largest, 'largest speed at which this gap closes', told=of_cycle, has_angle=.true.)
     end do
     row%place = ''
   end subroutine add_columns

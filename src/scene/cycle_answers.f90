@@ -108,6 +108,7 @@ module cycle_answers
     quantity_t('cycle_fmep', 'Pa', 'the same of the losses in joints, guide and elastic members'), &
     quantity_t('cycle_one_way_fmep', 'Pa', &
       'the part of it in bearings of kind quasi_static, which is not fed back: the motion does not feel it'), &
+    quantity_t('cycle_skirt_fmep', 'Pa', 'the part of FMEP by film and asperities of a lubricated skirt'), &
     quantity_t('cycle_ring_fmep', 'Pa', 'the part of FMEP by the friction of the piston rings'), &
     quantity_t('cycle_ring_1_fmep', 'Pa', 'that of the first piston ring from the top'), &
     quantity_t('cycle_ring_2_fmep', 'Pa', 'that of the second one'), &
@@ -276,20 +277,22 @@ contains
       call add('cycle_fmep', loss/displacement)
       if (scene%n_works < size(scene%parts)) &
         call add('cycle_one_way_fmep', one_way/displacement)
-      call add_ring_fmep('ring')
+      call add_own_fmep('skirt')
+      call add_own_fmep('ring')
       do i = 1, most_piston_rings
-        call add_ring_fmep('ring_'//integer_text(i))
+        call add_own_fmep('ring_'//integer_text(i))
       end do
     end subroutine add_machine
 
-    !> The mean effective pressure of the friction of a ring, or of all rings, if there is one.
-    subroutine add_ring_fmep(name)
-      character(len=*), intent(in) :: name   !! of the ring
+    !> The mean effective pressure of a part of the guide that keeps its mean power, if there is one: of the film of the skirt, of a
+    !> ring, of all rings.
+    subroutine add_own_fmep(name)
+      character(len=*), intent(in) :: name   !! of the part
       real(dp) :: power
       logical :: is_known
       call find_result(kept_results, 'cycle_mean_'//name//'_power', power, is_known)
       if (is_known) call add('cycle_'//name//'_fmep', power*cycle%duration/displacement)
-    end subroutine add_ring_fmep
+    end subroutine add_own_fmep
 
     !> The losses of all quasi-static bearings, and the one with the thinnest film; of equal ones the first.
     subroutine add_bearings()

@@ -122,6 +122,9 @@ contains
         if (allocated(case%drive%table%path)) call refuse('&drive torque_table', case%drive%table%path)
         if (allocated(case%measured)) call refuse('&cylinder_pressure table', case%measured%curve%path)
         if (allocated(case%load)) call refuse('&bearing_load table', case%load%curve%path)
+        if (allocated(case%guide)) then
+          if (allocated(case%guide%profile%path)) call refuse('&guide profile_table', case%guide%profile%path)
+        end if
       end associate
     end do
 

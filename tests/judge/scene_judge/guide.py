@@ -1,4 +1,4 @@
-"""The piston's guide against the rows of a trace: its friction, and the corners of a skirt with clearance in its bore."""
+"""The piston's guide against the rows of a trace: its friction, and the corners or the film of a skirt with clearance in its bore."""
 from __future__ import annotations
 
 import bisect
@@ -31,6 +31,13 @@ class Guide:
         along = run.pair("guide.piston_com")[0]
         self.reach = n("mechanism.crank_length") + n("mechanism.rod_length")
         self.height = n("guide.skirt_top") - along, -n("guide.skirt_bottom") - along
+        self.contacts: list[Contact] = []
+        self.has_film = run.text("guide.kind") == "lubricated"
+        if self.has_film:
+            self.widest = n("guide.barrel_height") - along if n("guide.barrel_height") <= 2 else sum(self.height) / 2
+            self.barrel = n("guide.barrel") * 4 / (self.height[0] - self.height[1])**2
+            self.has_profile = bool(run.text("guide.profile_table"))
+            return
         case = {key.replace("guide.", "contact."): value for key, value in run.case.items() if key.startswith("guide.")}
         case |= {"contact.law": run.case["guide.contact_law"], "contact.geometry": ["hertz_sphere"],
                  "contact.youngs_modulus": [1e11, 1e11], "contact.poissons_ratio": [0.3, 0.3]}
@@ -56,6 +63,8 @@ class Guide:
         if not self.is_loose:
             return get["guide_friction_force"] * v
         total = get.get("ring_friction_force", 0.0) * v - self.viscous * v**2
+        if self.has_film:
+            return total + get["skirt_friction_force"] * v + get["skirt_force"] * row.offset_rate_y + get["skirt_moment"] * row.tilt_rate
         for k in range(1, 5):
             rate, along = self.rates(k, row)
             total += get[f"guide_{k}_friction"] * along - get[f"guide_{k}_force"] * rate
@@ -66,8 +75,8 @@ class Guide:
         if not self.is_loose:
             sense = row.get["guide_force"] > 0
             return self.friction.side(row.com_velocity[0], 0.0)[0], sense
-        found = []
-        for k in range(1, 5):
+        found: list[tuple[int, int] | None] = []
+        for k in range(1, 1 + len(self.contacts)):
             touches = row.get[f"guide_{k}_force"] > 0 or self.depth(k, row) > 0
             found.append((bisect.bisect_left(begins[k - 1], time), self.friction.side(self.rates(k, row)[1], 0.0)[0]) if touches else None)
         return tuple(found)
@@ -75,6 +84,18 @@ class Guide:
     @property
     def begins(self) -> list[list[float]]:
         return [contact.begin for contact in self.contacts] if self.is_loose else []
+
+    def check_film(self, checks, row: Row, t: float) -> None:
+        """Check the gaps at the ends of the faces of a lubricated skirt, its power, and that it takes power."""
+        get, v = row.get, row.com_velocity[0]
+        for k in range(1, 1 + 4 * (not self.has_profile)):
+            z = self.height[(k - 1) % 2]
+            gap = self.clearance + self.barrel * (z - self.widest)**2 - math.copysign(1.0, 2.5 - k) * (row.offset_y + z * row.tilt)
+            checks.take("gap at an end of the skirt", abs(get[f"guide_{k}_gap"] - gap), 1e-14 * (self.clearance + abs(z * row.tilt)), t)
+        parts = get["skirt_force"] * row.offset_rate_y, get["skirt_moment"] * row.tilt_rate, get["skirt_friction_force"] * v
+        checks.take("power of the skirt", abs(get["skirt_power"] + math.fsum(parts)), SUM * sum(map(abs, parts)) + 1e-300, t)
+        if get["skirt_asperity_force"] <= 0:   # else their elastic energy is in it
+            checks.take("the film of the skirt gives power", max(0.0, -get["skirt_power"]), SUM * sum(map(abs, parts)), t)
 
     def check(self, checks, row: Row, t: float) -> None:
         """Check one row; `checks` records the errors."""
@@ -92,7 +113,11 @@ class Guide:
             checks.take("friction on the guide", max(low - got, got - high, 0.0), slack + 1e-300, t)
             return
         total, moment, size = rings - self.viscous * v, 0.0, 0.0
-        for k in range(1, 5):
+        if self.has_film:
+            total, moment = total + get["skirt_friction_force"], get["skirt_moment"]
+            size = abs(moment) + abs(get["skirt_force"]) * (self.radius + abs(self.height[0]) + abs(self.height[1]))
+            self.check_film(checks, row, t)
+        for k in range(1, 1 + len(self.contacts)):
             depth, (rate, along) = self.depth(k, row), self.rates(k, row)
             checks.take("gap of a corner", abs(get[f"guide_{k}_gap"] + depth), 1e-15 * (self.radius + abs(row.offset_y)) * 4, t)
             depth = -get[f"guide_{k}_gap"]
@@ -121,8 +146,9 @@ class Guide:
             moment += -side * x * normal - y * friction
             size += abs(x * normal) + abs(y * friction)
         checks.take("friction on the piston", abs(total - get["guide_friction_force"]), SUM * (abs(total) + abs(self.viscous * v) + abs(rings)) + 1e-300, t)
-        pressing = sum(math.copysign(get[f"guide_{k}_force"], 2.5 - k) for k in range(1, 5))
-        forces = sum(abs(get[f"guide_{k}_force"]) for k in range(1, 5)) + math.hypot(*row.force)
+        corners = range(1, 1 + len(self.contacts))
+        pressing = sum(math.copysign(get[f"guide_{k}_force"], 2.5 - k) for k in corners) if corners else -get["skirt_force"]
+        forces = sum(abs(get[f"guide_{k}_force"]) for k in corners) + math.hypot(*row.force) + abs(pressing)
         checks.take("force of the corners on the guide", abs(pressing - get["guide_force"]), SUM * forces + 10 * row.noise(), t)
         joint = checks.joint_moment(row) if checks.has_joint else 0.0
         if joint is None:   # the moment of a film's shear has no column

@@ -58,7 +58,7 @@ class Run:
 
     @property
     def has_loose_guide(self) -> bool:
-        return self.text("guide.kind") == "clearance"
+        return self.text("guide.kind") in ("clearance", "lubricated")
 
     def at(self, joint: str) -> Run:
         """The run seen from one joint: its group, laws, columns and events under the names that those of the piston pin have."""

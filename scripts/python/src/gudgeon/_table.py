@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 OF_CYCLE = (
     "status", "cycle_is_settled", "*cycle_min_film_thickness", "*cycle_min_film_thickness_angle", "*cycle_min_gap",
     "*cycle_max_film_pressure", "*cycle_max_force", "*cycle_contact_share", "*cycle_mean_film_power", "*cycle_mean_friction_power",
-    "*cycle_mean_film_temperature", "*cycle_mean_film_side_flow", "*cycle_wear_depth_rate_*", "cycle_imep", "cycle_bmep", "cycle_fmep", "cycle_ring_fmep",
+    "*cycle_mean_film_temperature", "*cycle_mean_film_side_flow", "*cycle_wear_depth_rate_*", "cycle_imep", "cycle_bmep", "cycle_fmep", "cycle_skirt_fmep", "cycle_ring_fmep",
     "cycle_indicated_power", "cycle_brake_power", "cycle_max_cylinder_pressure", "cycle_mean_crank_speed", "cycle_speed_fluctuation",
     "cycle_max_drive_torque", "pin_swing", "pin_drift_per_revolution",
 )  # fmt: skip

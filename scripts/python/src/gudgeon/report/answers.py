@@ -86,7 +86,11 @@ def force(rows: Answers, pre: str) -> str:
 
 
 def slap(rows: Answers) -> str:
-    """The hardest impact of the skirt."""
+    """The hardest impact of the skirt, or of one with a film its fastest end and the least film."""
+    speed, film = rows("cycle_max_slap_speed"), rows("cycle_min_skirt_film_thickness")
+    if speed is not None and film is not None:
+        thin = f"film from {number(1e6 * film)} µm at {rows('cycle_min_skirt_film_thickness_angle'):.1f}°"
+        return f"{number(speed)} m/s at {rows('cycle_max_slap_speed_angle'):.1f}°, {thin}"
     speed, energy, impacts = (rows(f"cycle_slap_{name}") for name in ("speed", "energy", "impacts"))
     if speed is None or energy is None or impacts is None:
         return ""
@@ -147,14 +151,15 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
 
 
 def losses_of(rows: Answers) -> list[tuple[str, float]]:
-    """The parts of FMEP with their values [Pa]: each piston ring, each bearing, the piston in its bore without its rings, elastic members."""
+    """The parts of FMEP with their values [Pa]: piston rings, bearings, the film of the skirt, what else the bore takes, elastic members."""
     work, imep = rows("cycle_work_gas"), rows("cycle_imep")
     if not work or not imep or not rows("cycle_fmep"):
         return []
     found = [(f"Ring {number}", rows(f"cycle_ring_{number}_fmep") or 0.0) for number in range(1, 7)]
     for pre, name in PLACES.values():
         found.append((name.capitalize(), (rows(f"{pre}cycle_joint_fmep") or 0.0) - (rows(f"{pre}cycle_work_contact") or 0.0) * imep / work))
-    found.append(("Piston in its bore", -(rows("cycle_work_guide") or 0.0) * imep / work - (rows("cycle_ring_fmep") or 0.0)))
+    found.append(("Skirt", skirt := rows("cycle_skirt_fmep") or 0.0))
+    found.append(("Piston in its bore", -(rows("cycle_work_guide") or 0.0) * imep / work - (rows("cycle_ring_fmep") or 0.0) - skirt))
     found.append(("Elastic members", -(rows("cycle_work_elastic") or 0.0) * imep / work))
     return [(name, value) for name, value in found if abs(value) > 1e-3 * abs(rows("cycle_fmep") or 0.0)]
 
