@@ -448,6 +448,44 @@ def test_scope(program: Path, work: Path) -> None:
     check(not any("cycle_" in name for name in off), "answers = .false. takes them out")
 
 
+# The second cycle of cases/joints/skirt.nml from the centre at rest, by an independent program on the same grid; relative tolerances: its own errors
+# and those of a run at 1e-6.
+SKIRT_FACTS = (("cycle_min_skirt_film_thickness", 1.1452507e-05, 1e-3), ("cycle_max_skirt_film_pressure", 2881960, 1e-3), ("cycle_max_skirt_force", 2313.9996, 2e-4),
+               ("cycle_skirt_fmep", 9749.1014, 2e-4), ("cycle_max_slap_speed", 0.046442549, 2e-3), ("cycle_max_slap_energy", 0.00087061018, 2e-3))
+
+
+def test_skirt(program: Path, work: Path) -> None:
+    """The film of the skirt against an independent program; what it must equal; what is refused."""
+    case = ROOT / "cases/joints/skirt.nml"
+    summary, rows = run(program, work, case)
+    if not rows:
+        return
+    for name, wanted, tolerance in SKIRT_FACTS:
+        check(close(summary[name], wanted, tolerance), f"skirt: {name}", f"{summary[name]}, not {wanted}")
+    check(abs(summary["cycle_min_skirt_film_thickness_angle"] - 530) < 3, "skirt: where the least film is", str(summary["cycle_min_skirt_film_thickness_angle"]))
+    check(close(summary["cycle_fmep"], summary["cycle_skirt_fmep"], 1e-4), "skirt: nothing else loses work", str(summary["cycle_fmep"]))
+    for row in rows:
+        check(row["skirt_power"] >= 0, "skirt: it takes power", str(row["skirt_power"]))
+        z = 0.006   # the top from the centre of mass; 35 + 30 um: clearance and relief there
+        check(abs(row["guide_1_gap"] + row["piston_offset"] + z*row["piston_tilt"] - 65e-6) < 1e-12, "skirt: gap at the top")
+    draft = "guide.lubrication.around=4", "guide.lubrication.along=16", "integrator.relative_tolerance=1e-5"
+    plain, _ = run(program, work, case, *draft)
+    mirrored, _ = run(program, work, case, *draft, "initial.crank_speed=-314.1592653589793", "initial.crank_angle_deg=180", "guide.piston_com=0.006,-0.0005")
+    for name in ("cycle_skirt_fmep", "cycle_min_skirt_film_thickness", "cycle_max_skirt_force"):
+        check(close(plain[name], summary[name], 0.06), f"skirt: {name} on a coarse grid", f"{plain[name]}, {summary[name]}")
+        check(close(mirrored[name], plain[name], 1e-4), f"skirt: {name} of the mirror image", f"{mirrored[name]}, {plain[name]}")
+    (work / "profile.csv").write_text("height[mm],relief[um]\n" + "".join(f"{z},{30*((z + 10.5)/22.5)**2}\n" for z in range(-33, 13)))
+    table, _ = run(program, work, case, *draft, "guide.barrel=0", f"guide.profile_table={work / 'profile.csv'}")
+    check(close(table["cycle_skirt_fmep"], plain["cycle_skirt_fmep"], 1e-3), "skirt: the profile of a table", str(table["cycle_skirt_fmep"]))
+    for settings, message in ((("guide.asperities=none",), "needs the groups lubrication and asperities with place = 'guide'"), (("guide.restitution=0.5",), "a lubricated skirt has no dry corners"),
+                              (("guide.stiffness=1e7",), "must be 0 with kind = 'lubricated'"), (("initial.piston_offset=36e-6",), "must leave a gap between skirt and bore"),
+                              (("guide.asperities.roughness=35e-6",), "must be < bore_clearance"), ((f"guide.profile_table={work / 'profile.csv'}",), "is in profile_table: one of both"),
+                              (("guide.skirt_top=0.013", "guide.barrel=0", f"guide.profile_table={work / 'profile.csv'}"), "must cover the skirt"),
+                              (("guide.kind=friction",), "needs &guide kind = 'lubricated'")):
+        ran = subprocess.run([program, "--check", *(word for one in settings for word in ("--set", one)), case], capture_output=True, text=True, check=False)
+        check(ran.returncode == 3 and message in ran.stderr, f"refused: {settings}", ran.stderr)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path)
@@ -459,7 +497,7 @@ def main() -> int:
             sys.exit(f"{built.stderr}\n0 passed, 1 failed")
         program = ROOT / built.stdout.strip()
     with tempfile.TemporaryDirectory(prefix="answers") as work:
-        for test in (test_engine, test_ledger, test_reversals, test_slap, test_rows, test_extremes, test_no_gas, test_rings, test_wear, test_scope):
+        for test in (test_engine, test_ledger, test_reversals, test_slap, test_rows, test_extremes, test_no_gas, test_rings, test_skirt, test_wear, test_scope):
             folder = Path(work) / test.__name__
             folder.mkdir()
             test(program.resolve(), folder)

@@ -57,6 +57,10 @@ def variants_of_made_cases(template: dict) -> None:
     check(found["no contact"] == ("contact=none",), "the contact can be removed")
     check(found["ideal piston pin"] == ("joint.kind=ideal", "contact=none"), "a joint that becomes ideal loses its laws",
           str(found["ideal piston pin"]))
+    skirt = settings_of(variants_of({**dry, "guide": {"kind": "lubricated"}, "guide.lubrication": {"cavitation": "reynolds"}, "guide.asperities": {}}, template))
+    check(skirt["no model of the guide"] == ("guide=none", "guide.lubrication=none", "guide.asperities=none"), "the film of a skirt goes with its guide")
+    check(skirt["film of the skirt: cavitation gumbel"] == ("guide.lubrication.cavitation=gumbel",), "the other condition of rupture in the film of a skirt")
+    check("guide.kind=clearance" in skirt["skirt with dry corners"], "dry corners instead of the film of the skirt")
     check(found["crank held at its starting speed"] == ("drive.kind=constant_speed",), "the crank can be held at its starting speed")
     check(len([label for label in found if label.startswith("contact ") and "geometry" not in label]) == 9, "there are nine other contact laws")
     check(found["friction"][0] == "friction.law=ambrosio", "friction can be added")

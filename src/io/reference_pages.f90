@@ -32,7 +32,7 @@ module reference_pages
     'combustion.duration_deg=40'
 
   !> Kinds of scenes that together have every column.
-  type(scene_kind_t), parameter :: kinds(20) = [ &
+  type(scene_kind_t), parameter :: kinds(21) = [ &
     scene_kind_t('Every scene', 'drive.kind=constant_speed'), &
     scene_kind_t('Joint with clearance (the last three columns only with `&contact`)', play//contact), &
     scene_kind_t('Contact with `geometry = ''conformal''`', play//contact//'contact.geometry=conformal'), &
@@ -54,6 +54,9 @@ module reference_pages
     scene_kind_t('Guide (`kind = ''friction''` has the first column alone)', 'guide.kind=clearance '// &
       'guide.bore_clearance=1e-4 guide.skirt_top=0.02 guide.skirt_bottom=0.02 guide.piston_radius=0.035 '// &
       'guide.piston_inertia=1e-3 guide.stiffness=1e8 guide.coefficient=0'), &
+    scene_kind_t('Film of the skirt (`kind = ''lubricated''`)', 'guide.kind=lubricated '// &
+      'guide.bore_clearance=1e-4 guide.skirt_top=0.02 guide.skirt_bottom=0.02 guide.piston_radius=0.035 '// &
+      'guide.piston_inertia=1e-3 guide.lubrication.viscosity=0.008 guide.asperities.roughness=1e-6'), &
     scene_kind_t('Gas', engine), &
     scene_kind_t('Piston rings (the numbers are those of the case)', 'ring_1.height=1.2e-3 ring_1.crown=6e-6 ring_1.tension=8 '// &
       'rings.lubrication.viscosity=0.008 '//engine), &

@@ -102,7 +102,8 @@ contains
     text = ''
     call last_value('min_skirt_film_thickness', film)
     if (is_known) call last_value('max_slap_speed', speed)
-    if (is_known) text = '; film at the skirt from '//quantity_text(film, 'm')//', across the bore up to '//quantity_text(speed, 'm/s')
+    if (is_known) text = '; film at the skirt from '//quantity_text(film, 'm')//', across the bore up to '// &
+      quantity_text(speed, 'm/s')
 
   contains
 

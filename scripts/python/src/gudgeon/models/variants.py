@@ -9,6 +9,7 @@ from gudgeon.names import PLACES
 
 PREFIXES = ("", *(f"{place}." for place in PLACES))  # of a group: none (piston pin or all joints), or one place only
 LAWS = ("friction", "asperities", "lubrication", "contact")
+SKIRT = ("guide.lubrication", "guide.asperities")  # of a lubricated skirt
 OTHER_GROUPS = ("guide", "elastic_rod", "crankshaft", "combustion", "cylinder_pressure")
 WORDS = {
     "friction": "friction",
@@ -96,8 +97,14 @@ def variants_of(case: Case, template: dict[str, dict[str, Key]]) -> list[Variant
 
 
 def rungs(case: Case) -> list[Variant]:
-    """The other steps from an ideal pin over a film that carries its load, one way, to a joint with clearance."""
+    """The other steps from an ideal pin over a film that carries its load, one way, to a joint with clearance; and from the film of a skirt
+    to dry corners."""
     found = []
+    if SKIRT[0] in case:
+        other = "gumbel" if case[SKIRT[0]].get("cavitation") == "reynolds" else "reynolds"
+        found.append(Variant("exchanged", f"film of the skirt: cavitation {other}", (f"{SKIRT[0]}.cavitation={other}",)))
+        dry = ("guide.kind=clearance", "guide.stiffness=5e7", "guide.restitution=0.4", "guide.coefficient=0.05", *(f"{name}=none" for name in SKIRT))
+        found.append(Variant("exchanged", "skirt with dry corners", dry, "stiffness 5e7 N/m, restitution 0.4, friction 0.05"))
     loose = loose_joints(case)
     for name in loose:
         own = [law for group in ("contact", "friction") for law in {group, name.replace("joint", group)} if law in case]
@@ -122,6 +129,8 @@ def taken_out(case: Case) -> list[Variant]:
             settings = [f"{name}=none"]
             if group == "contact":  # friction needs the normal force
                 settings += [f"{other}=none" for other in groups_named(case, "friction") if place_of(other) == place_of(name)]
+            if group == "guide":
+                settings += [f"{other}=none" for other in SKIRT if other in case]
             label = f"no {WORDS[group]}{place_of(name)}"
             if group == "contact" and len(settings) > 1:
                 label = f"no contact{place_of(name)}, and so no friction"
@@ -130,7 +139,8 @@ def taken_out(case: Case) -> list[Variant]:
     for name in loose:
         settings = ideal_joints(case, [name])
         found.append(Variant("taken out", f"ideal {pin_of(name)}", settings))
-    bore = ("guide=none",) if case.get("guide", {}).get("kind") == "clearance" else ()
+    of_skirt = tuple(f"{other}=none" for other in SKIRT if other in case)
+    bore = ("guide=none", *of_skirt) if case.get("guide", {}).get("kind") in ("clearance", "lubricated") else ()
     if len(loose) > 1 or (loose and (rigid or bore)):
         found.append(Variant("taken out", "ideal twin: no clearance, rigid members", ideal_joints(case, loose) + rigid + bore))
     if case["mechanism"]["gravity"]:
