@@ -257,7 +257,9 @@ contains
     call balance(n/2, m/2, along_pair, round_pair, source_pair, .false., full_pair, p)
     do j = 1, m - 1
       do i = 1, n
-        full(i, j) = full_pair((i + 1)/2, min((j + 1)/2, m/2 - 1)) .or. full_pair((i + 1)/2, max(j/2, 1))
+        associate (pair => i/2 + mod(i, 2), below => max(j/2, 1), above => min(j/2 + mod(j, 2), m/2 - 1))
+          full(i, j) = full_pair(pair, below) .or. full_pair(pair, above)
+        end associate
       end do
     end do
   end subroutine guess_full

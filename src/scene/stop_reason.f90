@@ -41,6 +41,13 @@ contains
       text = hot_film_reason(scene, y)
       if (text /= '') return
       text = 'the state left the range of the model ('//leaving_pin(scene, y)//' left its bearing or its film)'
+      if (has_skirt_film(scene)) then
+        if (scene%n_joints == 0) then
+          text = 'the state left the range of the model (the skirt went into the bore, through its asperities)'
+        else
+          text = text(:len(text) - 1)//', or the skirt went into the bore, through its asperities)'
+        end if
+      end if
       if (scene%chain%has_elastic_rod()) text = text(:len(text) - 1)// &
         ', or the elastic rod bent or stretched beyond the validity of its equations)'
       if (scene%is_singular(y)) text = ill_posed_text(scene, y)
@@ -64,6 +71,13 @@ contains
       text = 'stopped'
     end select
   end function reason
+
+  !> Whether the piston has clearance in its bore without corners that may touch it: on a film.
+  pure logical function has_skirt_film(scene)
+    type(scene_t), intent(in) :: scene
+    has_skirt_film = .false.
+    if (allocated(scene%guide)) has_skirt_film = scene%guide%is_loose .and. scene%guide%touching == 0
+  end function has_skirt_film
 
   !> Text that says that a film has left the range of temperatures, or an empty one.
   function hot_film_reason(scene, y) result(text)
