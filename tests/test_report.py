@@ -296,6 +296,11 @@ def check_answers(checks: Assertions) -> None:
     wanted = [("Ring 1", 7e3), ("Ring 2", 3e3), ("Piston pin", 3e3), ("Crank pin", 6e3), ("Piston in its bore", 6e3)]
     checks.check([name for name, _ in parts] == [name for name, _ in wanted] and all(abs(a - b) < 1e-6 for (_, a), (_, b) in zip(parts, wanted)), f"parts of FMEP: {parts}")
     checks.check(abs(sum(value for _, value in parts) - 2.5e4) < 1e-6, "they are all of it")
+    film = {"cycle_skirt_fmep": ("4e3", "Pa"), "cycle_max_slap_speed": ("0.0464", "m/s"), "cycle_max_slap_speed_angle": ("378.3", "deg"),
+            "cycle_min_skirt_film_thickness": ("1.145e-5", "m"), "cycle_min_skirt_film_thickness_angle": ("529.8", "deg")}
+    parts = losses_of(Answers(SimpleNamespace(summary=of_losses | film)))
+    checks.check(parts[-2] == ("Skirt", 4e3) and abs(parts[-1][1] - 2e3) < 1e-6, f"the film of the skirt has its own part: {parts}")
+    checks.check(("Hardest slap", "0.0464 m/s at 378.3°, film from 11.45 µm at 529.8°") in lines(SimpleNamespace(summary=rows | film))[2], "slap of a skirt on its film")
     text = section(SimpleNamespace(summary=of_losses))
     checks.check("<td>Crank pin</td><td>6 kPa</td><td>60 W</td><td>24 %</td>" in text and "<td>All losses (FMEP)</td><td>25 kPa</td><td>250 W</td>" in text, f"table of losses: {text}")
     said = warnings(SimpleNamespace(summary=rows))

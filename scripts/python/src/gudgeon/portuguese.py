@@ -280,6 +280,8 @@ TEXTS = {
     "guide force": "força da guia",
     "Friction of the piston on its guide": "Atrito do pistão na guia",
     "Friction of the piston rings": "Atrito dos anéis do pistão",
+    "Force on the skirt": "Força na saia",
+    "Least film of the skirt": "Menor filme da saia",
     "Piston across its bore": "Pistão através do cilindro",
     "Tilt of the piston": "Inclinação do pistão",
     "energy residual": "resíduo de energia",

@@ -89,6 +89,8 @@ OVER_TIME = (
     ("engine_force_x", "Force on the engine along the cylinder", "kN", 1e-3),
     ("guide_force", "Guide force", "kN", 1e-3),
     ("guide_friction_force", "Friction of the piston on its guide", "N", 1.0),
+    ("skirt_force", "Force on the skirt", "kN", 1e-3),
+    ("skirt_min_film_thickness", "Least film of the skirt", "µm", 1e6),
     ("ring_friction_force", "Friction of the piston rings", "N", 1.0),
     ("piston_offset", "Piston across its bore", "µm", 1e6),
     ("piston_tilt", "Tilt of the piston", "mrad", 1e3),
@@ -459,7 +461,7 @@ def page(
         "modes": sum(name.startswith("rod_mode_") for name in used),
         "peak": {
             "pin_force": float(columns["pin_force"].max()),
-            "guide_force": max([float(columns[f"guide_{i}_force"].max()) for i in CORNERS if bore], default=0.0),
+            "guide_force": max([float(columns[f"guide_{i}_force"].max()) for i in CORNERS if f"guide_{i}_force" in columns], default=0.0),
             "normal_force": max([contact["force"] for contact in touched], default=0.0),
             "eccentricity_ratio": float(run["eccentricity_ratio"].max()) if run.clearance else 0.0,
             "cylinder_pressure": float(columns["cylinder_pressure"].max()) if "cylinder_pressure" in columns else 0.0,

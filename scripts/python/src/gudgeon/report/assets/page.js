@@ -264,7 +264,7 @@
     g.fillStyle = COLOUR.steel; g.fill(); g.strokeStyle = COLOUR.ink; g.lineWidth = 1.2; g.stroke();
     circle(g, X(0, 0) - scale * bore.across, Y(0), 0.25 * scale * bore.radius, "#fff", COLOUR.ink, 1.2);
     [[bore.top, 1], [-bore.bottom, 1], [bore.top, -1], [-bore.bottom, -1]].forEach(([h, side], i) => {
-      const force = near(`guide_${i + 1}_force`);
+      const force = column.guide_1_force ? near(`guide_${i + 1}_force`) : 0;   // a film has no corners
       if (!(force > 0)) return;
       const length = rooted(force, scene.peak.guide_force, 0.4 * scale * bore.radius + 12), x = cx + side * wall;
       circle(g, x, Y(h), 5, COLOUR.purple);
@@ -384,7 +384,7 @@
     }
     if (column.pin_angle) parts.push(`${W("pin turned")} ${(at("pin_angle") * 180 / Math.PI).toFixed(2)}°`);
     if (bore) {
-      const touching = [1, 2, 3, 4].filter((i) => near(`guide_${i}_force`) > 0);
+      const touching = column.guide_1_force ? [1, 2, 3, 4].filter((i) => near(`guide_${i}_force`) > 0) : [];
       parts.push(`${W("piston offset")} ${(1e6 * at("piston_offset")).toFixed(1)} µm, ${W("tilt")} ${(1e3 * at("piston_tilt")).toFixed(2)} mrad`
         + (touching.length ? `, ${W("corners on the bore:")} ${touching.join(", ")}` : ""));
     }
