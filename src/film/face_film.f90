@@ -25,6 +25,7 @@ module face_film
   real(dp), parameter :: closer = 0.6_dp          !! how much closer the nodes at the ends are
   real(dp), parameter :: far_apart = 7            !! gap over roughness above which surfaces count as smooth
   real(dp), parameter :: least_inflow = 1e-13_dp  !! over the largest source, with which a ruptured node fills again
+  integer, parameter :: sweeps = 3                !! of Gauss and Seidel over the guess of that part
   integer, parameter :: most_rounds = 60          !! of the search for the part that is full
 
   !> Motion of the piston across its bore.
@@ -231,14 +232,16 @@ contains
     end associate
   end subroutine pressures
 
-  !> Nodes that a grid of half as many cells and intervals, with the same flows, finds full. All of them if it cannot be made.
+  !> Nodes that are probably full: from the pressures of a grid of half as many cells and intervals, with the same flows, after some
+  !> sweeps over the nodes. All of them if that grid cannot be made.
   pure subroutine guess_full(n, m, along, round, source, full)
     integer, intent(in) :: n, m
     real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1)
     logical, intent(inout) :: full(n, m - 1)
     real(dp) :: along_pair(n/2, m/2), round_pair(0:n/2, m/2 - 1), source_pair(n/2, m/2 - 1), p(0:n/2 + 1, 0:m/2)
+    real(dp) :: guess(0:n + 1, 0:m)
     logical :: full_pair(n/2, m/2 - 1)
-    integer :: i, j
+    integer :: i, j, pass
     if (mod(n, 2) + mod(m, 2) > 0) return
     do j = 1, m/2
       do i = 1, n/2   ! two flows side by side, each through two conductances one after the other
@@ -255,13 +258,23 @@ contains
     end do
     full_pair = .true.
     call balance(n/2, m/2, along_pair, round_pair, source_pair, .false., full_pair, p)
-    do j = 1, m - 1
-      do i = 1, n
-        associate (pair => i/2 + mod(i, 2), below => max(j/2, 1), above => min(j/2 + mod(j, 2), m/2 - 1))
-          full(i, j) = full_pair(pair, below) .or. full_pair(pair, above)
-        end associate
+    guess = 0
+    do j = 1, m/2
+      do i = 1, n/2
+        guess(2*i - 1:2*i, 2*j - 1) = 0.5_dp*(p(i, j - 1) + p(i, j))
+        guess(2*i - 1:2*i, 2*j) = p(i, j)
       end do
     end do
+    do pass = 1, sweeps
+      do j = 1, m - 1
+        do i = 1, n
+          guess(i, j) = max(0.0_dp, (source(i, j) + along(i, j)*guess(i, j - 1) + along(i, j + 1)*guess(i, j + 1) + &
+            round(i - 1, j)*guess(i - 1, j) + round(i, j)*guess(i + 1, j))/ &
+            (along(i, j) + along(i, j + 1) + round(i - 1, j) + round(i, j)))
+        end do
+      end do
+    end do
+    full = guess(1:n, 1:m - 1) > 0
   end subroutine guess_full
 
   !> Pressures of the nodes for which the flows balance, by one of both conditions; for Reynolds' from a guess of the nodes that are
