@@ -233,7 +233,7 @@ contains
         ' around a piston of '//quantity_text(guide%piston_radius, 'm', digits)//' radius'
       if (case%has_skirt_corners()) text = text//'; contact '//trim(guide%contact%name)
       if (guide%is_lubricated()) text = text//', with a film at the skirt'
-      if (allocated(guide%friction)) text = text//'; friction '//trim(guide%friction%name)
+      if (allocated(guide%friction) .and. .not. guide%is_lubricated()) text = text//'; friction '//trim(guide%friction%name)
     end associate
   end function guide_text
 
