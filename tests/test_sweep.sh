@@ -527,6 +527,16 @@ check "a sweep with the film removed has impacts" [ "$(awk -F, 'NR > 1 && $8 > 0
 run --fresh cases/sim_I.nml
 check "--fresh is refused for cases" [ "$status" = 2 ]
 refused "rows beyond the study" 3 "the study has 12 runs" --rows 5:20 "$work/grid.nml"
+cp cases/bearings/flores2006.nml cases/bearings/flores2006.load.csv "$work"
+study alone <<'END'
+&study case = 'flores2006.nml', statistics = 'cycle_min_film_thickness' /
+&parameter key = 'joint.clearance', values = 25 um, 35.56 um /
+END
+run sweep -q -o "$work/alone" "$work/alone.nml"
+check "a study of a bearing by itself, status $status" [ "$status" = 0 ]
+run -q -o "$work/alone" "$work/flores2006.nml"
+film=$(sed -n 's/^cycle_min_film_thickness,\([^,]*\),m$/\1/p' "$work/alone/flores2006.summary.csv")
+check "has the film of its run, $film" [ -n "$film" -a "$(grep -c "^2,.*,$film\(,\|\$\)" "$work/alone/alone.runs.csv")" = 1 ]
 refused "an override of a varied key" 2 "--set Joint. clearance=3e-5: the study varies joint.clearance" \
   -s "Joint. clearance=3e-5" "$work/grid.nml"
 study tolerances <<'END'

@@ -640,7 +640,7 @@ contains
   end subroutine set_layout
 
   !> Request the integrals of the joints; must be called before the run. In a scene with clearance they do not influence the steps.
-  !> In a scene without clearance the only one, the integral of the force, takes part in the error control, since otherwise the
+  !> In a mechanism without clearance the only one, the integral of the force, takes part in the error control, since otherwise the
   !> steps would be too long for it.
   subroutine measure_joint(self)
     class(scene_t), intent(inout) :: self
@@ -651,7 +651,7 @@ contains
     if (self%n_joints > 0) then
       self%measures_loss = .not. work_tells(self)
       if (self%measures_loss) n = n + 1
-    else
+    else if (.not. allocated(self%given_load)) then
       scale = self%energy_scale()/(self%chain%bodies%crank%length*self%speed_scale())
     end if
     call self%layout%claim_quadratures(n, scale, self%measures)
