@@ -348,6 +348,10 @@ def check_read() -> None:
                 browser.run(SEARCH, "asperities")
                 check(browser.wait("document.querySelectorAll('.md-search-result__item').length > 1", 20), f"manual, {page}: the search finds")
                 check(not (said := browser.messages()), f"manual, {page}: console", str(said))
+            for page in ("index", "theory", "films", "case_file"):
+                browser.open(ROOT / f"build/manual/{page}.html")
+                check((width := browser.width_at(400)) == 400, f"manual, {page}: fits a phone", f"{width} instead of 400")
+            browser.width_at(0)
             browser.open(ROOT / "build/manual/api/index.html")
             check(browser.run("return getComputedStyle(document.querySelector('.navbar')).display") == "flex", "manual, api: is styled")
             check(not (said := browser.messages()), "manual, api: console", str(said))

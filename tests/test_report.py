@@ -92,7 +92,7 @@ class Browser:
             try:
                 self.session = self.call("POST", "/session", {"capabilities": capabilities})["sessionId"]
                 # a headless page may have no focus, without which elements have no focus events
-                self.call("POST", "/goog/cdp/execute", {"cmd": "Emulation.setFocusEmulationEnabled", "params": {"enabled": True}})
+                self.cdp("Emulation.setFocusEmulationEnabled", enabled=True)
                 return
             except (urllib.error.URLError, ConnectionError):
                 time.sleep(0.2)
@@ -105,6 +105,18 @@ class Browser:
         request = urllib.request.Request(url, data, {"Content-Type": "application/json"}, method=method)
         with urllib.request.urlopen(request, timeout=120) as answer:
             return json.load(answer)["value"]
+
+    def cdp(self, command: str, **values: object) -> object:
+        """Execute a command of the DevTools protocol."""
+        return self.call("POST", "/goog/cdp/execute", {"cmd": command, "params": values})
+
+    def width_at(self, width: int) -> int:
+        """Show the page on a screen of this width and return the width that it takes; 0 shows it as before."""
+        if width:
+            self.cdp("Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=0, mobile=True)
+        else:
+            self.cdp("Emulation.clearDeviceMetricsOverride")
+        return self.run("return document.documentElement.scrollWidth")
 
     def open(self, page: Path) -> None:
         self.call("POST", "/url", {"url": page.resolve().as_uri()})
@@ -253,7 +265,6 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
     messages = browser.messages()
     checks.check(not messages, f"{name}: console: {messages}")
     if pictures:
-        browser.run("Plotly.relayout(gudgeon.charts.find(c => c.timed).div, {'xaxis.autorange': true})")
         browser.run(MOVE, "scrub", 0.62)
         time.sleep(1.0)
         browser.screenshot(pictures / f"{name}_top.png")
@@ -261,6 +272,40 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
         browser.screenshot(pictures / f"{name}_plots.png")
         browser.run("document.querySelector('.tables').scrollIntoView()")
         browser.screenshot(pictures / f"{name}_tables.png")
+
+
+#: Contrast (WCAG 2) of two colours of CSS.
+CONTRAST = """const light = (c) => { const l = c.match(/[\\d.]+/g).slice(0, 3).map(v => v / 255).map(v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+  return 0.2126 * l[0] + 0.7152 * l[1] + 0.0722 * l[2]; };
+const contrast = (a, b) => { const [x, y] = [light(a), light(b)].sort((p, q) => q - p); return (x + 0.05) / (y + 0.05); };
+const style = (e, name) => getComputedStyle(e)[name], paper = style(document.body, 'backgroundColor');
+const all = (q) => [...document.querySelectorAll(q)];
+return {paper: light(paper), charts: all('#plots .main-svg:first-of-type, #planes .main-svg:first-of-type').map(s => light(style(s, 'backgroundColor'))),
+  texts: Math.min(...all('h1, .hint, td, .warning').map(e => contrast(style(e, 'color'), style(e.closest('.warning') || document.body, 'backgroundColor'))),
+    ...all('.gtitle, .xtick text').map(e => contrast(style(e, 'fill'), paper))),
+  lines: Math.min(...all('.js-line').map(e => contrast(style(e, 'stroke'), paper)))};"""
+
+
+def check_screens(browser: Browser, page: Path, checks: Assertions, pictures: Path | None) -> None:
+    """The page on a phone, in the dark and on paper. The least contrasts are those of WCAG 2: 4.5 of a text, 3 of a line."""
+    browser.open(page)
+    browser.wait("window.gudgeon && window.gudgeon.ready")
+    checks.check((width := browser.width_at(400)) == 400, f"a page on a phone is {width} wide instead of 400")
+    if pictures:
+        browser.screenshot(pictures / "phone.png")
+    browser.width_at(0)
+    for scheme, is_dark in (("light", False), ("dark", True)):
+        browser.cdp("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+        browser.wait(f"(getComputedStyle(document.querySelector('#planes .js-line')).stroke === 'rgb(86, 180, 233)') === {str(is_dark).lower()}", 10)
+        seen = browser.run(CONTRAST)
+        checks.check((seen["paper"] < 0.05) == is_dark and all((one < 0.05) == is_dark for one in seen["charts"]) and seen["charts"], f"{scheme}: page and charts: {seen}")
+        checks.check(seen["texts"] >= 4.5 and seen["lines"] >= 3, f"{scheme}: contrasts of texts and lines: {seen['texts']}, {seen['lines']}")
+        if pictures:
+            browser.screenshot(pictures / f"{scheme}.png")
+    browser.run("window.dispatchEvent(new Event('beforeprint'))")
+    checks.check(browser.run(CONTRAST)["paper"] > 0.9, "on paper a dark page is light")
+    browser.run("window.dispatchEvent(new Event('afterprint'))")
+    checks.check(not (said := browser.messages()), f"console: {said}")
 
 
 def check_answers(checks: Assertions) -> None:
@@ -343,6 +388,8 @@ def main() -> int:
         try:
             for page in pages:
                 check_page(browser, page, checks, options.screenshots)
+            if pages:
+                check_screens(browser, pages[-1], checks, options.screenshots)
         finally:
             browser.close()
     return checks.report()

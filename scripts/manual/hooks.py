@@ -35,8 +35,9 @@ def on_page_content(text: str, page, **_) -> str:
         done = re.sub(r"<mi>(sin|cos|tanh|ln|exp)</mi>", r'<mspace width="0.17em"/><mi>\1</mi><mspace width="0.1em"/>', done)
         sides = itertools.cycle(("prefix", "postfix"))   # of absolute values
         done = re.sub("<mo>&#x0007C;</mo>", lambda _: f'<mo form="{next(sides)}" stretchy="false">|</mo>', done)
-        done = re.sub(r'mtd columnalign="(\w+)"', r'mtd style="text-align: \1; padding: 0.2em 0"', done)   # browsers know no other alignment
-        return re.sub(r'<mi mathvariant="bold-italic">(\w)</mi>', lambda letter: f"<mi>{bold(letter[1])}</mi>", done)
+        done = re.sub(r'mtd columnalign="(\w+)"', r'mtd style="text-align: \1"', done)   # browsers know no other alignment
+        done = re.sub(r'<mi mathvariant="bold-italic">(\w)</mi>', lambda letter: f"<mi>{bold(letter[1])}</mi>", done)
+        return done if match[1] == "span" else f'<div class="equation">{done}</div>'
 
     text = EQUATION.sub(math, text)
     printed[page.file.name] = text

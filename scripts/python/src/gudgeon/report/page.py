@@ -17,7 +17,6 @@ from gudgeon.language import Language
 from gudgeon.names import PLACES, prefixed
 from gudgeon.plots import film_pressure
 from gudgeon.plots import wear as wear_pictures
-from gudgeon.plots.style import BLACK, BLUE, GREEN, PURPLE, VERMILION
 from gudgeon.report import answers
 from gudgeon.report import cycles as report_cycles
 from gudgeon.results import Run, numbered
@@ -188,14 +187,14 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
     for name, title, unit, factor in over_time(columns, run):
         if name not in columns or not is_informative(columns[name]):
             continue
-        curves = [{"name": "this run", "x": "time", "x_factor": 1e3, "y": name, "y_factor": factor, "colour": BLUE}]
+        curves = [{"name": "this run", "x": "time", "x_factor": 1e3, "y": name, "y_factor": factor, "colour": "blue"}]
         if name in APART:
             for run_name, said in ((name, title), (f"ideal {name}", f"{title} of the ideal joint's run")):
                 if run_name in columns and is_informative(columns[run_name]):
                     shown_unit, factor = prefixed(unit, columns[run_name])
-                    curve = {"name": said, "x": "time", "x_factor": 1e3, "y": run_name, "y_factor": factor, "colour": BLUE}
+                    curve = {"name": said, "x": "time", "x_factor": 1e3, "y": run_name, "y_factor": factor, "colour": "blue"}
                     if run_name != name:
-                        curve["colour"] = BLACK
+                        curve["colour"] = "ink"
                     found.append({"title": said, "x": "time [ms]", "y": shown_unit, "timed": True, "curves": [curve]})
             continue
         if f"ideal {name}" in columns:
@@ -206,7 +205,7 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
                     "x_factor": 1e3,
                     "y": f"ideal {name}",
                     "y_factor": factor,
-                    "colour": BLACK,
+                    "colour": "ink",
                     "dash": "dash",
                 }
             )
@@ -225,7 +224,7 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
                 "y_factor": factor,
                 "colour": colour,
             }
-            for (corner, said), colour in zip(CORNERS.items(), (BLUE, GREEN, VERMILION, PURPLE))
+            for (corner, said), colour in zip(CORNERS.items(), ("blue", "green", "vermilion", "purple"))
             if f"guide_{corner}_{quantity}" in columns
         ]
         if curves:
@@ -238,7 +237,7 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
             "x_factor": factors[0],
             "y": names[1],
             "y_factor": factors[1],
-            "colour": BLUE,
+            "colour": "blue",
         }
         return {"title": title, "x": x, "y": y, "timed": False, "square": True, "curves": [curve], **more}
 

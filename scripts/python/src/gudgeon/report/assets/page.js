@@ -1,8 +1,12 @@
 "use strict";
 // Unpacks the trace, moves the mechanism, draws the plots. Tests use the object `gudgeon`.
 (async function () {
-  const COLOUR = { ink: "#1b1f23", grey: "#8a9096", blue: "#0072B2", vermilion: "#D55E00", purple: "#CC79A7",
-    green: "#009E73", sky: "#56B4E9", steel: "#c8cdd2", light: "#e4e8eb" };
+  const COLOUR = { ink: "", paper: "", soft: "", muted: "", line: "", grey: "", steel: "", light: "", blue: "", vermilion: "", purple: "", green: "", sky: "" };
+  const readColours = () => {   // those of the style sheet, which has a dark set
+    const style = getComputedStyle(document.documentElement);
+    for (const name of Object.keys(COLOUR)) COLOUR[name] = style.getPropertyValue(`--${name}`).trim();
+  };
+  readColours();
   const byId = (id) => document.getElementById(id);
   let words = {}, comma = false;   // words in the page's language
   const W = (text) => words[text] || text;
@@ -172,20 +176,20 @@
     g.translate(B(aside), Y(piston)); g.rotate(tilt);   // x is up: from x to y is clockwise here
     g.beginPath(); g.rect(-half * scale, -2.6 * bearing * scale, 2 * half * scale, 4.1 * bearing * scale); g.fill(); g.stroke();
     g.restore();
-    circle(g, B(pin), Y(piston), bearing * scale, "#fff", COLOUR.ink, 1.2);
+    circle(g, B(pin), Y(piston), bearing * scale, COLOUR.paper, COLOUR.ink, 1.2);
     if (bending) bentBar(g, X, Y, [bx, by], [piston + rx, scene.axis + ry], 0.55 * bearing, bending);
     else bar(g, X(by), Y(bx), B(ry), Y(piston + rx), 0.55 * bearing * scale);
     const radius = bearing - m * pinClearance;   // of the pin
-    if (smallEnd) circle(g, B(ry), Y(piston + rx), (radius + m * smallEnd.clearance) * scale, "#fff", COLOUR.ink, 1);
+    if (smallEnd) circle(g, B(ry), Y(piston + rx), (radius + m * smallEnd.clearance) * scale, COLOUR.paper, COLOUR.ink, 1);
     circle(g, B(ey), Y(piston + ex), radius * scale * (joint || smallEnd ? 1 : 0.75), COLOUR.blue, COLOUR.ink, 1);
     if (column.pin_angle) {   // a mark on the pin shows how it turns
       const turn = at("pin_angle");
       g.beginPath(); g.moveTo(B(ey), Y(piston + ex)); g.lineTo(B(ey + radius * Math.sin(turn)), Y(piston + ex + radius * Math.cos(turn)));
-      g.strokeStyle = "#fff"; g.lineWidth = 2; g.stroke();
+      g.strokeStyle = COLOUR.paper; g.lineWidth = 2; g.stroke();
     }
-    circle(g, X(0), Y(0), 0.45 * bearing * scale, "#fff", COLOUR.ink, 1);
-    if (crankPin) circle(g, X(by), Y(bx), (0.45 * bearing + mc * crankPin.clearance) * scale, "#fff", COLOUR.ink, 1);
-    circle(g, X(py), Y(px), 0.45 * bearing * scale, crankPin ? COLOUR.blue : "#fff", COLOUR.ink, 1);
+    circle(g, X(0), Y(0), 0.45 * bearing * scale, COLOUR.paper, COLOUR.ink, 1);
+    if (crankPin) circle(g, X(by), Y(bx), (0.45 * bearing + mc * crankPin.clearance) * scale, COLOUR.paper, COLOUR.ink, 1);
+    circle(g, X(py), Y(px), 0.45 * bearing * scale, crankPin ? COLOUR.blue : COLOUR.paper, COLOUR.ink, 1);
   }
 
   // Lengths of arrows and heights of the pressure are proportional to the square root, so that small values are visible.
@@ -211,7 +215,7 @@
         g.globalAlpha = 0.75; g.fill(); g.globalAlpha = 1;
       }
     }
-    circle(g, cx, cy, radius, "#fff", COLOUR.ink, 2);
+    circle(g, cx, cy, radius, COLOUR.paper, COLOUR.ink, 2);
     if (oil) {   // where the gap is full the ring is dark, where the film has ruptured it is pale
       const first = nearest() * scene.angles, direction = Math.atan2(uy, ux), step = 2 * Math.PI / scene.angles;
       g.lineWidth = 5; g.strokeStyle = COLOUR.sky;
@@ -262,7 +266,7 @@
     g.lineTo(X(-bore.bottom, 1), Y(-bore.bottom)); g.lineTo(X(-bore.bottom, -1), Y(-bore.bottom));
     g.closePath();
     g.fillStyle = COLOUR.steel; g.fill(); g.strokeStyle = COLOUR.ink; g.lineWidth = 1.2; g.stroke();
-    circle(g, X(0, 0) - scale * bore.across, Y(0), 0.25 * scale * bore.radius, "#fff", COLOUR.ink, 1.2);
+    circle(g, X(0, 0) - scale * bore.across, Y(0), 0.25 * scale * bore.radius, COLOUR.paper, COLOUR.ink, 1.2);
     [[bore.top, 1], [-bore.bottom, 1], [bore.top, -1], [-bore.bottom, -1]].forEach(([h, side], i) => {
       const force = column.guide_1_force ? near(`guide_${i + 1}_force`) : 0;   // a film has no corners
       if (!(force > 0)) return;
@@ -294,14 +298,14 @@
       }
       g.globalAlpha = 1;
     };
-    circle(g, cx, cy, unit, "#fff", null);
+    circle(g, cx, cy, unit, COLOUR.paper, null);
     line(0, row, 0.3, 1);
     let from = row;
     while (from > 0 && column.crank_angle[row] - column.crank_angle[from] < 2 * Math.PI) from--;
     line(from, row, 1, 1.4);
     circle(g, cx, cy, unit, null, COLOUR.ink, 1.5);
     circle(g, cx + unit * at(ey) / clearance, cy - unit * at(ex) / clearance, 5,
-      touching(nearest()) ? COLOUR.purple : COLOUR.vermilion, "#fff", 1);
+      touching(nearest()) ? COLOUR.purple : COLOUR.vermilion, COLOUR.paper, 1);
   }
 
   // ---- the time line: film thickness, or the pin's force, over the whole run, with the contacts below
@@ -327,7 +331,7 @@
       g.fillStyle = i === full ? COLOUR.blue : COLOUR.light; g.strokeStyle = COLOUR.ink; g.lineWidth = 1.2;
       g.beginPath(); g.rect(x - half, piston - 0.45 * crank * scale, 2 * half, 0.8 * crank * scale); g.fill(); g.stroke();
       g.beginPath(); g.rect(x - 0.7 * half, Math.min(pin, base), 1.4 * half, Math.abs(pin - base)); g.fillStyle = COLOUR.steel; g.fill(); g.stroke();
-      circle(g, x, pin, 0.22 * half, "#fff", COLOUR.ink, 1);
+      circle(g, x, pin, 0.22 * half, COLOUR.paper, COLOUR.ink, 1);
     });
     if (!(largest > 0)) return;
     const Y = (twist) => height - 0.5 * band - 0.45 * band * twist / largest;
@@ -363,9 +367,10 @@
     g.font = "11px system-ui, sans-serif";
     const [least, most] = curve.extremes.map((value) => (curve.factor * value).toPrecision(3));
     const text = local(`${curve.title} ${least} … ${most} ${curve.unit}`);
-    g.fillStyle = "rgba(243,245,247,0.85)";
+    g.fillStyle = COLOUR.soft; g.globalAlpha = 0.85;
     g.fillRect(10, 5, g.measureText(text).width + 6, 15);
-    g.fillStyle = "#555";
+    g.globalAlpha = 1;
+    g.fillStyle = COLOUR.muted;
     g.fillText(text, 13, 16);
     if (strip) g.fillText(W("contacts"), 12, height - strip + 6);
     g.beginPath(); g.moveTo(X(now), 2); g.lineTo(X(now), height - 2);
@@ -558,21 +563,31 @@
     return Array.from(source, (v) => v * factor);
   }
 
+  // Colours of the charts: of their frame, and of their curves, whose names of colours are their `meta`.
+  const theme = () => ({ layout: { paper_bgcolor: COLOUR.paper, plot_bgcolor: COLOUR.paper, font: { color: COLOUR.ink }, shapedefaults: { line: { color: COLOUR.ink } },
+    modebar: { color: COLOUR.grey, activecolor: COLOUR.ink, bgcolor: COLOUR.paper }, hoverlabel: { bgcolor: COLOUR.soft, font: { color: COLOUR.ink } },
+    xaxis: { gridcolor: COLOUR.line, zerolinecolor: COLOUR.grey }, yaxis: { gridcolor: COLOUR.line, zerolinecolor: COLOUR.grey } } });
+  function recolour(sizes = () => ({})) {
+    readColours();
+    draw();
+    charts.forEach((c) => Plotly.update(c.div, { "line.color": c.div.data.map((curve) => COLOUR[curve.meta]) }, { template: theme(), ...sizes(c) }));
+  }
+
   async function drawPlot(plot) {
     const div = document.createElement("div");
     if (plot.square) div.className = "square";
     byId(plot.square ? "planes" : "plots").append(div);
     const phase = plot.phase ? column[plot.phase] : null;
     const data = plot.curves.flatMap((curve) => {
-      const trace = (name, colour, keep) => ({ type: "scatter", mode: "lines", name, x: values(curve, "x"),
+      const trace = (name, colour, keep) => ({ type: "scatter", mode: "lines", name, meta: colour, x: values(curve, "x"),
         y: keep ? values(curve, "y").map((v, i) => (keep(i) ? v : null)) : values(curve, "y"),
-        line: { color: colour, width: curve.dash ? 1.2 : 1, dash: curve.dash || "solid" }, connectgaps: false });
+        line: { color: COLOUR[colour], width: curve.dash ? 1.2 : 1, dash: curve.dash || "solid" }, connectgaps: false });
       if (!phase || !phase.includes(2)) return [trace(curve.name, curve.colour)];
       const touching = (i) => phase[i] === 2 || phase[i - 1] === 2 || phase[i + 1] === 2;
-      return [trace(W("apart"), curve.colour, (i) => phase[i] !== 2), trace(W("in contact"), COLOUR.purple, touching)];
+      return [trace(W("apart"), curve.colour, (i) => phase[i] !== 2), trace(W("in contact"), "purple", touching)];
     });
-    const shapes = plot.circle ? [{ type: "circle", x0: -1, x1: 1, y0: -1, y1: 1, line: { color: COLOUR.ink, width: 1 } }] : plot.timed ? uncertified() : [];
-    await Plotly.newPlot(div, data, {
+    const shapes = plot.circle ? [{ type: "circle", x0: -1, x1: 1, y0: -1, y1: 1, line: { width: 1 } }] : plot.timed ? uncertified() : [];
+    await Plotly.newPlot(div, data, { template: theme(),
       title: { text: plot.title, font: { size: 14 }, x: 0, xref: "paper", xanchor: "left", y: 1, yref: "container",
         yanchor: "top", pad: { t: 10 } }, margin: { l: 70, r: 15, t: data.length > 1 ? 54 : 40, b: 45 }, shapes,
       font: { size: 11 }, separators: comma ? ",." : ".,", hovermode: plot.timed ? "x" : "closest", showlegend: data.length > 1,
@@ -606,9 +621,14 @@
     byId("last-cycle").checked = true;
     await changeAbscissa();
   }
-  // on paper two charts stand beside each other
-  window.addEventListener("beforeprint", () => charts.forEach((c) => Plotly.relayout(c.div, { width: c.timed ? 340 : 330, height: c.timed ? 210 : 330 })));
-  window.addEventListener("afterprint", () => charts.forEach((c) => Plotly.relayout(c.div, { width: null, height: null, autosize: true })));
+  // on paper colours are light, and two charts stand beside each other
+  const onPaper = (on) => {
+    document.documentElement.classList.toggle("on-paper", on);
+    recolour((c) => (on ? { width: c.timed ? 340 : 330, height: c.timed ? 210 : 330 } : { width: null, height: null, autosize: true }));
+  };
+  window.addEventListener("beforeprint", () => onPaper(true));
+  window.addEventListener("afterprint", () => onPaper(false));
+  window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { recolour(); markPlots(); });
   byId("last-cycle").addEventListener("change", changeAbscissa);
   window.gudgeon.ready = true;
 })().catch((error) => {
