@@ -260,7 +260,10 @@ def check_keys(program: Path) -> None:
 def check_pictures() -> None:
     """Each picture is made by a command that data/pictures.csv names and that is there."""
     with (ROOT / "data/pictures.csv").open(encoding="utf-8", newline="") as lines:
-        listed = {row["picture"]: row["command"] for row in csv.DictReader(lines)}
+        rows = list(csv.DictReader(lines))
+    listed = {row["picture"]: row["command"] for row in rows}
+    questions = {row["question"] for row in rows}
+    check(len(questions) == len(rows) and all(one.endswith("?") for one in questions), "data/pictures.csv: a question of its own for each picture")
     there = {str(path.relative_to(ROOT)) for folder in ("cases", "data", "scripts") for path in (ROOT / folder).rglob("*") if path.suffix in (".png", ".svg")}
     there = {path for path in there if "/build/" not in path}
     check(there == set(listed), "data/pictures.csv has every picture", str(there ^ set(listed)))
@@ -278,6 +281,18 @@ def check_tutorials(program: Path) -> None:
             continue
         ours, theirs = ([body for _, body, _ in tutorial.blocks((ROOT / one).read_text(encoding="utf-8"))] for one in (name, other))
         check(len(ours) > 2 and ours == theirs, f"{other} has the same commands")
+
+
+def check_pictures_of_tutorials() -> None:
+    """A tutorial shows each picture that its commands name, and each picture that is kept."""
+    kept = {path.name for path in (ROOT / "data/manual/tutorials").iterdir()}
+    seen = set()
+    for page in sorted((ROOT / "data/manual").glob("tutorial_*.md")):
+        text = page.read_text(encoding="utf-8")
+        named, shown = set(re.findall(r"^    results/(\w+\.png)", text, re.MULTILINE)), set(re.findall(r"!\[[^]]+\]\(tutorials/(\w+\.png)\)", text))
+        check(named <= shown, f"{page.name} shows what it makes", str(named - shown))
+        seen |= shown
+    check(seen == kept, "the pictures of tutorials are shown", str(seen ^ kept))
 
 
 def check_rungs() -> None:
@@ -348,7 +363,10 @@ def check_read() -> None:
                 browser.run(SEARCH, "asperities")
                 check(browser.wait("document.querySelectorAll('.md-search-result__item').length > 1", 20), f"manual, {page}: the search finds")
                 check(not (said := browser.messages()), f"manual, {page}: console", str(said))
-            for page in ("index", "theory", "films", "case_file"):
+            browser.open(ROOT / "build/manual/gallery.html")
+            shown = browser.run("return [...document.querySelectorAll('td img')].filter(i => i.naturalWidth).length")
+            check(shown > 40, "manual: the gallery shows every picture", str(shown))
+            for page in ("index", "theory", "films", "case_file", "gallery"):
                 browser.open(ROOT / f"build/manual/{page}.html")
                 check((width := browser.width_at(400)) == 400, f"manual, {page}: fits a phone", f"{width} instead of 400")
             browser.width_at(0)
@@ -549,6 +567,7 @@ def main() -> int:
     program = (options.program or program_built()).resolve()
     check_commands(program)
     check_tutorials(program)
+    check_pictures_of_tutorials()
     check_results_in_python(program)
     check_keys(program)
     check_reference(program)

@@ -7,6 +7,7 @@
 """
 from __future__ import annotations
 
+import csv
 import os
 import re
 import shutil
@@ -75,6 +76,17 @@ def rungs(question: str, page: Path, wanted: set[Path]) -> str:
     return f"\n## Effect and cost\n{relinked(found[1], path, page, wanted)}"
 
 
+def gallery() -> str:
+    """Every picture of the checkout with its question and its command, as a table; drawings last."""
+    with (TOP / "data/pictures.csv").open(encoding="utf-8", newline="") as lines:
+        listed = sorted(csv.DictReader(lines), key=lambda row: row["picture"].endswith(".svg"))
+    rows = []
+    for row in listed:
+        picture = os.path.relpath(TOP / row["picture"], SOURCE)
+        rows.append(f"| [![{row['question']}]({picture})]({picture}) | **{row['question']}**<br>`{row['command'].replace('|', chr(92) + '|')}` |\n")
+    return "\n| picture | question and command |\n|---|---|\n" + "".join(rows)
+
+
 def collect(program: str) -> None:
     shutil.rmtree(PAGES, ignore_errors=True)
     wanted = {path for folder in (SOURCE, MEASURED) for path in folder.glob("*.md")} | {TOP / name for name in OTHERS}
@@ -88,7 +100,8 @@ def collect(program: str) -> None:
             if path.suffix != ".md":
                 shutil.copy(path, page)
                 continue
-            text = relinked(path.read_text(encoding="utf-8"), path, page, wanted)
+            text = path.read_text(encoding="utf-8") + (gallery() if path == SOURCE / "gallery.md" else "")
+            text = relinked(text, path, page, wanted)
             if path.parent == SOURCE and path.stem in REFERENCE:
                 text += reference(program, REFERENCE[path.stem])
             if path.stem.startswith("which_"):

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Runs the commands of a tutorial in their order, and compares what they print with what the page shows.
 
-    scripts/manual/tutorial.py PAGE [--program PROGRAM] [--write]     --write: puts what they print into the page
+    scripts/manual/tutorial.py PAGE [--program PROGRAM] [--write]     --write: puts what they print into the page, and the
+                                                                       pictures that they make into data/manual/tutorials
 
 A block after a line that ends with "`NAME`:" is a file. In a block that begins with "$ " each such line is a command, run in the folder of the files, and the lines behind it are its output; `...` stands for anything, and numbers may be off by
 2e-3 of their value, with ~ before them by a third. The widths of the columns of a table do not matter.
@@ -11,6 +12,7 @@ from __future__ import annotations
 import argparse
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -74,6 +76,9 @@ def run(page: Path, program: Path, write: bool = False) -> list[str]:
                 elif len(lines) != len(printed.splitlines()) or not all(map(alike, lines, printed.splitlines())):
                     wrong.append(f"{command} prints: {printed}")
             text = text.replace(block, now)
+        if write:
+            for picture in sorted((work / "results").glob("*.png")):
+                shutil.copy(picture, TOP / "data/manual/tutorials")
     if write:
         page.write_text(text, encoding="utf-8")
     return wrong
