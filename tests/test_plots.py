@@ -330,6 +330,34 @@ class RigTables(unittest.TestCase):
             self.assertIn((self.work / "x.export.summary.csv").read_text("utf-8-sig"), [summary] if summary else [summary, (self.work / "x.summary.csv").read_text()])
 
 
+class ForPapers(unittest.TestCase):
+    """A picture with title, words, size and font as asked for, of crank speeds in rpm."""
+
+    def test_options(self) -> None:
+        before = dict(plt.rcParams)
+        try:
+            with tempfile.TemporaryDirectory() as work, contextlib.redirect_stdout(io.StringIO()):
+                path = Path(work) / "x.csv"
+                path.write_text("time[s],crank_angle[rad],crank_speed[rad/s]\n0,0,104.719755\n1,3,104.719755\n2,6,209.43951\n")
+                path.with_name("x.summary.csv").write_text("quantity,value,unit\nstatus,done,\n")
+                words = ["--title", "Run up", "--label", "crank speed=Drehzahl", "--size", "8.5x6", "--font", "DejaVu Serif,10", "--rpm", "--format", "svg"]
+                self.assertEqual(cli.main(["columns", str(path), *words]), 0)
+                text = path.with_name("x_columns.svg").read_text()
+            self.assertIn('width="240.944882pt" height="170.07874pt"', text)   # 8.5 cm and 6 cm, of 72 points an inch
+            said = re.findall("<!-- (.*?) -->", text)   # texts of the picture, which are drawn as paths
+            self.assertLessEqual({"Run up", "Drehzahl", "[rpm]", "2000", "1000"}, set(said))
+            self.assertIn("DejaVuSerif-", text)
+        finally:
+            names.speeds_in_rpm(False)
+            plt.rcParams.update(before)
+
+    def test_refusals(self) -> None:
+        for words, said in ((["--size", "8"], "must be a number >= 1"), (["--font", "No Such Font"], "no such font"), (["--label", "x"], "OLD=NEW")):
+            with contextlib.redirect_stderr(io.StringIO()) as message, self.assertRaises(SystemExit):
+                cli.main(["columns", "x.csv", *words])
+            self.assertIn(said, message.getvalue())
+
+
 class WithoutLibrary(unittest.TestCase):
     """Results are read where the library of the program is not built, and what needs it says how to build it."""
 
@@ -1448,14 +1476,26 @@ class Columns(unittest.TestCase):
                     "film_force_x": -1e3 * np.cos(20 * angle), "film_force_y": -1e3 * np.sin(20 * angle)})
         made.summary.update(cycle_start=(str(0.14 * np.pi), "s"), cycle_duration=(str(0.04 * np.pi), "s"), cycle_revolutions=("2", "1"))
         drawing = bearing_pictures.orbit(made, "piston_pin", "made")
-        left, right = drawing.axes
-        found = {int(text.get_text()): np.array(text.xy) for text in left.texts if text.get_text()}
+        left, right, film = drawing.axes
+        found = {int(text.get_text()): np.array(text.xy) for text in left.texts if text.get_text().isdigit()}
         self.assertEqual(set(found), set(range(0, 720, 90)))
         for number, place in found.items():
             at = np.radians(number) / 2
             np.testing.assert_allclose(place, [0.6 * np.sin(at), 0.8 * np.cos(at)], atol=0.01)
         path = max(right.lines, key=lambda line: len(line.get_xdata()))   # the load turns by 20 degrees from row to row
         self.assertLess(np.hypot(*np.diff(path.get_xydata(), axis=0).T).max(), 0.02)
+        numbers = [text.get_position() for text in left.texts if text.get_text().isdigit()]   # where they are written: outside, apart
+        self.assertGreater(min(math.dist(a, b) for i, a in enumerate(numbers) for b in numbers[:i]), 0.15)
+        self.assertGreater(min(math.hypot(*place) for place in numbers), 1.1)
+        strokes = {line.get_label(): line.get_xydata() for line in left.lines if "°" in line.get_label()}
+        self.assertEqual(list(strokes), ["0–180°", "180–360°", "360–540°", "540–720°"])
+        second = strokes["180–360°"][~np.isnan(strokes["180–360°"][:, 0])]   # from (0.6, 0) to (0, -0.8), and nowhere else
+        for end in ([0.6, 0], [0, -0.8]):
+            self.assertLess(np.hypot(*(second - end).T).min(), 0.02)
+        self.assertTrue((second[:, 1] < 0.02).all() and (second[:, 0] > -0.02).all())
+        self.assertIn("load, 0.5 kN", [text.get_text() for text in left.texts])
+        at, thickness = film.lines[0].get_data()
+        np.testing.assert_allclose(thickness, 10 - np.hypot(8 * np.cos(np.radians(at) / 2), 6 * np.sin(np.radians(at) / 2)), atol=1e-6)
         plt.close(drawing)
 
     def test_a_missing_column_is_refused(self) -> None:

@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 import gudgeon
+import gudgeon.plots.style  # the look of all pictures of gudgeon
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
@@ -58,7 +59,7 @@ def main(picture: str | None = None, clearance: float = 2.5e-4, friction: float 
         middle = np.sqrt(ORDERS[1:] * ORDERS[:-1])
         right.plot(middle, found.observed.measured, "ko", label="measured")
         own = gudgeon.levels(found.case.run(), "piston_acceleration", ORDERS, SETTLE)
-        values = f"{1e6 * found.values['joint.clearance']:.0f} um, friction {found.values['friction.coefficient']:.3f}"
+        values = f"{1e6 * found.values['joint.clearance']:.0f} µm, friction {found.values['friction.coefficient']:.3f}"
         right.plot(middle, own, label=f"fit: {values}")
         right.set(xlabel="order", ylabel="level [dB]", title="settled spectrum of the piston's acceleration")
         right.margins(0.05)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import fmpy
 import gudgeon
+import gudgeon.plots.style  # the look of all pictures of gudgeon
 import matplotlib.pyplot as plt
 import numpy as np
 from speed_controller import RPM, compressor
@@ -69,7 +70,7 @@ def main(picture: str | None = None) -> dict[str, float]:
         drawing, (above, below) = plt.subplots(2, 1, figsize=(8, 4), sharex=True, layout="constrained")
         above.plot(t, speed / RPM)
         above.set_ylabel("speed of the unit [rpm]")
-        below.plot(t, current, color="tab:orange")
+        below.plot(t, current, color="C1")
         below.set(xlabel="time [s]", ylabel="current of the motor [A]")
         drawing.savefig(picture, dpi=110)
     return {"apart": apart, "speed": float(speed[-1]), "steps": len(rows)}

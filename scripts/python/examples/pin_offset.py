@@ -10,6 +10,7 @@ skirt meets the wall; the hardest slap of the last cycle is made as soft as poss
 import sys
 
 import gudgeon
+import gudgeon.plots.style  # the look of all pictures of gudgeon
 import matplotlib.pyplot as plt
 import numpy as np
 from scipy.optimize import minimize_scalar

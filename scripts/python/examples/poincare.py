@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import gudgeon
+import gudgeon.plots.style  # the look of all pictures of gudgeon
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -33,11 +34,13 @@ def main(picture: str | None = None) -> dict[str, float]:
     sizes = {name: float(np.ptp(points, axis=0).max()) for name, points in sections.items()}
     print(", ".join(f"{name}: {len(sections[name])} points within {size:.3g} of the clearance" for name, size in sizes.items()))
     if picture:
+        said = {"dry_0500um": "chaotic without friction", "friction_100": "a point with friction"}
         drawing, axes = plt.subplots(1, 2, figsize=(8, 4), layout="constrained")
         for axis, (name, points) in zip(axes, sections.items()):
             axis.add_patch(plt.Circle((0, 0), 1, fill=False, color="0.6"))
-            axis.plot(*points.T, ".", markersize=2)
-            axis.set(aspect="equal", xlim=(-1.15, 1.15), ylim=(-1.15, 1.15), title=name, xlabel="e_x / c", ylabel="e_y / c")
+            axis.plot(points[:, 1], points[:, 0], ".", markersize=1.5)   # x is up
+            axis.set(aspect="equal", xlim=(-1.15, 1.15), ylim=(-1.15, 1.15), title=f"{name}: {said[name]}",
+                     xlabel="$e_y$ / c", ylabel="$e_x$ / c")
         drawing.savefig(picture, dpi=110)
     return sizes
 

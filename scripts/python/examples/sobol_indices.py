@@ -7,6 +7,7 @@
 import sys
 
 import gudgeon
+import gudgeon.plots.style  # the look of all pictures of gudgeon
 import matplotlib.pyplot as plt
 import numpy as np
 from SALib.analyze import sobol as analysis

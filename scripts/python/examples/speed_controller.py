@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import gudgeon
+import gudgeon.plots.style  # the look of all pictures of gudgeon
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -60,7 +61,7 @@ def main(picture: str | None = None) -> dict[str, float]:
         above.plot(t, [wanted(x) / RPM for x in t], "k--", linewidth=1, label="wanted")
         above.set_ylabel("speed [rpm]")
         above.legend()
-        below.step(t, torque, where="post", color="tab:orange", linewidth=0.8)
+        below.step(t, torque, where="post", color="C1", linewidth=0.8)
         below.set(xlabel="time [s]", ylabel="torque [N m]")
         drawing.savefig(picture, dpi=110)
     return {"rpm": rpm[last].mean(), "torque": torque[last].mean(), "residual": run.summary["max_energy_residual_relative"], "speed": float(rpm[-1])}

@@ -79,6 +79,22 @@ class Shown:
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
+_in_rpm = False
+
+
+def speeds_in_rpm(wanted: bool) -> None:
+    """Whether pictures show crank speeds in rpm instead of rad/s."""
+    global _in_rpm
+    _in_rpm = wanted
+
+
+def shown_unit(name: str, unit: str, values: np.ndarray) -> tuple[str, float]:
+    """The unit in which a picture shows a column or key, and the factor to this unit."""
+    if _in_rpm and unit == "rad/s" and name.endswith("crank_speed"):
+        return "rpm", 30 / np.pi
+    return prefixed(unit, values)
+
+
 def prefixed(unit: str, values: np.ndarray) -> tuple[str, float]:
     """The unit with the prefix that brings the largest value between 1 and 1000, and the factor to this unit."""
     sizes = np.abs(values[np.isfinite(values)])
@@ -124,7 +140,7 @@ def of_parameter(key: str, values: np.ndarray) -> Shown:
     name = KEYS.get(key) or own[-1].replace("_", " ")
     unit = key_units().get(".".join(own), "")
     unit = unit if re.fullmatch(r"[\w/ ^.]{1,12}", unit) and " " not in unit.replace("Pa s", "").replace("N m", "") else ""
-    shown, factor = prefixed(unit, np.asarray(values, dtype=float))
+    shown, factor = shown_unit(key, unit, np.asarray(values, dtype=float))
     return Shown(name, plain_unit(shown), factor)
 
 
@@ -139,5 +155,5 @@ def of_column(column: str, unit: str, values: np.ndarray) -> Shown:
     name = COLUMNS.get(column) or column.replace("_", " ")
     if column.endswith("_fraction"):
         return Shown(name, "%", 100.0)
-    shown, factor = prefixed(unit, values)
+    shown, factor = shown_unit(column, unit, values)
     return Shown(name, plain_unit(shown), factor)

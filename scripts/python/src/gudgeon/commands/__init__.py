@@ -43,6 +43,45 @@ def add_output(parser: argparse.ArgumentParser, place: str = "beside the data", 
     what = "folder" if several else "folder or file"
     parser.add_argument("-o", "--out", type=_folder if several else Path, metavar="PATH", help=f"{what} for the pictures (default: {place})")
     parser.add_argument("--format", action="append", choices=FORMATS, help="repeatable (default: png)")
+    paper = parser.add_argument_group("for papers")
+    paper.add_argument("--title", metavar="TEXT", help="title of the picture ('': none)")
+    paper.add_argument("--label", action="append", type=_replacement, metavar="OLD=NEW", default=[], help="other words for a text of the picture; repeatable")
+    paper.add_argument("--size", type=_size, metavar="WxH", help="width and height in cm: 8.5x6")
+    paper.add_argument("--font", type=_font, metavar="NAME[,SIZE]", help="font, and its size in points (default: DejaVu Sans,8)")
+    paper.add_argument("--rpm", action=_Rpm, nargs=0, help="crank speeds in rpm")
+
+
+def _replacement(text: str) -> tuple[str, str]:
+    old, equals, new = text.partition("=")
+    if not (old and equals):
+        raise argparse.ArgumentTypeError(f"{text}: must be OLD=NEW")
+    return old, new
+
+
+def _size(text: str) -> tuple[float, float]:
+    """Width and height in inches, from centimetres."""
+    width, _, height = text.partition("x")
+    measure = number(1)
+    return measure(width) / 2.54, measure(height) / 2.54
+
+
+def _font(text: str) -> str:
+    """Take a font for all pictures that are drawn from now on."""
+    from gudgeon.plots import style
+
+    name, _, size = text.partition(",")
+    if not style.use_font(name.strip(), number(1)(size) if size else style.FONT_SIZE):
+        raise argparse.ArgumentTypeError(f"{name}: no such font on this machine")
+    return text
+
+
+class _Rpm(argparse.Action):
+    """Show crank speeds in rpm in all pictures that are drawn from now on."""
+
+    def __call__(self, parser: object, namespace: argparse.Namespace, values: object, option: str | None = None) -> None:
+        from gudgeon import names
+
+        names.speeds_in_rpm(True)
 
 
 def add_results(parser: argparse.ArgumentParser) -> None:
@@ -52,9 +91,12 @@ def add_results(parser: argparse.ArgumentParser) -> None:
 
 
 def save(drawing: "Drawing", options: argparse.Namespace, folder: Path, stem: str) -> list[Path]:
-    """Write a drawing as -o and --format say, by default into `folder` as `stem`; prints and returns the paths."""
+    """Write a drawing as -o, --format and the options for papers say, by default into `folder` as `stem`; prints and returns the paths."""
+    from gudgeon import language
     from gudgeon.plots import style
 
+    language.current.localise(drawing)
+    style.adapt(drawing, options.title, options.label, options.size)
     out = options.out
     if out and out.suffix[1:] in FORMATS:
         paths = style.save(drawing, out.parent, out.stem, [out.suffix[1:]])

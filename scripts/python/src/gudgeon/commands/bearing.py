@@ -6,7 +6,8 @@ with numbered bearings all of them along the shaft, and their losses.
     gudgeon-plot bearing cases/cylinders/inline_four_bearings.nml    all bearings of an engine
     gudgeon-plot bearing --shipped -o cases/bearings   the picture that is shipped
 
-The thinnest film and, of one bearing, every 90 degrees of the crank are marked. The load, the force of the pin on its bearing, is drawn to its own scale.
+The thinnest film and, of one bearing, every 90 degrees of the crank are marked. The load, the force of the pin on its bearing, is a light area with a bar for its
+size; the film over the crank angle stands beside it.
 """
 
 import argparse

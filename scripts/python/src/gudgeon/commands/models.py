@@ -63,6 +63,7 @@ def run(options: argparse.Namespace) -> int:
     out.mkdir(parents=True, exist_ok=True)
     table.as_data(outcomes).to_csv(out / f"models_{name}.csv", index=False)
     drawing = table.draw(name, outcomes, search, options.quantities, options.within)
+    style.adapt(drawing, options.title, options.label, options.size)
     print(*style.save(drawing, out, f"models_{name}", options.format or FORMATS[:1]), file=sys.stderr)
     print(table.as_markdown(str(options.case), outcomes, search, options.quantities, options.within))
     return 0

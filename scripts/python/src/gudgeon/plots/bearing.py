@@ -6,15 +6,13 @@ import matplotlib.pyplot as plt
 import numpy as np
 from gudgeon import language
 from gudgeon.names import PLACES
-from gudgeon.plots.style import BLACK, BLUE, GREY, ORANGE, VERMILION, WIDTH
+from gudgeon.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, WIDTH
 from gudgeon.results import Run
 from gudgeon.results import numbered as numbered_groups
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from matplotlib.patches import Rectangle
-
-#: The largest load in the picture, over the radius of the clearance circle.
-LOAD_RADIUS = 1.25
+from matplotlib.ticker import MultipleLocator
 
 #: Parts into which the steps between rows are divided in the axes of the load: it may turn fast between two rows.
 PARTS = 16
@@ -48,23 +46,32 @@ def orbit(run: Run, place: str, name: str) -> Drawing:
     place_in_circle = (x + 1j * y) / clearance
     angle = np.degrees(run["crank_angle"][rows])
     cycle = np.degrees(run_cycle(run))
-    drawing, (left, right) = plt.subplots(1, 2, figsize=(WIDTH, 0.58 * WIDTH))
-    scale = LOAD_RADIUS / np.abs(load).max()
-    left.plot(scale * load.imag, scale * load.real, color=ORANGE, linewidth=0.6, label=f"load, up to {1e-3 * np.abs(load).max():.3g} kN")
-    thinnest = int(np.argmin(thickness))
-    ends = scale * load[thinnest]
-    left.annotate("", (ends.imag, ends.real), (0, 0), arrowprops={"arrowstyle": "->", "color": ORANGE, "linewidth": 0.8})
-    right.annotate("", (0, LOAD_RADIUS), (0, 0), arrowprops={"arrowstyle": "->", "color": ORANGE, "linewidth": 0.8})
-    draw_orbit(left, place_in_circle, angle, thinnest, cycle)
+    drawing = plt.figure(figsize=(WIDTH, 0.66 * WIDTH))
+    axes = drawing.subplot_mosaic([["fixed", "turning"], ["fixed", "film"]], width_ratios=[1.75, 1])
+    left, right, film = axes["fixed"], axes["turning"], axes["film"]
+    thinnest, largest = int(np.argmin(thickness)), float(np.abs(load).max())
+    draw_circle(left, place_in_circle, thinnest)
+    draw_load(left, load / largest, largest)
+    draw_strokes(left, place_in_circle, angle, cycle)
+    draw_quarters(left, place_in_circle, angle, cycle)
     fine = np.linspace(0, len(angle) - 1, PARTS * (len(angle) - 1) + 1)
-    place_then, load_then, angle_then = (np.interp(fine, np.arange(len(angle)), values) for values in (place_in_circle, load, angle))
-    draw_orbit(right, place_then * np.exp(-1j * np.angle(load_then)), angle_then, PARTS * thinnest, cycle)
-    left.set_title("fixed axes", loc="left")
+    place_then, load_then = (np.interp(fine, np.arange(len(angle)), values) for values in (place_in_circle, load))
+    turned = place_then * np.exp(-1j * np.angle(load_then))
+    draw_circle(right, turned, PARTS * thinnest)
+    right.plot(turned.imag, turned.real, color=BLUE)
+    right.annotate("", (0, 1), (0, 0), arrowprops={"arrowstyle": "->", "color": ORANGE, "linewidth": 0.8})
+    left.set_title("fixed axes: x up, angles of the crank [deg]", loc="left")
     right.set_title("axes of the load", loc="left")
-    right.plot([], [], color=BLUE, label="pin, dots every 90° of the crank")
-    right.plot([], [], "o", color=VERMILION, markersize=4, label="thinnest film")
-    for axes in (left, right):
-        axes.legend(loc="upper left", bbox_to_anchor=(0, 0.0), ncols=2)
+    within = (angle + 1e-6) % cycle
+    order = np.argsort(within, kind="stable")
+    film.plot(within[order], 1e6 * thickness[order], color=BLUE)
+    film.plot(within[thinnest], 1e6 * thickness[thinnest], "o", color=VERMILION, markersize=4, label="thinnest film")
+    film.legend(loc="lower center")
+    film.set_xlabel("crank angle [deg]")
+    film.set_ylabel("film thickness [µm]")
+    film.set_ylim(0)
+    film.xaxis.set_major_locator(MultipleLocator(180))
+    left.legend(loc="upper left", bbox_to_anchor=(0, 0.0), ncols=4, columnspacing=1, handlelength=1.2)
     where = "bearing" if "bearing_load" in run.case else place.replace("_", " ")
     words = f"thinnest film {1e6 * thickness[thinnest]:.3g} µm of {1e6 * clearance:.4g} µm, crank at {angle[thinnest] % cycle:.1f}°"
     drawing.suptitle(f"{language.current.keep(name)}: {where}, {words}")
@@ -77,26 +84,53 @@ def run_cycle(run: Run) -> float:
     return 2 * np.pi * float(turns[0]) if turns else run.cycle
 
 
-def draw_orbit(axes: Axes, track: np.ndarray, angle: np.ndarray, thinnest: int, cycle: float) -> None:
-    """One orbit of complex places over the clearance, with the crank's quarters, which are counted within the cycle [deg], and the
-    thinnest film."""
+def draw_circle(axes: Axes, track: np.ndarray, thinnest: int) -> None:
+    """The clearance circle, and the thinnest film of an orbit of complex places over the clearance."""
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 361))
     axes.plot(circle.imag, circle.real, color=BLACK, linewidth=1)
-    axes.plot(0.5 * circle.imag, 0.5 * circle.real, color=GREY, linewidth=0.4, linestyle=":")
-    axes.plot(track.imag, track.real, color=BLUE)
-    first = 90 * np.ceil(angle.min() / 90 - 1e-6)
-    for quarter in np.arange(first, min(angle.max(), first + cycle - 90) + 1e-6, 90):
-        row = int(np.argmin(np.abs(angle - quarter)))
-        axes.plot(track[row].imag, track[row].real, "o", color=BLUE, markersize=2)
-        axes.annotate(f"{quarter % cycle:.0f}", (track[row].imag, track[row].real), (2, 2), textcoords="offset points",
-                      fontsize=6, color=BLUE)
-    axes.plot(track[thinnest].imag, track[thinnest].real, "o", color=VERMILION, markersize=4)
-    axes.plot([0, track[thinnest].imag / abs(track[thinnest])], [0, track[thinnest].real / abs(track[thinnest])], color=VERMILION,
-              linewidth=0.6, linestyle="--")
+    place = track[thinnest]
+    axes.plot([0, place.imag / abs(place)], [0, place.real / abs(place)], color=VERMILION, linewidth=0.6, linestyle="--")
+    axes.plot(place.imag, place.real, "o", color=VERMILION, markersize=4, zorder=4)
     axes.set_aspect("equal")
-    axes.set_xlim(-1.3, 1.3)
-    axes.set_ylim(-1.3, 1.3)
     axes.axis("off")
+
+
+def draw_load(axes: Axes, load: np.ndarray, largest: float) -> None:
+    """The load over its largest value [N] as a light area, with a bar for its size."""
+    axes.fill(load.imag, load.real, facecolor=ORANGE, alpha=0.22, edgecolor=ORANGE, linewidth=0.5)
+    bar = float(f"{0.5 * largest:.0e}")
+    axes.plot([-1, -1 + bar / largest], [-1.3, -1.3], color=ORANGE, linewidth=2, solid_capstyle="butt")
+    axes.text(-0.97 + bar / largest, -1.3, f"load, {1e-3 * bar:g} kN", fontsize=7, va="center")
+
+
+def draw_strokes(axes: Axes, track: np.ndarray, angle: np.ndarray, cycle: float) -> None:
+    """An orbit with a colour for each stroke, angles [deg] counted within the cycle."""
+    stroke = np.floor((angle % cycle) / 180 + 1e-9).astype(int)
+    for number, colour in zip(range(int(cycle // 180)), (BLUE, GREEN, PURPLE, SKY) * 4):
+        rows = stroke == number
+        rows[1:] |= rows[:-1]   # to where the next one begins
+        line = np.where(rows, track, complex(np.nan, np.nan))
+        axes.plot(line.imag, line.real, color=colour, linewidth=1.2, label=f"{180 * number}–{180 * number + 180}°")
+
+
+def draw_quarters(axes: Axes, track: np.ndarray, angle: np.ndarray, cycle: float) -> None:
+    """The crank's quarters [deg], counted within the cycle, as dots with numbers outside of the circle, which are kept apart."""
+    first = 90 * np.ceil(angle.min() / 90 - 1e-6)
+    quarters = np.arange(first, min(angle.max(), first + cycle - 90) + 1e-6, 90)
+    places = np.array([track[int(np.argmin(np.abs(angle - quarter)))] for quarter in quarters])
+    order = np.argsort(np.angle(places))
+    around = np.angle(places)[order]
+    for _ in range(200):
+        gaps = np.diff(around, append=around[0] + 2 * np.pi)
+        push = 0.5 * np.maximum(0.18 - gaps, 0)
+        around = around - push + np.roll(push, 1)
+    for k, direction in zip(order, around):
+        place, at = places[k], 1.14 * np.exp(1j * direction)
+        axes.plot(place.imag, place.real, "o", color=BLACK, markersize=2.5, zorder=3)
+        axes.annotate(f"{quarters[k] % cycle:.0f}", (place.imag, place.real), (at.imag, at.real), fontsize=7, ha="center", va="center",
+                      arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.4, "shrinkA": 0, "shrinkB": 0})
+    axes.set_xlim(-1.25, 1.25)
+    axes.set_ylim(-1.4, 1.25)
 
 
 def numbered(run: Run) -> dict[str, tuple[int, ...]]:

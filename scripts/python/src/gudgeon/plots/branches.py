@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from gudgeon.names import COLUMNS, KEYS, plain_unit, prefixed
+from gudgeon.names import COLUMNS, KEYS, plain_unit, prefixed, shown_unit
 from gudgeon.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ def draw_branch(branch: Branch, column: str, over: pd.DataFrame | None, axes: An
     table = branch.points
     if column not in table:
         raise KeyError(f"no column {column}; there are: {', '.join(table.columns)}")
-    unit_x, along = prefixed(branch.units[branch.key], table[branch.key].to_numpy())
+    unit_x, along = shown_unit(branch.key, branch.units[branch.key], table[branch.key].to_numpy())
     unit_y, up = prefixed(branch.units.get(column, ""), table[column].to_numpy())
     named = set(axes.get_legend_handles_labels()[1])
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import matplotlib.pyplot as plt
 import numpy as np
-from gudgeon.names import prefixed
+from gudgeon.names import shown_unit
 from gudgeon.plots import style
 from gudgeon.plots.quantity import shade_uncertified
 from gudgeon.plots.style import (
@@ -45,7 +45,7 @@ def plot_column(axis: Axes, runs: Sequence[Run], column: str, over: str = "crank
     from the end if negative."""
     values = [values_of(run, column) for run in runs]
     unit = runs[0].units.get(column, runs[0].units.get(f"{column}_x", ""))
-    shown, factor = prefixed(unit, np.concatenate(values))
+    shown, factor = shown_unit(column, unit, np.concatenate(values))
     for run, column_values, colour in zip(runs, values, COLOURS * len(runs)):
         rows = rows_of_cycle(run, cycle)
         x, order = 1e3 * run["time"][rows], slice(None)
@@ -91,5 +91,5 @@ def draw(runs: Sequence[Run], columns: Sequence[str], over: str = "crank_angle",
     if len(runs) > 1:
         style.add_legend(drawing, axes.flat)
     else:
-        drawing.suptitle(runs[0].name)
+        drawing.suptitle(str(runs[0].parameter("case", "title", "")) or runs[0].name)
     return drawing

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from gudgeon.names import shown_unit
 from gudgeon.plots import style
 from gudgeon.plots.style import BLACK, BLUE, GREY, VERMILION, WIDTH
 from gudgeon.results import MissingResult, Run
@@ -89,13 +90,14 @@ def draw(a: Run, b: Run, names: tuple[str, str], found: list[Agreement], agreeme
         height_ratios=[3, 2] * len(found),
     )
     for item, above, below in zip(found, axes[::2, 0], axes[1::2, 0]):
-        above.plot(1e3 * item.time, item.a, color=BLUE, label=f"A: {names[0]}")
-        above.plot(1e3 * item.time, item.b, color=VERMILION, linestyle=(0, (4, 1.5)), label=f"B: {names[1]}")
-        above.set_ylabel(f"{item.column.replace('_', ' ')}\n[{a.units[item.column]}]")
-        below.plot(1e3 * item.time, item.difference, color=BLACK, linewidth=0.6)
+        unit, factor = shown_unit(item.column, a.units[item.column], np.concatenate([item.a, item.b]))
+        above.plot(1e3 * item.time, factor * item.a, color=BLUE, label=f"A: {names[0]}")
+        above.plot(1e3 * item.time, factor * item.b, color=VERMILION, linestyle=(0, (4, 1.5)), label=f"B: {names[1]}")
+        above.set_ylabel(f"{item.column.replace('_', ' ')}\n[{unit}]")
+        below.plot(1e3 * item.time, factor * item.difference, color=BLACK, linewidth=0.6)
         below.axhspan(
-            -agreement * item.scale,
-            agreement * item.scale,
+            -agreement * factor * item.scale,
+            agreement * factor * item.scale,
             color=GREY,
             alpha=0.25,
             linewidth=0,

@@ -7,9 +7,11 @@ from pathlib import Path
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 from gudgeon import language
+from matplotlib import font_manager
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure as Drawing
+from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator
 
 BLACK = "#000000"
@@ -27,9 +29,12 @@ WIDTH = 6.3
 #: Number of letters of a legend that fit side by side, and the number that a legend handle takes the place of.
 LETTERS_IN_A_ROW, HANDLE_LETTERS = 125, 9
 
+#: Size of the letters [points]; those of ticks and legends are smaller by one, titles larger by one.
+FONT_SIZE = 8
+
 SETTINGS = {
     "font.family": "DejaVu Sans",
-    "font.size": 8,
+    "font.size": FONT_SIZE,
     "axes.titlesize": 8,
     "axes.labelsize": 8,
     "xtick.labelsize": 7,
@@ -50,11 +55,34 @@ SETTINGS = {
     "axes.formatter.limits": (-4, 5),
     "axes.xmargin": 0.01,
     "savefig.dpi": 200,
+    "axes.prop_cycle": mpl.cycler(color=[BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK]),
     "svg.hashsalt": "gudgeon",
+    "pdf.fonttype": 42,  # journals ask for TrueType
     "figure.constrained_layout.use": True,
 }
 
 mpl.rcParams.update(SETTINGS)
+
+
+def use_font(name: str, size: float) -> bool:
+    """Draw with a font in this size [points] from now on; False if the machine has no such font."""
+    if name not in font_manager.get_font_names():
+        return False
+    sizes = {key: value * size / FONT_SIZE for key, value in SETTINGS.items() if key.endswith(("size", ".titlesize")) and key != "savefig.dpi"}
+    mpl.rcParams.update(sizes | {"font.family": name})
+    return True
+
+
+def adapt(drawing: Drawing, title: str | None, words: Iterable[tuple[str, str]], size: tuple[float, float] | None) -> None:
+    """Give a drawing another title, other words for its texts, another size [inch]."""
+    if title is not None:
+        drawing.suptitle(title)
+    for text in drawing.findobj(Text):
+        for old, new in words:
+            if old in text.get_text():
+                text.set_text(text.get_text().replace(old, new))
+    if size:
+        drawing.set_size_inches(size)
 
 
 def mark_decades(axis: Axis) -> None:
