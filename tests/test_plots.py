@@ -36,7 +36,7 @@ import show_noise
 import tradeoff
 from gudgeon import cli, language, names, study
 from gudgeon.plots import bearing as bearing_pictures
-from gudgeon.plots import columns, compare, figures, film_pressure, laws, ringing, style
+from gudgeon.plots import columns, compare, figures, film_pressure, laws, ringing, short, style
 from gudgeon.plots import film as film_pictures
 from gudgeon.plots.figure_map import read_figures
 from gudgeon.plots.quantities import QUANTITIES, once_a_cycle
@@ -356,6 +356,38 @@ class ForPapers(unittest.TestCase):
             with contextlib.redirect_stderr(io.StringIO()) as message, self.assertRaises(SystemExit):
                 cli.main(["columns", "x.csv", *words])
             self.assertIn(said, message.getvalue())
+
+
+class OnePage(unittest.TestCase):
+    """The short report: case, answers, losses and plots, all on the page."""
+
+    def test_page(self) -> None:
+        angle = np.radians(np.arange(0, 721, 2.0))
+        columns = {"time": angle / 100, "crank_angle": angle, "film_thickness": 3e-6 + 1e-6 * np.sin(angle), "pin_force_x": 2e3 * np.cos(angle), "pin_force_y": 0 * angle,
+                   "cylinder_pressure": 1e5 + angle, "crank_moment": np.sin(angle), "crank_speed": 300 + angle}
+        rows = {"min_film_thickness": "2e-6", "cycle_start": "0", "cycle_duration": str(angle[-1] / 100), "cycle_revolutions": "2", "cycle_min_film_thickness": "2e-6",
+                "cycle_min_film_thickness_angle": "270", "cycle_max_film_pressure": "5e7", "cycle_wear_depth_100h_bore": "2.5e-6", "cycle_mean_film_power": "40",
+                "cycle_imep": "1e6", "cycle_bmep": "9.8e5", "cycle_fmep": "2e4", "cycle_work_gas": "200", "cycle_indicated_power": "5e3", "cycle_joint_fmep": "8e3",
+                "cycle_ring_1_fmep": "1.2e4", "cycle_ring_fmep": "1.2e4", "cycle_work_guide": "-2.4"}
+        case = {"mechanism": {"crank_length": 0.045, "rod_length": 0.15}, "initial": {"crank_speed": 314.159265358979}, "combustion": {"bore": 0.08}, "case": {"title": "An engine"},
+                "joint": {"clearance": 8e-6, "bearing_radius": 0.012, "bearing_length": 0.03}, "lubrication": {"oil": "SAE 30", "temperature": 373.15, "viscosity": 0.0}}
+        made = run(columns, case)
+        made.summary.update({name: (value, "") for name, value in rows.items()})
+        drawing = short.draw(made, "engine")
+        np.testing.assert_allclose(drawing.get_size_inches() * 25.4, (210, 297), atol=0.2)
+        self.assertEqual(drawing.get_suptitle(), "An engine")
+        said = {text.get_text() for axes in drawing.axes for text in axes.texts}
+        self.assertLessEqual({"90 mm", "150 mm", "80 mm", "3000 rpm", "24 mm × 30 mm, clearance 8 µm", "SAE 30, 100 °C", "2 µm at 270.0°", "50 MPa", "2.5 µm", "40 W", "60 W"}, said)
+        bars = next(axes for axes in drawing.axes if "FMEP 0.2 bar" in axes.get_title(loc="left"))
+        np.testing.assert_allclose([bar.get_width() for bar in bars.patches], [40, 60])   # piston pin, ring 1: 8 and 12 kPa of 1 MPa at 5 kW
+        titles = [axes.get_title(loc="left") for axes in drawing.axes if axes.lines]
+        self.assertEqual(titles, ["film thickness [µm]", "force [kN]", "cylinder pressure [bar]", "crank moment [N m]"])
+        drawing.draw_without_rendering()
+        page = drawing.bbox
+        for text in [text for axes in drawing.axes for text in axes.texts]:
+            box = text.get_window_extent()
+            self.assertTrue(box.x0 >= 0 and box.y0 >= 0 and box.x1 <= page.x1 and box.y1 <= page.y1, text.get_text())
+        plt.close(drawing)
 
 
 class WithoutLibrary(unittest.TestCase):

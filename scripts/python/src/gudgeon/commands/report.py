@@ -4,6 +4,7 @@
     gudgeon-plot report cases/flores/dry_0500um.nml -o dry.html
     gudgeon-plot report engine                        from results/engine.csv in the current folder
     gudgeon-plot report cases/sim_IV.nml --cycles crank_speed guide_force
+    gudgeon-plot report engine --short                one A4 page to print: results/engine_short.pdf
 
 The page is one file and needs no network. It shows the pressure around the pin in a film of finite length if the run has written
 it (&output film_times = 'from:to:count'), and the worn surfaces of a run with &wear. A case file without
@@ -15,7 +16,8 @@ import sys
 from pathlib import Path
 
 from gudgeon import language
-from gudgeon.commands import add_results
+from gudgeon.commands import FORMATS, add_results
+from gudgeon.plots import short, style
 from gudgeon.plots.film_pressure import fields_of
 from gudgeon.plots.wear import surfaces_of
 from gudgeon.report.page import page
@@ -25,6 +27,8 @@ from gudgeon.results import MissingResult, located
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("case", metavar="RUN", help="case file, trace, or name of a run in results/")
     parser.add_argument("-o", "--out", type=Path, metavar="PATH", help="file of the page, or its folder (default: RUN.html beside the trace)")
+    parser.add_argument("--short", action="store_true",
+                        help="one A4 page (PDF, or PNG or SVG by the ending of -o): case, answers, losses, four plots of the last cycle")
     parser.add_argument("--cycles", nargs="+", metavar="COLUMN",
                         help="columns whose cycles and orders are shown, even if the run has not settled")
     add_results(parser)
@@ -35,6 +39,10 @@ def run(options: argparse.Namespace) -> int:
     directory, shown = results.directory, results[name]
     if not shown.case:
         raise MissingResult(f"{name}.resolved.nml is missing beside the trace")
+    if options.short:
+        out = options.out if options.out and options.out.suffix[1:] in FORMATS else (options.out or directory) / f"{name}_short.pdf"
+        print(*style.save(short.draw(shown, name), out.parent, out.stem, [out.suffix[1:]]))
+        return 0
     twin = results[f"{name}.ideal"] if results.has(f"{name}.ideal") else None
     pressures, worn = directory / f"{name}.film.csv", directory / f"{name}.wear.csv"
     text = page(shown, twin, fields_of(pressures) if pressures.exists() else None, language.current, options.cycles,

@@ -75,7 +75,7 @@ OVER_TIME = (
     ("pin_force", "Pin force", "kN", 1e-3),
     ("pin_angle", "Angle of the pin", "°", 180 / np.pi),
     ("pin_speed", "Speed of the pin", "rad/s", 1.0),
-    ("crank_speed", "Crank speed", "rad/s", 1.0),
+    ("crank_speed", "Crank speed", "rpm", 30 / np.pi),
     ("crank_acceleration", "Crank angular acceleration", "10³ rad/s²", 1e-3),
     ("rod_acceleration", "Rod angular acceleration", "10³ rad/s²", 1e-3),
     ("piston_acceleration", "Piston acceleration", "10³ m/s²", 1e-3),

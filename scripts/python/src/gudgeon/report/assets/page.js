@@ -380,7 +380,7 @@
   function drawState() {
     const degrees = at("crank_angle") * 180 / Math.PI;
     const parts = [`t = ${(1e3 * now).toFixed(3)} ms`, `${W("crank")} ${degrees.toFixed(1)}° (${(degrees / 360).toFixed(2)} rev)`,
-      `${at("crank_speed").toFixed(1)} rad/s`, `${W("pin force")} ${(Math.hypot(near("pin_force_x"), near("pin_force_y")) / 1e3).toFixed(2)} kN`];
+      `${(at("crank_speed") * 30 / Math.PI).toFixed(0)} rpm`, `${W("pin force")} ${(Math.hypot(near("pin_force_x"), near("pin_force_y")) / 1e3).toFixed(2)} kN`];
     if (joint) {
       const force = column.normal_force ? near("normal_force") : 0;
       parts.push(`${W("film")} ${(1e6 * at("film_thickness")).toFixed(2)} µm`, ([W("free"), W("film acts"), W("contact")][near("phase")] || "")

@@ -1,0 +1,123 @@
+"""A run on one A4 page: its case in engineering units, its answers, where the losses go, four plots of the last cycle."""
+
+import textwrap
+from collections.abc import Callable, Sequence
+
+import matplotlib.pyplot as plt
+import numpy as np
+from gudgeon import language
+from gudgeon.names import PLACES
+from gudgeon.plots.bearing import last_cycle, run_cycle
+from gudgeon.plots.columns import COLOURS, crank_angles, values_of
+from gudgeon.plots.style import BLUE
+from gudgeon.report.answers import Answers, lines, losses_of, number, title
+from gudgeon.results import MissingResult, Run
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import MultipleLocator
+
+A4 = (8.27, 11.69)  # inch
+
+#: The plots, of which the first four that the run has are drawn: title with unit, factor, columns.
+PLOTS: tuple[tuple[str, float, tuple[str, ...]], ...] = (
+    ("film thickness [µm]", 1e6, tuple(f"{pre}film_thickness" for pre, _ in PLACES.values())),
+    ("force [kN]", 1e-3, ("pin_force", "crankpin_force", "guide_force")),
+    ("cylinder pressure [bar]", 1e-5, ("cylinder_pressure",)),
+    ("crank moment [N m]", 1.0, ("crank_moment",)),
+    ("piston acceleration [10³ m/s²]", 1e-3, ("piston_acceleration",)),
+    ("crank speed [rpm]", 30 / np.pi, ("crank_speed",)),
+)
+
+
+def case_lines(run: Run) -> list[tuple[str, str]]:
+    """The machine, its bearings and its oil in engineering units."""
+
+    def shown(group: str, key: str, unit: str, factor: float, offset: float = 0.0) -> str:
+        value = run.parameter(group, key)
+        try:
+            value = float(str(value))
+        except ValueError:
+            return ""
+        return f"{number(factor * (value + offset))} {unit}" if value else ""
+
+    found = [("Stroke", shown("mechanism", "crank_length", "mm", 2e3)), ("Rod", shown("mechanism", "rod_length", "mm", 1e3)),
+             ("Bore", shown("combustion", "bore", "mm", 1e3) or shown("cylinder_pressure", "bore", "mm", 1e3)),
+             ("Crank speed", shown("initial", "crank_speed", "rpm", 30 / np.pi))]
+    for place, (_, name) in PLACES.items():
+        group = "joint" if place == "piston_pin" else f"{place}.joint"
+        if clearance := shown(group, "clearance", "µm", 1e6):
+            size = " × ".join(part for part in (shown(group, "bearing_radius", "mm", 2e3), shown(group, "bearing_length", "mm", 1e3)) if part)
+            found.append((name.capitalize(), ", ".join(part for part in (size, f"clearance {clearance}") if part)))
+    oil = [str(run.parameter("lubrication", "oil", "") or ""), shown("lubrication", "temperature", "°C", 1.0, -273.15), shown("lubrication", "viscosity", "mPa s", 1e3)]
+    return [(name, text) for name, text in [*found, ("Oil", ", ".join(part for part in oil if part))] if text]
+
+
+def write(axes: Axes, heading: str, head: Sequence[str], rows: Sequence[tuple[str, Sequence[str]]], widths: Sequence[float]) -> None:
+    """A table of texts, from the top of its axes; the widths of the columns are shares of that of the axes."""
+    say: Callable[[str], str] = language.current.say
+    axes.axis("off")
+    axes.set_title(language.current.keep(say(heading)), loc="left", fontweight="bold")
+    letters = 150 * axes.get_subplotspec().get_position(axes.figure).width
+    edges, y = np.concatenate(([0], np.cumsum(widths))), 1.0
+    step = 0.115 / (axes.get_subplotspec().get_position(axes.figure).height * A4[1])   # height of a line of 7 points
+    for cells in ([("", head)] if head else []) + list(rows):
+        texts = [textwrap.fill(say(text), max(int(letters * width), 8)) for text, width in zip([cells[0], *cells[1]], widths)]
+        for line in "\n".join(texts).splitlines():
+            language.current.keep(line)   # it is in the page's language
+        for x, text in zip(edges, texts):
+            axes.text(x, y, text, transform=axes.transAxes, va="top", fontsize=7, color="#555555" if x == 0 else "black", fontweight="bold" if cells[1] is head else None)
+        y -= step * (0.35 + max(text.count("\n") + 1 for text in texts))
+
+
+def draw(run: Run, name: str) -> Drawing:
+    """The page. Raises MissingResult for a run without rows."""
+    if len(run["time"]) < 3:
+        raise MissingResult(f"{name}: the trace has no cycle")
+    drawing = plt.figure(figsize=A4)
+    axes = drawing.subplot_mosaic([["case", "machine"], ["bearings", "bearings"], ["losses", "losses"], ["a", "b"], ["c", "d"]],
+                                  height_ratios=[1.5, 1.6, 0.9, 1.6, 1.6])
+    drawing.get_layout_engine().set(rect=(0.05, 0.03, 0.9, 0.94))
+    drawing.suptitle(language.current.keep(str(run.parameter("case", "title", "")) or name), fontsize=12, fontweight="bold")
+    places, ours, others = lines(run)
+    write(axes["case"], "Case", (), [(said, [text]) for said, text in case_lines(run)], (0.3, 0.7))
+    write(axes["machine"], "Machine", (), [(said, [text]) for said, text in others], (0.4, 0.6))
+    write(axes["bearings"], title(run), places, ours, (0.22, *[0.78 / max(len(places), 1)] * len(places)))
+    draw_losses(axes["losses"], Answers(run))
+    rows = last_cycle(run)
+    chosen = [(said, factor, found) for said, factor, names in PLOTS if (found := [one for one in names if one in run or f"{one}_x" in run])]
+    for axis, (said, factor, found) in zip((axes[letter] for letter in "abcd"), chosen):
+        draw_cycle(axis, run, rows, factor, found)
+        axis.set_title(said, loc="left")
+    return drawing
+
+
+def draw_cycle(axes: Axes, run: Run, rows: np.ndarray, factor: float, columns: Sequence[str]) -> None:
+    """Columns over the crank angle of the last cycle."""
+    angle, order = crank_angles(run["crank_angle"][rows], run_cycle(run))
+    for column, colour in zip(columns, COLOURS):
+        place = next((said for pre, said in reversed(PLACES.values()) if column == f"{pre}film_thickness"), column.replace("crankpin", "crank pin").replace("_", " "))
+        axes.plot(angle, factor * values_of(run, column)[rows][order], color=colour, label=place)
+    axes.set_xlabel("crank angle [deg]")
+    axes.xaxis.set_major_locator(MultipleLocator(90 if np.degrees(run_cycle(run)) < 400 else 180))
+    if len(columns) > 1:
+        axes.legend()
+
+
+def draw_losses(axes: Axes, rows: Answers) -> None:
+    """The parts of FMEP as bars with their power; without a gas the losses of the bearings."""
+    of_gas = losses_of(rows)
+    imep, power = rows("cycle_imep") or 1.0, rows("cycle_indicated_power") or 0.0
+    parts = [(name, value * power / imep) for name, value in of_gas] or [
+        (name.capitalize(), sum(rows(f"{pre}cycle_mean_{part}_power") or 0.0 for part in ("film", "friction"))) for pre, name in PLACES.values()]
+    parts = [(name, watts) for name, watts in parts if watts][::-1]
+    total = f" (FMEP {number(1e-5 * (rows('cycle_fmep') or 0.0))} bar)" if of_gas else ""
+    if not parts:
+        axes.axis("off")
+        return
+    axes.set_title(language.current.keep(language.current.say("Where the losses go") + language.current.say(total)), loc="left", fontweight="bold")
+    bars = axes.barh([name for name, _ in parts], [watts for _, watts in parts], color=BLUE, height=0.6)
+    axes.bar_label(bars, [f"{number(watts)} W" for _, watts in parts], padding=3, fontsize=7)
+    axes.margins(x=0.12)
+    axes.xaxis.set_visible(False)
+    axes.spines["bottom"].set_visible(False)
+    axes.grid(False)
