@@ -40,9 +40,22 @@ def on_page_content(text: str, page, **_) -> str:
         return done if match[1] == "span" else f'<div class="equation">{done}</div>'
 
     text = EQUATION.sub(math, text)
+    text = re.sub(r"(?=</t[dh]>)", " ", text)   # else the index of the search has the words of neighbouring cells as one
     printed[page.file.name] = text
     titles[page.file.name] = page.title
     return text
+
+
+def on_page_markdown(text: str, page, **_) -> str:
+    """The search finds the answers of the table "I want" on the first page first: titles and tags weigh more than text there."""
+    if page.file.name == "index":
+        page.meta["tags"] = re.findall(r"^\| ([a-z][^|]*) \|", text.split("| I want |")[1].split("\n\n")[0], re.MULTILINE)
+    return text
+
+
+def on_post_page(output: str, page, **_) -> str:
+    """Pages in Portuguese say so."""
+    return output.replace('<html lang="en"', '<html lang="pt-BR"', 1) if page.file.name.endswith("_pt") else output
 
 
 def on_nav(nav, **_) -> None:

@@ -55,7 +55,7 @@ def main(picture: str | None = None, clearance: float = 2.5e-4, friction: float 
         for label, values in apart.items():
             left.semilogy(np.arange(len(values)) / ROWS, values + 1e-3, linewidth=0.5, label=label)
         left.set(xlabel="revolutions", ylabel="difference of the acceleration [m/s²]", title="two clearances, a millionth apart")
-        left.legend()
+        left.legend(loc="lower right")
         middle = np.sqrt(ORDERS[1:] * ORDERS[:-1])
         right.plot(middle, found.observed.measured, "ko", label="measured")
         own = gudgeon.levels(found.case.run(), "piston_acceleration", ORDERS, SETTLE)

@@ -38,7 +38,7 @@ def main(picture: str | None = None) -> dict[str, float]:
         drawing, axes = plt.subplots(1, 2, figsize=(8, 4), layout="constrained")
         for axis, (name, points) in zip(axes, sections.items()):
             axis.add_patch(plt.Circle((0, 0), 1, fill=False, color="0.6"))
-            axis.plot(points[:, 1], points[:, 0], ".", markersize=1.5)   # x is up
+            axis.plot(points[:, 1], points[:, 0], ".", markersize=1.5 if len(points) > 500 else 6)   # x is up
             axis.set(aspect="equal", xlim=(-1.15, 1.15), ylim=(-1.15, 1.15), title=f"{name}: {said[name]}",
                      xlabel="$e_y$ / c", ylabel="$e_x$ / c")
         drawing.savefig(picture, dpi=110)
