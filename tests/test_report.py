@@ -116,6 +116,7 @@ class Browser:
             self.cdp("Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=0, mobile=True)
         else:
             self.cdp("Emulation.clearDeviceMetricsOverride")
+        self.wait(f"document.documentElement.scrollWidth <= {width or 10000}", 10)   # charts follow a little later
         return self.run("return document.documentElement.scrollWidth")
 
     def open(self, page: Path) -> None:
