@@ -6,8 +6,10 @@ module compressor
   use error_handling, only: error_t
   use model_parameters, only: parameter_list_t
   use ideal_linkage, only: linkage_t
-  use cylinder, only: new_cylinder
-  use gas_law, only: gas_law_t
+  use cylinder, only: cylinder_t, new_cylinder
+  use gas_law, only: gas_law_t, turning_forwards
+  use wall_law, only: chamber_t
+  use cylinder_charge, only: charge_t
   use valve_gas, only: valve_gas_t
   use working_gas, only: working_gas_t
   implicit none
@@ -23,6 +25,7 @@ module compressor
     procedure :: parameters
     procedure :: conflict
     procedure :: prepare
+    procedure :: fill
     procedure :: fastest_piston
     procedure :: filling_pressure
     procedure :: description
@@ -40,8 +43,8 @@ contains
       'pressure while the suction valve is open', 'Pa', '> 0', default='101325.0', usual='2e4 to 1e7')
     call list%add('discharge_pressure', self%discharge_pressure, 'pressure while the discharge valve is open', 'Pa', '> 0', &
       example='4.0e5', usual='5e4 to 1e8')
-    call list%add('polytropic_exponent', self%polytropic_exponent, 'exponent n of p V^n = const. while both valves are closed', &
-      range='>= 0.1 and <= 10', example='1.3', usual='1 to 1.67')
+    call list%add('polytropic_exponent', self%polytropic_exponent, 'exponent n of p V^n = const. while both valves are '// &
+      'closed; not with &valve, where it follows from the heat', range='>= 0.1 and <= 10', example='1.3', usual='1 to 1.67')
     call self%add_crankcase_pressure(list)
   end subroutine parameters
 
@@ -69,6 +72,21 @@ contains
     gas%sense = sense
     gas%crankcase_pressure = self%crankcase_pressure
   end subroutine prepare
+
+  !> Gas with a mass, whose valves have losses instead of the ideal ones.
+  subroutine fill(self, linkage, sense, gas, charge)
+    class(compressor_t), intent(in) :: self
+    type(linkage_t), intent(in) :: linkage
+    real(dp), intent(in) :: sense
+    type(working_gas_t), intent(inout) :: gas
+    type(charge_t), intent(inout) :: charge
+    type(cylinder_t) :: cylinder
+    cylinder = new_cylinder(self%bore, turning_forwards(linkage, sense), 1 + 1/self%dead_space)
+    call charge%prepare(cylinder, chamber_t(bore=self%bore, stroke=linkage%stroke(), closing_pressure=self%suction_pressure, &
+      closing_volume=cylinder%dead_volume + cylinder%displacement), self%crankcase_pressure)
+    charge%discharge_pressure = self%discharge_pressure
+    deallocate (gas%valves)
+  end subroutine fill
 
   pure real(dp) function fastest_piston(self)
     class(compressor_t), intent(in) :: self

@@ -1,34 +1,41 @@
-!> The gas in the cylinders of an engine as a mass with a temperature: m and p V = m R_g T. While the cylinder is closed
+!> The gas in the cylinders of an engine or a compressor as a mass with a temperature: m and p V = m R_g T. While it is not open
 !>
-!>     m' = -m_l,    p' = ((g - 1)(Q_b' - Q_w' - H_l') - g p V')/V
+!>     m' = m_s - m_d - m_l,    p' = ((g - 1)(Q_b' - Q_w' + H_s' - H_d' - H_l') - g p V')/V
 !>
-!> with the heat Q_b' of combustion, Q_w' to the walls, the flow m_l past the rings to the crankcase and its enthalpy
-!> H_l' = c_p T_l m_l, where gas that comes back has the temperature at which the cylinder was closed. While the cylinder is open
-!> its pressure is that of the intake and its temperature that of the fresh charge. Without walls and leak the mass is constant and
-!> the pressure follows from the crank angle alone (`gas_cycle`); else p and m are states.
+!> with the heat Q_b' of combustion, Q_w' to the walls, the flows m_s and m_d through the valves of a compressor and m_l past the
+!> rings to the crankcase, and their enthalpies H' = c_p T m, where gas that comes in has the temperature of the fresh charge. While
+!> the cylinder of an engine is open its pressure is that of the intake and its temperature that of the fresh charge. In an engine
+!> without walls and leak the mass is constant and the pressure follows from the crank angle alone (`gas_cycle`); else p and m are
+!> states.
 module cylinder_charge
   use kinds, only: dp
   use model_parameters, only: has_parameters_t, parameter_list_t
   use state_layout, only: layout_t, slice_t
   use run_state, only: run_state_t
-  use gas_cycle, only: gas_cycle_t, part_open
+  use cylinder, only: cylinder_t
+  use flow_valve, only: flow_valve_t, suction, discharge
   use wall_law, only: wall_law_t, chamber_t, hot_gas_t
   use nozzle_flow, only: orifice_flow
   implicit none
   private
   public :: charge_case_t, charge_t, charge_motion_t, n_charge_sums
-  public :: of_balance, to_walls, leaked, leaked_enthalpy, moved
+  public :: of_balance, to_walls, leaked, leaked_enthalpy, moved, delivered, delivered_heat, suction_loss, discharge_loss
+  public :: work_on_gas
 
   !> Integrals over time, of the mechanism's cylinder: energy that the gas has received by heat, work and flow, with its energy at
   !> the start, so that it is that of the gas but for errors of the integration [J]; heat to the walls [J], mass lost [kg] with its
-  !> enthalpy [J], and the size of the work [J].
-  integer, parameter :: of_balance = 1, to_walls = 2, leaked = 3, leaked_enthalpy = 4, moved = 5, n_charge_sums = 5
+  !> enthalpy [J], and the size of the work [J]; with valves the mass delivered [kg], its temperature times it [kg K], the work lost
+  !> in both valves and that on the gas [J].
+  integer, parameter :: of_balance = 1, to_walls = 2, leaked = 3, leaked_enthalpy = 4, moved = 5, delivered = 6, &
+    delivered_heat = 7, suction_loss = 8, discharge_loss = 9, work_on_gas = 10, n_charge_sums = 10
+  integer, parameter :: n_closed_sums = 5   !! without valves
 
   !> The group &working_gas.
   type, extends(has_parameters_t) :: charge_case_t
     real(dp) :: gas_constant = 0   !! R_g [J/(kg K)]
     real(dp) :: temperature = 0    !! of the charge when the cylinder closes [K]
     real(dp) :: leak_area = 0      !! [m^2]
+    real(dp) :: heat_capacity_ratio = 0   !! g of a compressor; an engine has it with its cycle [-]
   contains
     procedure :: parameters
   end type charge_case_t
@@ -39,6 +46,7 @@ module cylinder_charge
     real(dp) :: pressure_rate, mass_rate, temperature_rate   !! [Pa/s], [kg/s], [K/s]
     real(dp) :: heat_flow                                    !! Q_w', to the walls [W]
     real(dp) :: leak_flow                                    !! m_l, out of the cylinder [kg/s]
+    real(dp) :: valve_flow(2), valve_lift(2)                 !! m_s and m_d in their senses [kg/s]; lifts [m]
     real(dp) :: rates(n_charge_sums)                         !! of the integrals
   end type charge_motion_t
 
@@ -46,9 +54,12 @@ module cylinder_charge
   type :: charge_t
     type(charge_case_t) :: given
     class(wall_law_t), allocatable :: walls     !! not allocated: no heat to the walls
+    type(flow_valve_t), allocatable :: valves(:)   !! of a compressor: suction and discharge; not allocated: an engine
     logical :: is_state = .false.               !! p and m are states
-    type(chamber_t), private :: chamber
+    type(cylinder_t), private :: cylinder
+    type(chamber_t) :: chamber
     real(dp), private :: crankcase_pressure = 0 !! [Pa]
+    real(dp) :: discharge_pressure = 0          !! of a compressor [Pa]
     real(dp) :: closed_mass = 0                 !! m when the cylinder closes [kg]
     real(dp) :: opening_temperature = 0         !! T when the mechanism's cylinder last opened; 0: it has not [K]
     type(slice_t) :: pressures, masses          !! of all cylinders in the state vector, the mechanism's first
@@ -64,7 +75,7 @@ module cylinder_charge
     procedure :: move_adiabatic
     procedure :: energy
     procedure :: totals
-    procedure :: change_part
+    procedure :: exchange
     procedure :: loses_gas
   end type charge_t
 
@@ -75,36 +86,46 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%add('gas_constant', self%gas_constant, 'specific gas constant; air 287, R134a 81.5, R600a 143, nitrogen 297', &
       'J/(kg K)', '> 0', example='287.0', usual='50 to 4200')
-    call list%add('temperature', self%temperature, 'temperature of the gas where the cylinder closes', 'K', '> 0', &
-      example='350.0', usual='230 to 500')
+    call list%add('temperature', self%temperature, 'temperature of the fresh gas: of an engine where its cylinder closes, of a '// &
+      'compressor in the suction chamber', 'K', '> 0', example='350.0', usual='230 to 500')
     call list%add('leak_area', self%leak_area, 'effective area of the gap past the rings to the crankcase', 'm^2', '>= 0', &
       default='0.0', usual='1e-9 to 1e-4')
+    call list%add('heat_capacity_ratio', self%heat_capacity_ratio, &
+      'ratio of the heat capacities of the gas of a compressor with &valve', range='>= 0 and <= 10', default='0.0', &
+      usual='1.05 to 1.67')
   end subroutine parameters
 
   !> Take over the groups of a case.
-  subroutine set_case(self, given, walls)
+  subroutine set_case(self, given, walls, valves)
     class(charge_t), intent(inout) :: self
     type(charge_case_t), intent(in) :: given
     class(wall_law_t), allocatable, intent(in) :: walls
+    type(flow_valve_t), allocatable, intent(in) :: valves(:)   !! one for both, or one for each port
+    integer :: i
     self%given = given
     if (allocated(walls)) allocate (self%walls, source=walls)
-    self%is_state = allocated(walls) .or. given%leak_area > 0
+    self%is_state = allocated(walls) .or. allocated(valves) .or. given%leak_area > 0
+    if (.not. allocated(valves)) return
+    allocate (self%valves(2), source=valves(1))
+    do i = 1, size(valves)
+      if (valves(i)%port == 'suction') self%valves(suction) = valves(i)
+      if (valves(i)%port == 'discharge') self%valves(discharge) = valves(i)
+    end do
   end subroutine set_case
 
-  !> Prepare for the cycle of an engine.
-  subroutine prepare(self, cycle, bore, stroke, crankcase_pressure)
+  !> Prepare for a cylinder, in which the gas was closed in at a volume [m^3].
+  subroutine prepare(self, cylinder, chamber, crankcase_pressure)
     class(charge_t), intent(inout) :: self
-    type(gas_cycle_t), intent(in) :: cycle
-    real(dp), intent(in) :: bore, stroke, crankcase_pressure
+    type(cylinder_t), intent(in) :: cylinder
+    type(chamber_t), intent(in) :: chamber        !! but for what the group of the gas gives
+    real(dp), intent(in) :: crankcase_pressure    !! [Pa]
+    self%cylinder = cylinder
+    self%chamber = chamber
     associate (c => self%chamber)
-      c%bore = bore
-      c%stroke = stroke
-      c%displacement = cycle%cylinder%displacement
+      c%displacement = cylinder%displacement
       c%gas_constant = self%given%gas_constant
-      c%heat_capacity_ratio = cycle%heat_capacity_ratio
-      c%closing_pressure = cycle%intake_pressure
-      c%closing_volume = cycle%cylinder%volume(cycle%closes)
       c%closing_temperature = self%given%temperature
+      if (self%given%heat_capacity_ratio > 0) c%heat_capacity_ratio = self%given%heat_capacity_ratio
       self%closed_mass = c%closing_pressure*c%closing_volume/(c%gas_constant*c%closing_temperature)
     end associate
     self%crankcase_pressure = crankcase_pressure
@@ -117,7 +138,7 @@ contains
     integer, intent(in) :: cylinders
     call layout%claim_states(cylinders, self%chamber%closing_pressure, self%pressures)
     call layout%claim_states(cylinders, self%closed_mass, self%masses)
-    call layout%claim_quadratures(n_charge_sums, 0.0_dp, self%sums)
+    call layout%claim_quadratures(merge(n_charge_sums, n_closed_sums, allocated(self%valves)), 0.0_dp, self%sums)
   end subroutine claim
 
   !> Declare the states of cylinder i, with a prefix for their names, and with the first one the integrals.
@@ -137,19 +158,20 @@ contains
     list%of_totals = .false.
   end subroutine declare
 
-  !> Set the states of cylinder i at an angle of its cycle [rad], in a part: those of the adiabatic cycle.
-  pure subroutine set_start(self, cycle, i, angle, part, cycle_start, y)
+  !> Set the states of cylinder i at an angle of its cycle [rad] and a pressure [Pa]: fresh gas if it is open, else all that was
+  !> closed in.
+  pure subroutine set_start(self, i, angle, pressure, is_open, y)
     class(charge_t), intent(in) :: self
-    type(gas_cycle_t), intent(in) :: cycle
-    integer, intent(in) :: i, part
-    real(dp), intent(in) :: angle, cycle_start
+    integer, intent(in) :: i
+    real(dp), intent(in) :: angle, pressure
+    logical, intent(in) :: is_open
     real(dp), intent(inout) :: y(:)
     associate (p => y(self%pressures%first + i - 1), m => y(self%masses%first + i - 1))
-      p = cycle%pressure(angle, part, cycle_start)
+      p = pressure
       m = self%closed_mass
-      if (part == part_open) m = fresh_mass(self, cycle%cylinder%volume(angle))
+      if (is_open) m = fresh_mass(self, self%cylinder%volume(angle))
     end associate
-    if (i == 1) y(self%sums%first) = self%energy(cycle, angle, y)
+    if (i == 1) y(self%sums%first) = self%energy(angle, y)
   end subroutine set_start
 
   !> Mass of the fresh charge in a volume [kg].
@@ -166,104 +188,135 @@ contains
     admits = all(y(self%pressures%first:self%pressures%last) > 0) .and. all(y(self%masses%first:self%masses%last) > 0)
   end function admits
 
-  !> The gas of cylinder i at an angle [rad] and a speed [rad/s] of its cycle.
-  pure subroutine move(self, cycle, i, angle, speed, part, cycle_start, y, now)
+  !> The gas of cylinder i at an angle [rad] and a speed [rad/s] of its cycle, with the heat that burns [W].
+  pure subroutine move(self, i, angle, speed, burning, is_open, y, now)
     class(charge_t), intent(in) :: self
-    type(gas_cycle_t), intent(in) :: cycle
-    integer, intent(in) :: i, part
-    real(dp), intent(in) :: angle, speed, cycle_start, y(:)
+    integer, intent(in) :: i
+    real(dp), intent(in) :: angle, speed, burning, y(:)
+    logical, intent(in) :: is_open
     type(charge_motion_t), intent(out) :: now
     real(dp), parameter :: per_turn = 0.318309886183790672_dp   ! 1/pi: two strokes a turn [1/rad]
-    real(dp) :: volume, rate, burning, enthalpy
-    volume = cycle%cylinder%volume(angle)
-    rate = cycle%cylinder%volume_slope(angle)*speed
+    real(dp) :: volume, rate, heat_capacity, enthalpy, leak_enthalpy
+    volume = self%cylinder%volume(angle)
+    rate = self%cylinder%volume_slope(angle)*speed
     associate (g => self%chamber%heat_capacity_ratio, constant => self%chamber%gas_constant)
       now%heat_flow = 0
       now%leak_flow = 0
-      if (part == part_open) then
+      now%valve_flow = 0
+      now%valve_lift = 0
+      now%rates = 0
+      if (is_open) then
         now%pressure = self%chamber%closing_pressure
         now%temperature = self%chamber%closing_temperature
         now%mass = fresh_mass(self, volume)
         now%mass_rate = fresh_mass(self, rate)
         now%pressure_rate = 0
         now%temperature_rate = 0
-        now%rates = 0
         now%rates(of_balance) = now%pressure*rate/(g - 1)
         return
       end if
       now%pressure = y(self%pressures%first + i - 1)
       now%mass = y(self%masses%first + i - 1)
       now%temperature = now%pressure*volume/(now%mass*constant)
-      burning = cycle%heat_slope(angle, part, cycle_start)*speed
       if (allocated(self%walls)) now%heat_flow = self%walls%heat_flow(self%chamber, &
         hot_gas_t(now%pressure, now%temperature, volume, self%chamber%stroke*abs(speed)*per_turn))
       now%leak_flow = orifice_flow(self%given%leak_area, constant, g, [now%pressure, self%crankcase_pressure], &
         [now%temperature, self%given%temperature])
-      enthalpy = g*constant/(g - 1)*now%leak_flow*merge(now%temperature, self%given%temperature, now%leak_flow > 0)
-      now%pressure_rate = ((g - 1)*(burning - now%heat_flow - enthalpy) - g*now%pressure*rate)/volume
+      heat_capacity = g*constant/(g - 1)
+      leak_enthalpy = heat_capacity*now%leak_flow*merge(now%temperature, self%given%temperature, now%leak_flow > 0)
+      enthalpy = leak_enthalpy
       now%mass_rate = -now%leak_flow
+      if (allocated(self%valves)) then
+        call move_valves(self, rate, now)
+        enthalpy = enthalpy + heat_capacity*(now%valve_flow(discharge)*now%temperature - now%valve_flow(suction)* &
+          self%given%temperature)
+        now%mass_rate = now%mass_rate + now%valve_flow(suction) - now%valve_flow(discharge)
+      end if
+      now%pressure_rate = ((g - 1)*(burning - now%heat_flow - enthalpy) - g*now%pressure*rate)/volume
       now%temperature_rate = now%temperature*(now%pressure_rate/now%pressure + rate/volume - now%mass_rate/now%mass)
-      now%rates = [burning - now%heat_flow - enthalpy - now%pressure*rate, now%heat_flow, now%leak_flow, enthalpy, &
-        abs(now%pressure*rate)]
+      now%rates(:n_closed_sums) = [burning - now%heat_flow - enthalpy - now%pressure*rate, now%heat_flow, now%leak_flow, &
+        leak_enthalpy, abs(now%pressure*rate)]
     end associate
   end subroutine move
 
-  !> The gas of the mechanism's cylinder where it has no states.
-  pure subroutine move_adiabatic(self, cycle, angle, speed, part, cycle_start, now)
+  !> Flows through the valves, and the work that is lost there, at a rate of the volume [m^3/s].
+  pure subroutine move_valves(self, rate, now)
     class(charge_t), intent(in) :: self
-    type(gas_cycle_t), intent(in) :: cycle
-    real(dp), intent(in) :: angle, speed, cycle_start
-    integer, intent(in) :: part
+    real(dp), intent(in) :: rate
+    type(charge_motion_t), intent(inout) :: now
+    real(dp) :: excess(2)   ! pressure that opens each of them [Pa]
+    integer :: i
+    excess = [self%chamber%closing_pressure - now%pressure, now%pressure - self%discharge_pressure]
+    do i = suction, discharge
+      now%valve_lift(i) = self%valves(i)%lift*self%valves(i)%open_share(excess(i))
+    end do
+    associate (g => self%chamber%heat_capacity_ratio, constant => self%chamber%gas_constant)
+      now%valve_flow(suction) = self%valves(suction)%flow(constant, g, [self%chamber%closing_pressure, now%pressure], &
+        self%given%temperature)
+      now%valve_flow(discharge) = self%valves(discharge)%flow(constant, g, [now%pressure, self%discharge_pressure], now%temperature)
+    end associate
+    now%rates(delivered) = now%valve_flow(discharge)
+    now%rates(delivered_heat) = now%valve_flow(discharge)*now%temperature
+    now%rates(suction_loss) = max(excess(suction), 0.0_dp)*rate
+    now%rates(discharge_loss) = -max(excess(discharge), 0.0_dp)*rate
+    now%rates(work_on_gas) = -now%pressure*rate
+  end subroutine move_valves
+
+  !> The gas of the mechanism's cylinder where it has no states, at a pressure [Pa] with its slope over the angle [Pa/rad].
+  pure subroutine move_adiabatic(self, angle, speed, pressure, slope, is_open, now)
+    class(charge_t), intent(in) :: self
+    real(dp), intent(in) :: angle, speed, pressure, slope
+    logical, intent(in) :: is_open
     type(charge_motion_t), intent(out) :: now
     real(dp) :: volume, rate
-    volume = cycle%cylinder%volume(angle)
-    rate = cycle%cylinder%volume_slope(angle)*speed
-    now%pressure = cycle%pressure(angle, part, cycle_start)
-    now%pressure_rate = cycle%pressure_slope(angle, part, cycle_start)*speed
+    volume = self%cylinder%volume(angle)
+    rate = self%cylinder%volume_slope(angle)*speed
+    now%pressure = pressure
+    now%pressure_rate = slope*speed
     now%mass = self%closed_mass
     now%mass_rate = 0
-    if (part == part_open) now%mass = fresh_mass(self, volume)
-    if (part == part_open) now%mass_rate = fresh_mass(self, rate)
+    if (is_open) now%mass = fresh_mass(self, volume)
+    if (is_open) now%mass_rate = fresh_mass(self, rate)
     now%temperature = now%pressure*volume/(now%mass*self%chamber%gas_constant)
     now%temperature_rate = now%temperature*(now%pressure_rate/now%pressure + rate/volume - now%mass_rate/now%mass)
     now%heat_flow = 0
     now%leak_flow = 0
+    now%valve_flow = 0
+    now%valve_lift = 0
     now%rates = 0
   end subroutine move_adiabatic
 
   !> Energy of the gas in the mechanism's cylinder, p V/(g - 1), at an angle of its cycle [rad] [J].
-  pure real(dp) function energy(self, cycle, angle, y)
+  pure real(dp) function energy(self, angle, y)
     class(charge_t), intent(in) :: self
-    type(gas_cycle_t), intent(in) :: cycle
     real(dp), intent(in) :: angle, y(:)
-    energy = y(self%pressures%first)*cycle%cylinder%volume(angle)/(self%chamber%heat_capacity_ratio - 1)
+    energy = y(self%pressures%first)*self%cylinder%volume(angle)/(self%chamber%heat_capacity_ratio - 1)
   end function energy
 
   !> The integrals so far; in the place of the balance its error, energy of the gas less what it has received [J].
-  pure function totals(self, cycle, angle, y)
+  pure function totals(self, angle, y)
     class(charge_t), intent(in) :: self
-    type(gas_cycle_t), intent(in) :: cycle
     real(dp), intent(in) :: angle, y(:)
     real(dp) :: totals(n_charge_sums)
-    totals = y(self%sums%first:self%sums%last)
-    totals(of_balance) = self%energy(cycle, angle, y) - totals(of_balance)
+    totals = 0
+    totals(:self%sums%last - self%sums%first + 1) = y(self%sums%first:self%sums%last)
+    totals(of_balance) = self%energy(angle, y) - totals(of_balance)
   end function totals
 
-  !> Cylinder i has passed from one part of its cycle to another: where it opens or closes, its gas is exchanged.
-  pure subroutine change_part(self, cycle, i, angle, from, part, cycle_start, y)
+  !> Cylinder i opens or closes, and its gas is exchanged.
+  pure subroutine exchange(self, i, angle, pressure, is_open, y)
     class(charge_t), intent(inout) :: self
-    type(gas_cycle_t), intent(in) :: cycle
-    integer, intent(in) :: i, from, part
-    real(dp), intent(in) :: angle, cycle_start
+    integer, intent(in) :: i
+    real(dp), intent(in) :: angle, pressure
+    logical, intent(in) :: is_open
     real(dp), intent(inout) :: y(:)
     real(dp) :: before
-    if ((from == part_open) .eqv. (part == part_open)) return
     if (.not. self%is_state) return
     before = y(self%sums%first)
-    if (i == 1) before = before - self%energy(cycle, angle, y)
-    call self%set_start(cycle, i, angle, part, cycle_start, y)
-    if (i == 1) y(self%sums%first) = before + self%energy(cycle, angle, y)
-  end subroutine change_part
+    if (i == 1) before = before - self%energy(angle, y)
+    call self%set_start(i, angle, pressure, is_open, y)
+    if (i == 1) y(self%sums%first) = before + self%energy(angle, y)
+  end subroutine exchange
 
   !> Whether gas leaves the closed cylinder.
   pure logical function loses_gas(self)

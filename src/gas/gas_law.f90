@@ -4,10 +4,11 @@ module gas_law
   use error_handling, only: error_t
   use model_parameters, only: law_t, parameter_list_t
   use ideal_linkage, only: linkage_t
+  use cylinder_charge, only: charge_t
   use working_gas, only: working_gas_t
   implicit none
   private
-  public :: gas_law_t
+  public :: gas_law_t, turning_forwards
 
   type, abstract, extends(law_t) :: gas_law_t
     real(dp) :: bore = 0                        !! cylinder diameter [m]
@@ -22,6 +23,7 @@ module gas_law
     procedure :: misfit => no_misfit
     procedure :: add_bore
     procedure :: add_crankcase_pressure
+    procedure :: fill => cannot_fill
     procedure(prepare), deferred :: prepare
   end type gas_law_t
 
@@ -76,6 +78,23 @@ contains
     character(len=:), allocatable :: text
     text = trim(self%name)
   end function description
+
+  !> Prepare the gas that has a mass, for a gas that `prepare` has made. A measured pressure has none.
+  subroutine cannot_fill(self, linkage, sense, gas, charge)
+    class(gas_law_t), intent(in) :: self
+    type(linkage_t), intent(in) :: linkage
+    real(dp), intent(in) :: sense   !! see `prepare`
+    type(working_gas_t), intent(inout) :: gas
+    type(charge_t), intent(inout) :: charge
+  end subroutine cannot_fill
+
+  !> The mechanism, or its mirror image if the crank turns backwards.
+  pure type(linkage_t) function turning_forwards(linkage, sense) result(forwards)
+    type(linkage_t), intent(in) :: linkage
+    real(dp), intent(in) :: sense
+    forwards = linkage
+    forwards%axis_offset = sense*linkage%axis_offset
+  end function turning_forwards
 
   !> A key whose angle does not suit the dead centres of the mechanism, and what it must be; empty if all do.
   subroutine no_misfit(self, linkage, sense, key, wanted)

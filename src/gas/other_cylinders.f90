@@ -92,7 +92,12 @@ contains
     real(dp), intent(inout) :: y(:)
     integer :: i
     do i = 1, size(angle)
-      call gas%charge%set_start(self%cycles(i), i + 1, gas%sense*gas%angle(angle(i)), self%part(i), self%cycle_start(i), y)
+      if (allocated(gas%cycle)) then
+        call gas%charge%set_start(i + 1, gas%sense*gas%angle(angle(i)), self%cycles(i)%pressure(gas%sense*gas%angle(angle(i)), &
+          self%part(i), self%cycle_start(i)), self%part(i) == part_open, y)
+      else
+        call gas%charge%set_start(i + 1, gas%sense*gas%angle(angle(i)), gas%charge%chamber%closing_pressure, .true., y)
+      end if
     end do
   end subroutine set_charges
 
@@ -103,10 +108,17 @@ contains
     real(dp), intent(in) :: angle(:), speed(:), y(:)
     real(dp), intent(inout) :: dydt(:)
     type(charge_motion_t) :: now
+    real(dp) :: burning
+    logical :: is_open
     integer :: i
     do i = 1, size(angle)
-      call gas%charge%move(self%cycles(i), i + 1, gas%sense*gas%angle(angle(i)), gas%sense*speed(i), self%part(i), &
-        self%cycle_start(i), y, now)
+      burning = 0
+      is_open = .false.
+      if (allocated(gas%cycle)) then
+        is_open = self%part(i) == part_open
+        burning = self%cycles(i)%heat_slope(gas%sense*gas%angle(angle(i)), self%part(i), self%cycle_start(i))*gas%sense*speed(i)
+      end if
+      call gas%charge%move(i + 1, gas%sense*gas%angle(angle(i)), gas%sense*speed(i), burning, is_open, y, now)
       dydt(gas%charge%pressures%first + i) = now%pressure_rate
       dydt(gas%charge%masses%first + i) = now%mass_rate
     end do
@@ -123,8 +135,8 @@ contains
     do i = 1, size(self%has_gas)
       if (.not. self%has_gas(i)) cycle
       if (gas%has_states()) then
-        pressure = gas%cycle%intake_pressure
-        if (self%part(i) /= part_open) pressure = y(gas%charge%pressures%first + i)
+        pressure = y(gas%charge%pressures%first + i)
+        if (allocated(gas%cycle)) pressure = merge(gas%cycle%intake_pressure, pressure, self%part(i) == part_open)
       else if (allocated(self%cycles)) then
         pressure = self%cycles(i)%pressure(gas%sense*gas%angle(angle(i)), self%part(i), self%cycle_start(i))
       else if (allocated(gas%cycle)) then
@@ -144,6 +156,8 @@ contains
   pure real(dp) function heat(self, gas)
     class(other_cylinders_t), intent(in) :: self
     type(working_gas_t), intent(in) :: gas
+    heat = 0
+    if (.not. allocated(gas%cycle)) return
     heat = count(self%has_gas)*gas%cycle%release%heat
     if (allocated(self%cycles)) heat = sum(self%cycles%release%heat, self%has_gas)
   end function heat
@@ -201,7 +215,7 @@ contains
     real(dp), intent(in) :: angle(:), speed(:)
     logical, intent(in) :: is_own
     real(dp), intent(inout) :: y(:)   !! state of the scene
-    real(dp) :: g(n_valve_events, size(angle)), g_rate(n_valve_events), largest
+    real(dp) :: g(n_valve_events, size(angle)), g_rate(n_valve_events), largest, along
     integer :: i, from
     do i = 1, size(angle)
       call own_events(self, gas, i, angle(i), speed(i), g(:, i), g_rate)
@@ -217,8 +231,10 @@ contains
       else
         from = self%part(i)
         call gas%cycle%next_part(event == 1, self%part(i), self%cycle_start(i))
-        if (gas%has_states()) call gas%charge%change_part(self%cycles(i), i + 1, gas%sense*gas%angle(angle(i)), from, &
-          self%part(i), self%cycle_start(i), y)
+        if (.not. gas%has_states() .or. ((from == part_open) .eqv. (self%part(i) == part_open))) cycle
+        along = gas%sense*gas%angle(angle(i))
+        call gas%charge%exchange(i + 1, along, self%cycles(i)%pressure(along, self%part(i), self%cycle_start(i)), &
+          self%part(i) == part_open, y)
       end if
     end do
   end subroutine pass

@@ -6,7 +6,8 @@ module two_stroke
   use constants, only: two_pi, degree
   use model_parameters, only: parameter_list_t
   use ideal_linkage, only: linkage_t
-  use wiebe_law, only: wiebe_law_t, turning_forwards
+  use gas_law, only: turning_forwards
+  use wiebe_law, only: wiebe_law_t
   implicit none
   private
   public :: two_stroke_t

@@ -8,11 +8,13 @@ module wiebe_law
   use model_parameters, only: parameter_list_t
   use cylinder, only: new_cylinder
   use gas_cycle, only: gas_cycle_t, heat_release_t, new_gas_cycle, released_share
-  use gas_law, only: gas_law_t
+  use gas_law, only: gas_law_t, turning_forwards
+  use wall_law, only: chamber_t
+  use cylinder_charge, only: charge_t
   use working_gas, only: working_gas_t
   implicit none
   private
-  public :: wiebe_law_t, turning_forwards
+  public :: wiebe_law_t
 
   type, abstract, extends(gas_law_t) :: wiebe_law_t
     real(dp) :: compression_ratio = 0             !! ratio of largest to smallest volume [-]
@@ -25,6 +27,7 @@ module wiebe_law
     procedure :: parameters => wiebe_parameters
     procedure, non_overridable :: wiebe_parameters
     procedure :: prepare
+    procedure :: fill
     procedure :: heat_of_cycle
     procedure :: burns_abruptly
     procedure :: description
@@ -92,13 +95,19 @@ contains
     gas%crankcase_pressure = self%crankcase_pressure
   end subroutine prepare
 
-  !> The mechanism, or its mirror image if the crank turns backwards.
-  pure type(linkage_t) function turning_forwards(linkage, sense) result(forwards)
+  !> The gas as it was when the cylinder closed.
+  subroutine fill(self, linkage, sense, gas, charge)
+    class(wiebe_law_t), intent(in) :: self
     type(linkage_t), intent(in) :: linkage
     real(dp), intent(in) :: sense
-    forwards = linkage
-    forwards%axis_offset = sense*linkage%axis_offset
-  end function turning_forwards
+    type(working_gas_t), intent(inout) :: gas
+    type(charge_t), intent(inout) :: charge
+    associate (cycle => gas%cycle)
+      call charge%prepare(cycle%cylinder, chamber_t(bore=self%bore, stroke=linkage%stroke(), &
+        heat_capacity_ratio=self%heat_capacity_ratio, closing_pressure=self%intake_pressure, &
+        closing_volume=cycle%cylinder%volume(cycle%closes)), self%crankcase_pressure)
+    end associate
+  end subroutine fill
 
   !> Combustion must lie where the cylinder is closed.
   subroutine wiebe_misfit(self, linkage, sense, key, wanted)

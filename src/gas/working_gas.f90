@@ -12,6 +12,7 @@ module working_gas
   use valve_gas, only: valve_gas_t, n_valve_events
   use cylinder_charge, only: charge_t, charge_motion_t, n_charge_sums, of_balance, moved
   use gas_cycle, only: part_open
+  use flow_valve, only: suction, discharge
   use trace_row, only: largest, of_cycle
   implicit none
   private
@@ -93,7 +94,7 @@ contains
     if (.not. self%has_states()) return
     call self%charge%declare(list, 1, y, '')
     if (list%sets .and. .not. list%goes_on) &
-      y(self%charge%sums%first) = self%charge%energy(self%cycle, self%sense*self%angle(crank_angle), y)
+      y(self%charge%sums%first) = self%charge%energy(self%sense*self%angle(crank_angle), y)
   end subroutine declare
 
   !> Whether pressure and mass are states.
@@ -108,7 +109,13 @@ contains
     class(working_gas_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle   !! [rad]
     real(dp), intent(inout) :: y(:)
-    call self%charge%set_start(self%cycle, 1, self%sense*self%angle(crank_angle), self%part, self%cycle_start, y)
+    associate (angle => self%sense*self%angle(crank_angle))
+      if (allocated(self%cycle)) then
+        call self%charge%set_start(1, angle, self%cycle%pressure(angle, self%part, self%cycle_start), self%part == part_open, y)
+      else
+        call self%charge%set_start(1, angle, self%charge%chamber%closing_pressure, .true., y)
+      end if
+    end associate
   end subroutine set_charge
 
   !> Mass and temperature of the gas at an angle [rad] and a speed [rad/s] of the crank.
@@ -117,10 +124,14 @@ contains
     real(dp), intent(in) :: crank_angle, crank_speed, y(:)
     type(charge_motion_t), intent(out) :: now
     associate (angle => self%sense*self%angle(crank_angle), speed => self%sense*crank_speed)
-      if (self%charge%is_state) then
-        call self%charge%move(self%cycle, 1, angle, speed, self%part, self%cycle_start, y, now)
+      if (.not. allocated(self%cycle)) then
+        call self%charge%move(1, angle, speed, 0.0_dp, .false., y, now)
+      else if (self%charge%is_state) then
+        call self%charge%move(1, angle, speed, self%cycle%heat_slope(angle, self%part, self%cycle_start)*speed, &
+          self%part == part_open, y, now)
       else
-        call self%charge%move_adiabatic(self%cycle, angle, speed, self%part, self%cycle_start, now)
+        call self%charge%move_adiabatic(angle, speed, self%cycle%pressure(angle, self%part, self%cycle_start), &
+          self%cycle%pressure_slope(angle, self%part, self%cycle_start), self%part == part_open, now)
       end if
     end associate
   end subroutine find_charge
@@ -131,7 +142,7 @@ contains
     real(dp), intent(in) :: crank_angle, y(:)
     real(dp) :: totals(n_charge_sums)
     totals = 0
-    if (self%has_states()) totals = self%charge%totals(self%cycle, self%sense*self%angle(crank_angle), y)
+    if (self%has_states()) totals = self%charge%totals(self%sense*self%angle(crank_angle), y)
   end function charge_totals
 
   !> Size of the error of the gas's energy over that of its work, or over the energy if that is larger [-].
@@ -141,7 +152,7 @@ contains
     real(dp) :: totals(n_charge_sums)
     totals = self%charge_totals(crank_angle, y)
     residual = abs(totals(of_balance))/max(totals(moved), &
-      self%charge%energy(self%cycle, self%sense*self%angle(crank_angle), y))
+      self%charge%energy(self%sense*self%angle(crank_angle), y))
   end function charge_residual
 
   !> Largest crank angle in a step, so that no step passes over a peak [rad]; 0: no limit. A cycle needs no limit, since events
@@ -156,7 +167,7 @@ contains
   !> Whether the pressure is set from outside.
   pure logical function is_external(self)
     class(working_gas_t), intent(in) :: self
-    is_external = .not. (allocated(self%cycle) .or. allocated(self%valves) .or. allocated(self%curve))
+    is_external = .not. (allocated(self%cycle) .or. allocated(self%valves) .or. allocated(self%curve) .or. self%has_states())
   end function is_external
 
   !> Pressure at a crank angle [Pa].
@@ -205,6 +216,11 @@ contains
     call row%add('gas_mass[kg]', charge%mass, 'mass of the gas in the cylinder')
     call row%add_on_request('wall_heat_flow[W]', charge%heat_flow, 'heat of the gas to the walls of the cylinder')
     call row%add_on_request('leak_flow[kg/s]', charge%leak_flow, 'flow of gas past the rings, positive out of the cylinder')
+    if (.not. allocated(self%charge%valves)) return
+    call row%add_on_request('suction_flow[kg/s]', charge%valve_flow(suction), 'flow of gas through the suction valve')
+    call row%add_on_request('discharge_flow[kg/s]', charge%valve_flow(discharge), 'flow of gas through the discharge valve')
+    call row%add_on_request('suction_valve_lift[m]', charge%valve_lift(suction), 'lift of the suction valve')
+    call row%add_on_request('discharge_valve_lift[m]', charge%valve_lift(discharge), 'lift of the discharge valve')
   end subroutine add_columns
 
   !> Derivative of the force with respect to the crank angle [N/rad].
@@ -253,7 +269,10 @@ contains
       call self%cycle%next_part(event == 1, self%part, self%cycle_start)
       if (.not. allocated(self%charge)) return
       if (event == 1 .and. self%part == part_open) self%charge%opening_temperature = before%temperature
-      call self%charge%change_part(self%cycle, 1, self%sense*self%angle(crank_angle), from, self%part, self%cycle_start, y)
+      if ((from == part_open) .eqv. (self%part == part_open)) return
+      associate (angle => self%sense*self%angle(crank_angle))
+        call self%charge%exchange(1, angle, self%cycle%pressure(angle, self%part, self%cycle_start), self%part == part_open, y)
+      end associate
     else if (allocated(self%valves)) then
       call self%valves%pass(event, self%angle(crank_angle), crank_speed)
     end if

@@ -229,6 +229,10 @@ contains
       call c%combustion%misfit(c%mechanism%linkage(), sign(1.0_dp, c%initial%crank_speed), key, wanted)
       if (key /= '') call values%refuse('combustion', key, wanted)
     end if
+    if (allocated(c%combustion)) then
+      if (c%combustion%filling_pressure() > 0) call values%demand(allocated(c%valves) .or. values%is_given('combustion', &
+        'polytropic_exponent'), 'combustion', 'polytropic_exponent', 'with ideal valves')
+    end if
     call check_charge(c, values)
     if (.not. allocated(c%measured)) return
     call values%forbid(allocated(c%combustion), 'cylinder_pressure', 'table', &
@@ -253,14 +257,53 @@ contains
     logical :: is_engine
     if (allocated(c%walls) .and. .not. allocated(c%charge)) &
       call values%refuse_group('wall_heat', 'needs &working_gas, which gives the gas its temperature')
+    if (allocated(c%valves) .and. .not. allocated(c%charge)) &
+      call values%refuse_group('valve_1', 'needs &working_gas, whose mass flows through it')
     if (.not. allocated(c%charge)) return
-    is_engine = allocated(c%combustion)
-    if (is_engine) is_engine = .not. c%combustion%filling_pressure() > 0
-    if (.not. is_engine) call values%refuse_group('working_gas', 'needs the cycle of an engine in &combustion')
-    if (.not. is_engine .or. .not. (allocated(c%walls) .or. c%charge%leak_area > 0)) return
+    if (.not. allocated(c%combustion)) then
+      call values%refuse_group('working_gas', 'needs a cycle in &combustion')
+      return
+    end if
+    is_engine = .not. c%combustion%filling_pressure() > 0
+    if (.not. is_engine) call check_compressor(c, values)
+    if (.not. is_engine) return
+    if (allocated(c%valves)) call values%refuse_group('valve_1', &
+      'is of cycle = ''compressor'' alone; the valves of an engine open at fixed angles')
+    call values%forbid(c%charge%heat_capacity_ratio > 0, 'working_gas', 'heat_capacity_ratio', &
+      'is that of &combustion in an engine')
+    if (.not. (allocated(c%walls) .or. c%charge%leak_area > 0)) return
     call values%forbid(c%combustion%burns_abruptly(), 'combustion', 'wiebe_form', &
       'must be >= 1 with &wall_heat or leak_area: the rate of its heat would begin without a bound')
   end subroutine check_charge
+
+  !> Check that a compressor whose gas has a mass has valves with losses and no exponent.
+  subroutine check_compressor(c, values)
+    type(case_t), intent(in) :: c
+    type(case_values_t), intent(inout) :: values
+    integer :: i
+    if (.not. allocated(c%valves)) then
+      call values%refuse_group('working_gas', 'needs &valve with cycle = ''compressor'': ideal valves have no flow')
+      return
+    end if
+    call values%forbid(values%is_given('combustion', 'polytropic_exponent'), 'combustion', 'polytropic_exponent', &
+      'follows from the heat with &valve: give heat_capacity_ratio in &working_gas')
+    call values%demand(c%charge%heat_capacity_ratio > 1, 'working_gas', 'heat_capacity_ratio', 'with &valve, > 1')
+    if (allocated(c%walls)) then
+      if (c%walls%needs_engine()) call values%refuse('wall_heat', 'law', 'is of engines: constant, hohenberg or reynolds')
+    end if
+    if (size(c%valves) == 2) then
+      call values%forbid(c%valves(1)%port == c%valves(2)%port .or. any([c%valves(1)%port, c%valves(2)%port] == 'both'), 'valve_2', &
+        'port', 'must be the other of suction and discharge: the first group is of '//c%valves(1)%port)
+    else
+      call values%forbid(c%valves(1)%port /= 'both', 'valve_1', 'port', 'is one of two: give the other valve too, or both')
+    end if
+    do i = 1, size(c%valves)
+      associate (it => c%valves(i), group => 'valve_'//integer_text(i))
+        call values%demand(it%force_area > 0 .or. .not. it%stiffness > 0, group, 'force_area', 'with stiffness')
+        call values%forbid(it%preload > 0 .and. .not. it%stiffness > 0, group, 'preload', 'needs stiffness')
+      end associate
+    end do
+  end subroutine check_compressor
 
   !> Check that the keys of a variable drive match its kind, and that there is one flywheel at most.
   subroutine check_drive(c, values)

@@ -26,6 +26,7 @@ module case_definition
   use measured_curve, only: measured_curve_t
   use measured_pressure, only: measured_pressure_t
   use cylinder_charge, only: charge_case_t
+  use flow_valve, only: flow_valve_t
   use wall_law, only: wall_law_t
   use bearing_load, only: bearing_load_t
   implicit none
@@ -114,6 +115,7 @@ module case_definition
     class(gas_law_t), allocatable :: combustion
     type(measured_pressure_t), allocatable :: measured   !! used instead of combustion
     type(charge_case_t), allocatable :: charge           !! not allocated: the gas has no mass and temperature
+    type(flow_valve_t), allocatable :: valves(:)         !! of a compressor; not allocated: ideal ones
     class(wall_law_t), allocatable :: walls              !! not allocated: no heat to the walls
     type(run_length_t) :: run
     type(integrator_case_t) :: integrator

@@ -9,6 +9,7 @@ submodule (case_definition) case_groups
   use train_case, only: most_rings
   use ring_case, only: visit_rings
   use skirt_film_case, only: visit_skirt_film
+  use flow_valve, only: flow_valve_t
   implicit none
 
 contains
@@ -73,18 +74,21 @@ contains
     call list%group('combustion', &
       'Gas pressure on the piston, of an engine or a compressor. Without this group there is none', .true.)
     call list%choice('cycle', 'four_stroke', 'working cycle; compressor: without combustion')
+    call list%make_optional('polytropic_exponent')
     call offer_gas_cycles(list)
+    call list%make_optional('')
     if (list%sets) call select_gas(list%chosen, case%combustion)
     call list%group('cylinder_pressure', 'Measured gas pressure on the piston, from a table', .true., instead_of='combustion')
     if (list%sets .and. allocated(case%measured)) measured = case%measured   ! its table has been read
     call measured%parameters(list)
     if (list%sets) case%measured = measured
     if (list%is_absent()) deallocate (case%measured)
-    call list%group('working_gas', 'Mass and temperature of the gas in the cylinders of an engine, and its leak. Without this '// &
-      'group the pressure follows from the crank angle alone', .true.)
+    call list%group('working_gas', 'Mass and temperature of the gas in the cylinders, and its leak. Without this group the '// &
+      'pressure follows from the crank angle alone', .true.)
     call charge%parameters(list)
     if (list%sets) case%charge = charge
     if (list%is_absent()) deallocate (case%charge)
+    call visit_valves(case%valves, list)
     call list%group('wall_heat', 'Heat of the gas to the walls. `heat` of &combustion is then that of the fuel; without this '// &
       'group it is the net heat', .true.)
     call list%choice('law', 'woschni', 'heat transfer coefficient')
@@ -157,6 +161,25 @@ contains
     if (allocated(cylinders)) deallocate (cylinders)
     if (n > 0) allocate (cylinders, source=found(:n))
   end subroutine visit_cylinders
+
+  subroutine visit_valves(valves, list)
+    type(flow_valve_t), allocatable, intent(inout) :: valves(:)
+    class(parameter_list_t), intent(inout) :: list
+    type(flow_valve_t) :: found(2), one
+    integer :: i, n
+    n = 0
+    do i = 1, merge(2, 1, list%repeats)
+      call list%group('valve', 'Valves of a compressor with their losses, one group for both or one for each. Without '// &
+        'this group they are ideal', .true., number=i)
+      call one%parameters(list)
+      if (.not. (list%sets .and. list%is_present)) cycle
+      n = n + 1
+      found(n) = one
+    end do
+    if (.not. list%sets) return
+    if (allocated(valves)) deallocate (valves)
+    if (n > 0) allocate (valves, source=found(:n))
+  end subroutine visit_valves
 
   subroutine visit_guide(guide, list)
     type(guide_case_t), allocatable, intent(inout) :: guide

@@ -20,7 +20,8 @@ module cycle_answers
   use archard_wear, only: of_pin, of_bore
   use gas_cycle, only: released_share
   use ideal_linkage, only: linkage_t
-  use cylinder_charge, only: of_balance, to_walls, leaked, leaked_enthalpy, moved
+  use cylinder_charge, only: of_balance, to_walls, leaked, leaked_enthalpy, moved, delivered, delivered_heat, suction_loss, &
+    discharge_loss, work_on_gas
   use film_heat, only: temperature_sum, heat_to_oil, heat_to_housing
   implicit none
   private
@@ -104,6 +105,14 @@ module cycle_answers
     quantity_t('cycle_indicated_efficiency', '1', 'work of the gas over the heat that combustion releases in all cylinders'), &
     quantity_t('cycle_gas_energy_residual', '1', 'energy of the gas less what it received by heat, work and leak in the cycle, '// &
       'over the size of its work: the error of the integration'), &
+    quantity_t('cycle_mass_flow', 'kg/s', 'gas that a compressor delivers through its discharge valve, with `&valve`'), &
+    quantity_t('cycle_volumetric_efficiency', '1', 'that over the displacement full of gas of the suction chamber'), &
+    quantity_t('cycle_isentropic_efficiency', '1', 'work of the isentropic compression of that gas over the work on the gas'), &
+    quantity_t('cycle_discharge_temperature', 'K', 'mean temperature of that gas, by its mass'), &
+    quantity_t('cycle_suction_loss', 'W', 'power lost in the suction valve: by pressures below that of suction'), &
+    quantity_t('cycle_discharge_loss', 'W', 'power lost in the discharge valve: by pressures above that of discharge'), &
+    quantity_t('cycle_leak_flow', 'kg/s', 'mean flow past the rings of a compressor'), &
+    quantity_t('cycle_wall_heat_flow', 'W', 'mean heat of its gas to the walls'), &
     quantity_t('cycle_bmep', 'Pa', 'the same of the brake power'), &
     quantity_t('cycle_fmep', 'Pa', 'the same of the losses in joints, guide and elastic members'), &
     quantity_t('cycle_one_way_fmep', 'Pa', &
@@ -317,6 +326,11 @@ contains
       real(dp), intent(in) :: cycles   !! of the gas in this cycle
       real(dp) :: heat   !! released in all cylinders in a cycle of the gas, but for the share that does not burn [J]
       associate (gas => scene%gas)
+        if (gas%charge%is_state) call add('cycle_gas_energy_residual', cycle%gas(of_balance)/cycle%gas(moved))
+        if (allocated(gas%charge%valves)) then
+          call add_compressor()
+          return
+        end if
         if (allocated(gas%charge%walls)) call add('cycle_heat_to_walls', cycle%gas(to_walls)/cycles)
         if (gas%charge%loses_gas()) call add('cycle_leak_share', cycle%gas(leaked)/cycles/gas%charge%closed_mass)
         if (gas%charge%loses_gas()) call add('cycle_leak_enthalpy', cycle%gas(leaked_enthalpy)/cycles)
@@ -325,9 +339,26 @@ contains
         if (allocated(scene%other_gas)) heat = heat + scene%other_gas%heat(gas)
         if (heat > 0) call add('cycle_indicated_efficiency', &
           work_of(by_gas)/(cycles*heat*released_share(gas%cycle%release%efficiency)))
-        if (gas%charge%is_state) call add('cycle_gas_energy_residual', cycle%gas(of_balance)/cycle%gas(moved))
       end associate
     end subroutine add_charge
+
+    !> The flow of a compressor, what it does to the gas, and its losses.
+    subroutine add_compressor()
+      real(dp) :: ideal   !! isentropic work on a mass [J/kg]
+      associate (charge => scene%gas%charge, chamber => scene%gas%charge%chamber, g => scene%gas%charge%chamber%heat_capacity_ratio)
+        ideal = g/(g - 1)*chamber%gas_constant*chamber%closing_temperature* &
+          ((charge%discharge_pressure/chamber%closing_pressure)**((g - 1)/g) - 1)
+        call add('cycle_mass_flow', cycle%gas(delivered)/cycle%duration)
+        call add('cycle_volumetric_efficiency', cycle%gas(delivered)*chamber%gas_constant*chamber%closing_temperature/ &
+          (chamber%closing_pressure*chamber%displacement*revolutions))
+        if (cycle%gas(work_on_gas) > 0) call add('cycle_isentropic_efficiency', cycle%gas(delivered)*ideal/cycle%gas(work_on_gas))
+        if (cycle%gas(delivered) > 0) call add('cycle_discharge_temperature', cycle%gas(delivered_heat)/cycle%gas(delivered))
+        call add('cycle_suction_loss', cycle%gas(suction_loss)/cycle%duration)
+        call add('cycle_discharge_loss', cycle%gas(discharge_loss)/cycle%duration)
+        if (charge%loses_gas()) call add('cycle_leak_flow', cycle%gas(leaked)/cycle%duration)
+        if (allocated(charge%walls)) call add('cycle_wall_heat_flow', cycle%gas(to_walls)/cycle%duration)
+      end associate
+    end subroutine add_compressor
 
     !> The hardest impact of the skirt in the cycle.
     subroutine add_slap()

@@ -45,7 +45,7 @@ contains
     type(cycle_t), intent(inout) :: cycle   !! extremes of the present revolution
     type(machine_record_t) :: next
     call next%begin(scene, t, now)
-    if (allocated(scene%gas)) call search_pressure(scene%gas, self, next, cycle)
+    if (allocated(scene%gas) .and. .not. scene%has_charge) call search_pressure(scene%gas, self, next, cycle)
     call self%begin(scene, t, now)
   end subroutine search
 

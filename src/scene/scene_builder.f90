@@ -173,7 +173,7 @@ contains
     allocate (scene%gas)
     if (allocated(case%charge)) then
       allocate (scene%gas%charge)
-      call scene%gas%charge%set_case(case%charge, case%walls)
+      call scene%gas%charge%set_case(case%charge, case%walls, case%valves)
     end if
     if (allocated(scene%chain%train) .and. allocated(case%cylinders)) &
       scene%gas%has_force = case%cylinders(scene%chain%train%full_number)%gas
@@ -256,8 +256,7 @@ contains
     end associate
     if (allocated(error)) return
     scene%gas%has_force = has_force
-    if (allocated(charge)) call charge%prepare(scene%gas%cycle, case%combustion%bore, &
-      linkage%stroke(), case%combustion%crankcase_pressure)
+    if (allocated(charge)) call case%combustion%fill(linkage, sign(1.0_dp, scene%start_speed), scene%gas, charge)
     call move_alloc(charge, scene%gas%charge)
     call scene%gas%start(scene%start_angle, merge(case%drive%ramp_from, scene%start_speed, scene%runs_up))
     if (.not. allocated(scene%chain%train)) return

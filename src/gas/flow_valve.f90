@@ -1,0 +1,70 @@
+!> A self-acting valve of a compressor with a spring, without mass: the difference of the pressures, in the sense in which it opens,
+!> lifts it against its spring,
+!>
+!>     x = l min(1, max(0, (dp A_f - F_0)/(k l))),    flow area A x/l,
+!>
+!> with the area A_f on which dp presses, preload F_0, stiffness k, and the area A at the full lift l. Without a spring it is fully
+!> open as soon as dp > 0. It lets no gas back.
+module flow_valve
+  use kinds, only: dp
+  use model_parameters, only: has_parameters_t, parameter_list_t
+  use nozzle_flow, only: orifice_flow
+  implicit none
+  private
+  public :: flow_valve_t, suction, discharge, both_ports, port_names
+
+  integer, parameter :: suction = 1, discharge = 2
+  character(len=*), parameter :: both_ports = 'both'
+  character(len=9), parameter :: port_names(2) = ['suction  ', 'discharge']
+
+  type, extends(has_parameters_t) :: flow_valve_t
+    character(len=:), allocatable :: port
+    real(dp) :: area = 0         !! A, with the discharge coefficient [m^2]
+    real(dp) :: lift = 0         !! l [m]
+    real(dp) :: force_area = 0   !! A_f [m^2]
+    real(dp) :: stiffness = 0    !! k [N/m]
+    real(dp) :: preload = 0      !! F_0 [N]
+  contains
+    procedure :: parameters
+    procedure, non_overridable :: open_share
+    procedure, non_overridable :: flow
+  end type flow_valve_t
+
+contains
+
+  subroutine parameters(self, list)
+    class(flow_valve_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call list%word('port', self%port, both_ports, 'both, suction, discharge', 'which valve; both: one group for both')
+    call list%add('area', self%area, 'effective area of the flow at full lift, discharge coefficient included', 'm^2', '> 0', &
+      example='2.0e-4', usual='1e-7 to 0.1')
+    call list%add('lift', self%lift, 'full lift', 'm', '> 0', example='1.0e-3', usual='1e-4 to 5e-3')
+    call list%add('force_area', self%force_area, 'area on which the difference of the pressures presses', 'm^2', '>= 0', &
+      default='0.0', usual='1e-7 to 0.1')
+    call list%add('stiffness', self%stiffness, 'stiffness of its spring; 0: fully open as soon as the pressure opens it', 'N/m', &
+      '>= 0', default='0.0', usual='10 to 1e5')
+    call list%add('preload', self%preload, 'force of the spring on the closed valve', 'N', '>= 0', default='0.0', &
+      usual='0.01 to 1e3')
+  end subroutine parameters
+
+  !> Lift over full lift at a difference of the pressures [Pa], positive where it opens [-].
+  pure real(dp) function open_share(self, difference)
+    class(flow_valve_t), intent(in) :: self
+    real(dp), intent(in) :: difference
+    if (self%stiffness > 0) then
+      open_share = min(1.0_dp, max(0.0_dp, (difference*self%force_area - self%preload)/(self%stiffness*self%lift)))
+    else
+      open_share = merge(1.0_dp, 0.0_dp, difference > 0)
+    end if
+  end function open_share
+
+  !> Mass flow through the valve, in its sense [kg/s].
+  pure real(dp) function flow(self, gas_constant, ratio, pressure, temperature)
+    class(flow_valve_t), intent(in) :: self
+    real(dp), intent(in) :: gas_constant, ratio            !! R_g [J/(kg K)], g [-]
+    real(dp), intent(in) :: pressure(2), temperature       !! before and behind it [Pa]; before it [K]
+    flow = 0
+    if (pressure(1) > pressure(2)) flow = orifice_flow(self%area*self%open_share(pressure(1) - pressure(2)), gas_constant, ratio, &
+      pressure, [temperature, temperature])
+  end function flow
+end module flow_valve
