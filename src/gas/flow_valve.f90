@@ -11,11 +11,9 @@ module flow_valve
   use nozzle_flow, only: orifice_flow
   implicit none
   private
-  public :: flow_valve_t, suction, discharge, both_ports, port_names
+  public :: flow_valve_t, suction, discharge
 
   integer, parameter :: suction = 1, discharge = 2
-  character(len=*), parameter :: both_ports = 'both'
-  character(len=9), parameter :: port_names(2) = ['suction  ', 'discharge']
 
   type, extends(has_parameters_t) :: flow_valve_t
     character(len=:), allocatable :: port
@@ -35,7 +33,7 @@ contains
   subroutine parameters(self, list)
     class(flow_valve_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%word('port', self%port, both_ports, 'both, suction, discharge', 'which valve; both: one group for both')
+    call list%word('port', self%port, 'both, suction, discharge', 'both', 'which valve; both: one group for both')
     call list%add('area', self%area, 'effective area of the flow at full lift, discharge coefficient included', 'm^2', '> 0', &
       example='2.0e-4', usual='1e-7 to 0.1')
     call list%add('lift', self%lift, 'full lift', 'm', '> 0', example='1.0e-3', usual='1e-4 to 5e-3')

@@ -98,8 +98,13 @@ contains
     class(gas_law_t), intent(in) :: law
     character(len=:), allocatable :: text
     type(gas_figures_t) :: gas
-    real(dp), parameter :: bar = 1e5_dp   ! [Pa]
+    real(dp), parameter :: bar = 1e5_dp, cm2 = 1e4_dp   ! [Pa], cm^2 in a m^2
     text = law%description()
+    if (allocated(case%valves)) then   ! the pressures follow from the run
+      text = text//', valves of '//short_text(case%valves(1)%area*cm2, digits)//' and '// &
+        short_text(case%valves(size(case%valves))%area*cm2, digits)//' cm2'
+      return
+    end if
     call find_gas_figures(law, case%mechanism%linkage(), case%initial%crank_speed, gas)
     if (gas%is_known) text = text//'; '//short_text(gas%least/bar, digits)//' to '//short_text(gas%peak/bar, digits)// &
       ' bar, largest at '//short_text(gas%peak_angle, digits)//' degrees, IMEP '//short_text(gas%imep/bar, digits)//' bar'

@@ -13,6 +13,7 @@ module case_notes
   use gas_figures, only: gas_figures_t, find_gas_figures, highest_peak
   use train_case, only: order_cylinders
   use number_text, only: short_text, quantity_text
+  use text_tools, only: integer_text
   use unit_hints, only: likely_unit
   implicit none
   private
@@ -260,6 +261,7 @@ contains
     end if
     if (.not. allocated(c%combustion)) return
     call note_heat(c, to)
+    call note_valves(c, to)
     associate (suction => c%combustion%filling_pressure(), crankcase => c%combustion%crankcase_pressure)
       if (suction > 0 .and. crankcase > 1.05_dp*suction) then
         call to%remark('combustion', 'suction_pressure', 'is below the crankcase_pressure of '//quantity_text(crankcase, 'Pa')// &
@@ -280,6 +282,21 @@ contains
         'heat, usually up to 3.5 MPa: the radius instead of the diameter?', '')
     end if
   end subroutine note_gas
+
+  !> Mean speed of the gas in the valves of a compressor.
+  subroutine note_valves(c, to)
+    type(case_t), intent(in) :: c
+    type(remarks_t), intent(inout) :: to
+    real(dp), parameter :: slowest = 5, fastest = 120   ! [m/s]
+    real(dp) :: flow   ! of volume behind the piston [m^3/s]
+    integer :: i
+    if (.not. allocated(c%valves)) return
+    flow = pi/4*bore_of(c)**2*stroke_of(c)*abs(c%initial%crank_speed)/pi
+    do i = 1, size(c%valves)
+      if (flow < slowest*c%valves(i)%area .or. flow > fastest*c%valves(i)%area) call to%remark('valve_'//integer_text(i), 'area', &
+        'makes a mean speed of the gas of '//short_text(flow/c%valves(i)%area, 3)//' m/s, usually 5 to 120', '')
+    end do
+  end subroutine note_valves
 
   !> A measured pressure.
   subroutine note_table(c, gas, to)

@@ -85,6 +85,9 @@ contains
       call report%value_of('max_gas_temperature', temperature, is_known)
       if (is_known .and. temperature > hottest) call add_line('the gas reaches '//short_text(temperature, 4)//' K, usually up '// &
         'to 3000 K: &combustion heat, &working_gas temperature')
+      if (allocated(case%valves) .and. abs(machine_answer(report, 'cycle_work_gas')) > 0 .and. &
+        .not. machine_answer(report, 'cycle_mass_flow') > 0) call add_line('the compressor delivers no gas in the last cycle: '// &
+        'its discharge valve stays closed')
     end subroutine note_gas
 
     !> A lubricated skirt that runs on its asperities.
