@@ -399,7 +399,7 @@ def charges(program: Path) -> None:
 COMPRESSOR = ("working_gas.gas_constant=287", "working_gas.temperature=300", "working_gas.heat_capacity_ratio=1.4")
 
 
-def valves(program: Path) -> None:
+def losses_of_valves(program: Path) -> None:
     """Valves of a compressor: against independent programs (data/gas), and towards ideal valves."""
     facts = pd.read_csv(TOP / "data" / "gas" / "facts.csv").set_index(["case", "quantity"])["value"]
     r = run(program, TOP / "data" / "gas" / "air_springs.nml", name="air_springs")
@@ -430,9 +430,9 @@ def valves(program: Path) -> None:
     compressor, vent = GAS / "compressor.nml", ("valve_1.area=2 cm2", "valve_1.lift=1 mm")
     exponent = "polytropic_exponent"
     for case, settings, says in (
-        (compressor, (*COMPRESSOR, *vent), f"{exponent}: follows from the heat"), (compressor, vent, "needs &working_gas"),
+        (compressor, (*COMPRESSOR, *vent), f"{exponent} = 1.3: follows from the heat"), (compressor, vent, "needs &working_gas"),
         (GAS / "compressor_valves.nml", ("valve_1.port=suction",), "is one of two"), (GAS / "compressor_valves.nml", ("valve_1.force_area=0",), "force_area"),
-        (GAS / "compressor_valves.nml", ("wall_heat.law=woschni",), "is of engines"), (GAS / "compressor_valves.nml", ("working_gas.heat_capacity_ratio=0",), "> 1"),
+        (GAS / "compressor_valves.nml", ("wall_heat.law=woschni",), "is of engines"), (GAS / "compressor_valves.nml", ("working_gas.heat_capacity_ratio=0",), "must be > 1"),
         (GAS / "compressor_valves.nml", ("valve=none",), "needs &valve"), (TOP / "cases" / "gas" / "engine_walls.nml", vent, "alone; the valves of an engine")):
         words = [word for setting in settings for word in ("--set", setting)]
         made = subprocess.run([program, "--check", *words, case], capture_output=True, text=True, check=False)
@@ -573,7 +573,7 @@ def main() -> int:
     offset_axis(program)
     pegging(program)
     charges(program)
-    valves(program)
+    losses_of_valves(program)
     limits_of_charges(program)
     heat_of_a_pressure(program)
     what_check_says(program)

@@ -94,10 +94,10 @@ def units(program: str) -> None:
         written.add(line[3])
         return line[1] + ", ".join(f"{number} {line[3]}" for number in line[2].split(", "))
 
-    for path in sorted((TOP / "cases").rglob("*.nml")):
-        if path.parent.name == "studies":
-            continue
-        resolved = output(program, "--resolved", str(path))
+    files: list[tuple[Path, tuple[str, ...]]] = [(path, ()) for path in sorted((TOP / "cases").rglob("*.nml")) if path.parent.name != "studies"]
+    files.append((TOP / "cases" / "gas" / "engine_walls.nml", ("-s", "wall_heat.law=constant", "-s", "wall_heat.heat_transfer_coefficient=300")))
+    for path, settings in files:
+        resolved = output(program, "--resolved", *settings, str(path))
         text = re.sub(r"^(  \w+ = )([^'\n!]+?)  ! (.*)$", with_unit, resolved, flags=re.MULTILINE)
         done = subprocess.run([program, "--resolved", "-"], input=text, capture_output=True, text=True, cwd=path.parent)
         check(done.stdout == resolved, f"{path.relative_to(TOP)} with units: {done.stderr[:300]}")

@@ -287,7 +287,11 @@ contains
     end if
     call values%forbid(values%is_given('combustion', 'polytropic_exponent'), 'combustion', 'polytropic_exponent', &
       'follows from the heat with &valve: give heat_capacity_ratio in &working_gas')
-    call values%demand(c%charge%heat_capacity_ratio > 1, 'working_gas', 'heat_capacity_ratio', 'with &valve, > 1')
+    if (.not. values%is_given('working_gas', 'heat_capacity_ratio')) then
+      call values%refuse('working_gas', 'heat_capacity_ratio', 'required with &valve')
+    else
+      call values%forbid(.not. c%charge%heat_capacity_ratio > 1, 'working_gas', 'heat_capacity_ratio', 'must be > 1 with &valve')
+    end if
     if (allocated(c%walls)) then
       if (c%walls%needs_engine()) call values%refuse('wall_heat', 'law', 'is of engines: constant, hohenberg or reynolds')
     end if

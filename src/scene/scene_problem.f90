@@ -368,7 +368,7 @@ contains
     associate (charge => self%gas%charge)
       dydt(charge%pressures%first) = now%charge%pressure_rate
       dydt(charge%masses%first) = now%charge%mass_rate
-      dydt(charge%sums%first:charge%sums%last) = now%charge%rates
+      dydt(charge%sums%first:charge%sums%last) = now%charge%rates(:charge%sums%last - charge%sums%first + 1)
     end associate
     if (.not. allocated(self%other_gas)) return
     n = size(self%chain%train%cylinders)

@@ -4,6 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from gudgeon.cycles import Cycles, bearing_loads, orders, spectrum
 from gudgeon.plots.style import BLACK, BLUE, GREY, ORANGE, VERMILION, WIDTH
+from gudgeon.results import numbered
 from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import MaxNLocator
 
@@ -97,12 +98,18 @@ def draw_bearings(cycles: Cycles) -> Drawing:
 
 
 def draw_indicator(cycles: Cycles) -> Drawing:
-    """Pressure over volume: single cycles light, the mean dark."""
+    """Pressure over volume: single cycles light, the mean dark; of a compressor whose valves have losses these are shaded."""
     drawing, axis = plt.subplots(figsize=(0.65 * WIDTH, 0.5 * WIDTH))
     volume, pressure = cycles["cylinder_volume"] * 1e6, cycles["cylinder_pressure"] / 1e5
     for k in range(min(cycles.number, 40)):
         axis.plot(volume[k], pressure[k], color=GREY, linewidth=0.3)
-    axis.plot(volume.mean(axis=0), pressure.mean(axis=0), color=BLUE)
+    mean_volume, mean_pressure = volume.mean(axis=0), pressure.mean(axis=0)
+    axis.plot(mean_volume, mean_pressure, color=BLUE)
+    if numbered(cycles.run.case, "valve"):   # beyond the pressures of suction and discharge
+        for key, beyond in (("suction_pressure", np.less), ("discharge_pressure", np.greater)):
+            level = 1e-5 * float(str(cycles.run.parameter("combustion", key)))
+            axis.fill_between(mean_volume, level, mean_pressure, where=beyond(mean_pressure, level), color=BLUE, alpha=0.3, linewidth=0)
+            axis.axhline(level, color=GREY, linewidth=0.5, zorder=0)
     axis.set_xlabel(f"{cycles.run.volume} [cm³]")
     axis.set_ylabel("cylinder pressure [bar]")
     axis.set_title(cycles.run.name)

@@ -5,8 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 from gudgeon.plots.quantity import colour, label
-from gudgeon.plots.style import GREY
-from gudgeon.results import Run, numbered
+from gudgeon.results import Run
 from matplotlib.axes import Axes
 from matplotlib.ticker import MultipleLocator
 
@@ -31,13 +30,7 @@ def first_cycle(run: Run) -> np.ndarray:
 
 def indicator(axis: Axes, run: Run, look: dict) -> None:
     rows = first_cycle(run)
-    volume, pressure = 1e6 * run["cylinder_volume"][rows], 1e-5 * run["cylinder_pressure"][rows]
-    axis.plot(volume, pressure, **look)
-    if numbered(run.case, "valve"):   # lost in the valves of a compressor: beyond the pressures of suction and discharge
-        for key, beyond in (("suction_pressure", np.less), ("discharge_pressure", np.greater)):
-            level = 1e-5 * float(str(run.parameter("combustion", key, 101325.0)))
-            axis.fill_between(volume, level, pressure, where=beyond(pressure, level), color=look.get("color"), alpha=0.25, linewidth=0)
-            axis.axhline(level, color=GREY, linewidth=0.5, zorder=0)
+    axis.plot(1e6 * run["cylinder_volume"][rows], 1e-5 * run["cylinder_pressure"][rows], **look)
     axis.set_xlabel(f"{run.volume} [cm³]")
     axis.set_xlim(left=0)
     axis.set_ylim(bottom=0)
