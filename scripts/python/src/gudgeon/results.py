@@ -140,7 +140,7 @@ def read_summary(path: Path) -> dict[str, tuple[str, str]]:
 
 
 #: Groups that a case may have several times, by number.
-REPEATED = ("cylinder", "damper")
+REPEATED = ("cylinder", "damper", "ring", "valve")
 
 
 def numbered(case: dict[str, dict[str, object]], name: str) -> list[dict[str, object]]:
