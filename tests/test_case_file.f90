@@ -25,8 +25,8 @@ module test_case_file
   character(len=*), parameter :: run = '&integrator revolutions=2 /'//n
   character(len=*), parameter :: whole = bodies//joint//contact//run
   character(len=*), parameter :: all_groups = ' (allowed: case, mechanism, bearing_load, drive, initial, pin, joint, '// &
-    'contact, friction, lubrication, asperities, wear, film_history, supply, bore, heat, guide, ring, elastic_rod, crankshaft, '// &
-    'damper, cylinder, combustion, cylinder_pressure, working_gas, valve, wall_heat, run, integrator, output)'
+    'contact, friction, lubrication, asperities, wear, film_history, supply, bore, shape, heat, guide, ring, elastic_rod, '// &
+    'crankshaft, damper, cylinder, combustion, cylinder_pressure, working_gas, valve, wall_heat, run, integrator, output)'
   character(len=*), parameter :: laws = 'lankarani_nikravesh, hertz, hunt_crossley, exact, flores, gonthier, carvalho_martins, '// &
     'herbert_mcwhannell, zhiying_qishao, impact'
   character(len=*), parameter :: no_speeds = n//'x.nml: &friction v0: required with law = ''ambrosio'' (m/s)'//n// &

@@ -12,8 +12,8 @@ module test_command_line
 
   character(len=*), parameter :: hint = '; gudgeon --help lists the options'
   character(len=*), parameter :: groups = ': case, mechanism, bearing_load, drive, initial, pin, joint, contact, friction, '// &
-    'lubrication, asperities, wear, film_history, supply, bore, heat, guide, ring, elastic_rod, crankshaft, damper, cylinder, '// &
-    'combustion, cylinder_pressure, working_gas, valve, wall_heat, run, integrator, output'
+    'lubrication, asperities, wear, film_history, supply, bore, shape, heat, guide, ring, elastic_rod, crankshaft, damper, '// &
+    'cylinder, combustion, cylinder_pressure, working_gas, valve, wall_heat, run, integrator, output'
 
 contains
 

@@ -614,6 +614,21 @@ class FilmPressure(unittest.TestCase):
         np.testing.assert_allclose(lines[0].get_ydata(), [1.5e6, 1.75e6, 2e6, 1e6, 1.25e6])
         self.assertEqual([len(axis.get_lines()) for axis in drawing.axes], [2, 2, 1, 2])
 
+    def test_gap_of_a_bearing_with_a_shape(self) -> None:
+        """The gap of a centred pin in the middle and at both ends, from a table, a barrel and a tilt."""
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text, place in (("shape", "angle[deg],deviation[um]\n0,1\n180,3\n", ""),
+                                      ("worn", "joint,angle[deg],bore_depth[m]\nsmall_end,0,1\ncrank_pin,0,1e-6\ncrank_pin,180,3e-6\n", "crank_pin.")):
+                table = Path(folder) / name
+                table.write_text(text)
+                shape = {"table": str(table), "factor": 2.0, "direction_deg": 90.0, "barrel": 1e-6, "tilt": [1e-4, 0.0]}
+                made = Run("made", pd.DataFrame(), {}, pd.DataFrame(), {}, {"shape": shape, "joint": {"kind": "ideal"}} | {
+                    f"{place}joint": {"kind": "quasi_static", "clearance": 2e-5, "bearing_length": 0.02}})
+                angle, middle, *ends = film_pictures.gap_of(made)
+                np.testing.assert_allclose(np.interp([0, 90, 270], angle, middle), [24e-6, 22e-6, 26e-6], rtol=1e-9)
+                np.testing.assert_allclose([end[0] for end in ends], [24e-6, 26e-6], rtol=1e-9)
+            self.assertEqual(film_pictures.gap_of(Run("made", pd.DataFrame(), {}, pd.DataFrame(), {}, {"joint": {"kind": "ideal"}})), [])
+
     def test_oscillating_film(self) -> None:
         speed, rod, crank = 300.0, 0.2, 0.05
         radius = self.BEARING - self.CLEARANCE

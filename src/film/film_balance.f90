@@ -41,7 +41,7 @@ module film_balance
     real(dp), allocatable :: slopes(:, :)   !! derivatives with respect to theta, at the cells
   end type film_shapes_t
 
-  !> Film thickness at the middles of the cells and at the faces between cells i and i + 1.
+  !> Film thickness at the middles of the cells and at the faces between cells i and i + 1, without what varies along the axis.
   type :: film_gap_t
     real(dp), allocatable :: at_cells(:), at_faces(:)   !! (around)
   end type film_gap_t
@@ -95,7 +95,7 @@ contains
     type(film_state_t), intent(in) :: state
     type(film_gap_t), intent(in) :: gap
     type(film_balance_t), intent(inout) :: balance
-    real(dp) :: along_axis, drag, cubed, flow, fall, drained
+    real(dp) :: along_axis, drag, cubed, flow, fall, drained, face, before
     integer :: i, j, e, m
 
     m = cells%along
@@ -106,27 +106,44 @@ contains
       do i = 1, cells%around
         e = cells%next(i)
         drag = 0.5_dp*conditions%speed/cells%turn
+        face = gap%at_faces(i)
         cubed = gap%at_faces(i)**3/cells%turn**2
         do j = 1, m
           balance%face_slope(j, i) = 0
           if (kind(j, i) == supplied .and. kind(j, e) == supplied) cycle
+          if (cells%varies_along) then
+            face = gap%at_faces(i) + cells%face_beyond(j, i)
+            cubed = face**3/cells%turn**2
+          end if
           fall = conductance(kind(j, i), kind(j, e), cubed)*(q(j, i) - q(j, e))
           flow = drag
           if (conditions%has_memory) flow = drag*merge(f(j, i), f(j, e), conditions%speed > 0)
-          balance%face_slope(j, i) = flow + 3*fall/gap%at_faces(i)
-          flow = flow*gap%at_faces(i) + fall
+          balance%face_slope(j, i) = flow + 3*fall/face
+          flow = flow*face + fall
           out(j, i) = out(j, i) + flow
           out(j, e) = out(j, e) - flow
         end do
       end do
       do i = 1, cells%around
+        face = gap%at_cells(i)   ! at the end of the cell
+        before = face            ! at its beginning
         along_axis = gap%at_cells(i)**3/cells%width**2
         drained = 0   ! through the face before cell j
+        if (cells%is_whole .and. kind(1, i) /= supplied) then
+          before = face + cells%end_beyond(0, i)
+          drained = 2*before**3/cells%width**2*(conditions%ends - q(1, i))
+          balance%side = balance%side - drained
+        end if
         do j = 1, m
           flow = 0
+          if (cells%varies_along) then
+            before = gap%at_cells(i) + cells%end_beyond(j - 1, i)
+            face = gap%at_cells(i) + cells%end_beyond(j, i)
+            along_axis = face**3/cells%width**2
+          end if
           if (j < m) flow = conductance(kind(j, i), kind(j + 1, i), along_axis)*(q(j, i) - q(j + 1, i))
           if (j == 1 .and. cells%is_land) then
-            drained = 2*along_axis*(conditions%supply - q(1, i))
+            drained = 2*before**3/cells%width**2*(conditions%supply - q(1, i))
             balance%inlet = balance%inlet + drained
           end if
           if (j == m .and. kind(m, i) /= supplied) then
@@ -135,6 +152,7 @@ contains
           end if
           out(j, i) = out(j, i) + flow - drained
           balance%cell_slope(j, i) = 3*(flow - drained)/gap%at_cells(i)
+          if (cells%varies_along) balance%cell_slope(j, i) = 3*(flow/face - drained/before)
           drained = flow
         end do
       end do
@@ -151,7 +169,7 @@ contains
     type(film_gap_t), intent(in) :: gap
     integer, intent(in) :: band   !! 2 along
     real(dp), intent(inout) :: matrix(-band:band, cells%along*cells%around)
-    real(dp) :: along_axis, cubed, drag
+    real(dp) :: along_axis, cubed, drag, first
     integer :: i, j, k, e, m, other
 
     m = cells%along
@@ -161,7 +179,14 @@ contains
       drag = 0.5_dp*conditions%speed*gap%at_faces(i)/cells%turn
       cubed = gap%at_faces(i)**3/cells%turn**2
       along_axis = gap%at_cells(i)**3/cells%width**2
+      first = along_axis   ! at the beginning of the first cell
+      if (cells%varies_along) first = (gap%at_cells(i) + cells%end_beyond(0, i))**3/cells%width**2
       do j = 1, m
+        if (cells%varies_along) then
+          drag = 0.5_dp*conditions%speed*(gap%at_faces(i) + cells%face_beyond(j, i))/cells%turn
+          cubed = (gap%at_faces(i) + cells%face_beyond(j, i))**3/cells%turn**2
+          along_axis = (gap%at_cells(i) + cells%end_beyond(j, i))**3/cells%width**2
+        end if
         k = (cells%place(i) - 1)*m + j
         other = (cells%place(e) - 1)*m + j
         call connect(band, matrix, kind(j, i), kind(j, e), k, other, conductance(kind(j, i), kind(j, e), cubed))
@@ -172,9 +197,10 @@ contains
         select case (kind(j, i))
         case (filled)
           if (j == m) matrix(0, k) = matrix(0, k) + 2*along_axis
-          if (j == 1 .and. cells%is_land) matrix(0, k) = matrix(0, k) + 2*along_axis
+          if (j == 1 .and. (cells%is_land .or. cells%is_whole)) matrix(0, k) = matrix(0, k) + 2*first
         case (ruptured)
-          matrix(0, k) = matrix(0, k) + merge(conditions%rate*gap%at_cells(i), lack_rate(conditions), conditions%has_memory)
+          matrix(0, k) = matrix(0, k) + merge(conditions%rate*(gap%at_cells(i) + cells%beyond(j, i)), &
+            lack_rate(conditions), conditions%has_memory)
         case default
           matrix(0, k) = 1
         end select
@@ -255,10 +281,11 @@ contains
     do i = 1, cells%around
       associate (p => cells%place(i))
         if (conditions%has_memory) then
-          excess(:, p) = conditions%rate*(conditions%content(:, i) - state%fraction(:, i)*gap%at_cells(i)) - balance%outflow(:, i)
+          excess(:, p) = conditions%rate*(conditions%content(:, i) - state%fraction(:, i)*(gap%at_cells(i) + cells%beyond(:, i))) &
+            - balance%outflow(:, i)
         else
-          excess(:, p) = conditions%rate*(conditions%content(:, i) - gap%at_cells(i)) - balance%outflow(:, i) &
-            + lack_rate(conditions)*(1 - state%fraction(:, i))
+          excess(:, p) = conditions%rate*(conditions%content(:, i) - (gap%at_cells(i) + cells%beyond(:, i))) &
+            - balance%outflow(:, i) + lack_rate(conditions)*(1 - state%fraction(:, i))
         end if
         where (state%kind(:, i) == supplied) excess(:, p) = 0
       end associate

@@ -8,6 +8,7 @@ module film_history
   use constants, only: pi
   use error_handling, only: error_t, fail, status_integration
   use bearing_size, only: bearing_t
+  use bore_shape, only: bore_shape_t
   use film_cells, only: film_cells_t, supply_t, new_film_cells, supply_none, filled, supplied
   use film_balance, only: film_conditions_t, film_state_t, new_state, find_gap
   use film_step, only: step_solver_t, new_step_solver, step_solved, step_closed, step_unbounded
@@ -41,6 +42,7 @@ module film_history
     type(supply_t) :: supply
     real(dp) :: supply_pressure = 0         !! above ambient [Pa]
     type(elastic_bore_t) :: bore            !! without shapes: rigid
+    type(bore_shape_t) :: shape             !! of the bore, and how the pin lies in it
     integer :: around = 96, along = 8       !! cells round the bearing and along half of it
     integer :: substeps = 1                 !! steps between two rows of the duty
     integer :: most_cycles = 10
@@ -112,16 +114,17 @@ contains
     self%rows = [film_row_t ::]
     self%fields = [film_field_t ::]
     self%summary = film_summary_t()
-    call new_film_cells(self%bearing, self%supply, self%around, self%along, cells, error)
+    call new_film_cells(self%bearing, self%supply, self%around, self%along, cells, error, self%shape)
     if (allocated(error)) return
     call new_step_solver(cells, self%bore, self%viscosity, self%pressure_viscosity, allocated(duty%load), self%solver)
+    self%solver%tilt = self%shape%tilt
     self%state = new_state(cells, self%bore%shapes() + 2)
     eccentricity = duty%eccentricity(:, 1)/cells%clearance
     if (norm2(eccentricity) >= 1) eccentricity = eccentricity*most_eccentric/norm2(eccentricity)
     self%state%amplitude(self%bore%shapes() + 1:) = -eccentricity
     call find_gap(cells, self%solver%shapes, self%state%amplitude, self%solver%gap)
     self%conditions%has_memory = self%has_memory
-    self%conditions%content = spread(self%solver%gap%at_cells, 1, cells%along)
+    self%conditions%content = spread(self%solver%gap%at_cells, 1, cells%along) + cells%beyond
     self%load_before = 0
     self%last_rate = 0
     self%is_steady = size(duty%time) == 1
@@ -145,7 +148,8 @@ contains
     self%state%amplitude(self%solver%bore_shapes + 1:) = -duty%eccentricity(:, 1)/self%solver%cells%clearance
     call find_gap(self%solver%cells, self%solver%shapes, self%state%amplitude, self%solver%gap)
     do i = 1, self%around
-      self%conditions%content(:, i) = self%state%fraction(:, i)*max(self%solver%gap%at_cells(i), 0.0_dp)
+      self%conditions%content(:, i) = self%state%fraction(:, i)* &
+        max(self%solver%gap%at_cells(i) + self%solver%cells%beyond(:, i), 0.0_dp)
     end do
   end subroutine begin_cycle
 
@@ -310,7 +314,7 @@ contains
     if (.not. self%has_memory) self%state%fraction = 1
     call find_row(self%solver, self%conditions, self%state, self%time, row)
     do i = 1, self%around
-      self%conditions%content(:, i) = self%state%fraction(:, i)*self%solver%gap%at_cells(i)
+      self%conditions%content(:, i) = self%state%fraction(:, i)*(self%solver%gap%at_cells(i) + self%solver%cells%beyond(:, i))
     end do
   end subroutine make_step
 

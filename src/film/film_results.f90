@@ -16,6 +16,7 @@ module film_results
     real(dp) :: eccentricity(2) = 0       !! of the pin's centre from the middle of the bore [m]
     real(dp) :: force(2) = 0              !! of the film on the pin [N]
     real(dp) :: moment = 0                !! of the film on the pin about its centre, x towards y [N m]
+    real(dp) :: tilting_moment(2) = 0     !! of the film on the pin about x and y, of a tilted one [N m]
     real(dp) :: min_thickness = 0         !! [m]
     real(dp) :: max_pressure = 0          !! above the cavitation pressure [Pa]
     real(dp) :: fill = 0                  !! volume of the oil over that of the gap [-]
@@ -32,7 +33,7 @@ module film_results
     real(dp) :: time = 0                  !! [s]
     real(dp), allocatable :: angle(:)     !! from x towards y (around) [rad]
     real(dp), allocatable :: axial(:)     !! distance from the middle of the bearing (along) [m]
-    real(dp), allocatable :: thickness(:)      !! (around) [m]
+    real(dp), allocatable :: thickness(:, :)   !! (along, around) [m]
     real(dp), allocatable :: pressure(:, :)    !! (along, around), above the cavitation pressure [Pa]
     real(dp), allocatable :: fraction(:, :)    !! film fraction (along, around) [-]
     logical, allocatable :: is_supplied(:, :)  !! cells in a groove or hole
@@ -48,6 +49,7 @@ module film_results
     real(dp) :: least_fill = 0              !! [-]
     real(dp) :: mass_residual = 0           !! largest growth of the oil less supply and side flow, over the largest flow [-]
     real(dp) :: cells_per_gap = 0           !! smallest
+    real(dp) :: max_tilting_moment = 0      !! [N m]
     integer :: rounds = 0, factorisations = 0   !! of all steps
     real(dp) :: duration = 0                !! of the steps [s]
     real(dp), private :: largest_flow = 0
@@ -66,7 +68,7 @@ contains
     type(film_state_t), intent(in) :: state
     real(dp), intent(in) :: time   !! [s]
     type(film_row_t), intent(out) :: row
-    real(dp) :: pressure(solver%cells%along, solver%cells%around), harmonics(size(state%amplitude)), area
+    real(dp) :: pressure(solver%cells%along, solver%cells%around), harmonics(size(state%amplitude)), area, lever(2)
     integer :: k
 
     k = solver%bore_shapes
@@ -78,16 +80,24 @@ contains
       area = volume/c*cells%around*cells%along   ! 2 pi R L
       row%eccentricity = -state%amplitude(k + 1:)*c
       row%force = -0.5_dp*area*unit*harmonics(k + 1:)
-      row%min_thickness = minval(h)*c
+      row%min_thickness = minval(h + cells%least_beyond)*c
       row%max_pressure = maxval(pressure)*unit
-      row%cells_per_gap = sqrt(minval(h)/maxval(h))/cells%turn
+      row%cells_per_gap = sqrt(minval(h + cells%least_beyond)/maxval(h))/cells%turn
       row%fill = dot_product(sum(state%fraction, 1), h)/(sum(h)*cells%along)
+      if (cells%varies_along) row%fill = (dot_product(sum(state%fraction, 1), h) + sum(state%fraction*cells%beyond))/ &
+        (sum(h)*cells%along + sum(cells%beyond))
       row%side_flow = solver%balance%side*volume
       row%supply_flow = (solver%balance%inlet + sum(solver%balance%outflow, state%kind == supplied))*volume
       row%turnover = sum(h)*cells%along*volume*(conditions%rate + abs(conditions%speed))
       row%content_rate = content_change(solver, conditions, state)*volume
       row%moment = -solver%viscosity*conditions%speed*cells%pin_radius**2*volume/c**2*shear_of(solver, state) &
         - 0.5_dp*(row%eccentricity(1)*row%force(2) - row%eccentricity(2)*row%force(1))
+      row%moment = row%moment + 0.5_dp*unit*volume*dot_product(sum(pressure, 1), cells%bore_slope)
+      if (cells%is_whole) then
+        lever = -volume/c*unit*matmul(transpose(solver%shapes%at_cells(:, k + 1:)), matmul(cells%axial, pressure))   ! Int z dF
+        row%moment = row%moment - 0.5_dp*(solver%tilt(1)*lever(2) - solver%tilt(2)*lever(1))
+        row%tilting_moment = [-lever(2), lever(1)]
+      end if
       if (k == 0) return
       associate (amplitude => state%amplitude(:k))
         row%bore_deflection = maxval(abs(matmul(solver%shapes%at_cells(:, :k), amplitude)))*c
@@ -104,7 +114,8 @@ contains
     integer :: i
     growth = 0
     do i = 1, solver%cells%around
-      growth = growth + sum(state%fraction(:, i)*solver%gap%at_cells(i) - conditions%content(:, i), state%kind(:, i) /= supplied)
+      growth = growth + sum(state%fraction(:, i)*(solver%gap%at_cells(i) + solver%cells%beyond(:, i)) - conditions%content(:, i), &
+        state%kind(:, i) /= supplied)
     end do
     growth = growth*conditions%rate
   end function content_change
@@ -116,8 +127,13 @@ contains
     integer :: i
     shear = 0
     do i = 1, solver%cells%around
-      shear = shear + sum(state%fraction(:, i)*solver%oil%thickening(state%pressure(:, i)), state%kind(:, i) /= supplied) &
-        /solver%gap%at_cells(i)
+      if (solver%cells%varies_along) then
+        shear = shear + sum(state%fraction(:, i)*solver%oil%thickening(state%pressure(:, i))/ &
+          (solver%gap%at_cells(i) + solver%cells%beyond(:, i)), state%kind(:, i) /= supplied)
+      else
+        shear = shear + sum(state%fraction(:, i)*solver%oil%thickening(state%pressure(:, i)), state%kind(:, i) /= supplied) &
+          /solver%gap%at_cells(i)
+      end if
     end do
   end function shear_of
 
@@ -127,15 +143,14 @@ contains
     type(film_state_t), intent(in) :: state
     real(dp), intent(in) :: time   !! [s]
     type(film_field_t), intent(out) :: field
-    integer :: j
     field%time = time
     associate (cells => solver%cells)
       field%angle = cells%angle
-      field%axial = [((j - 0.5_dp)*cells%width*cells%pin_radius, j=1, cells%along)]
+      field%axial = cells%axial
       if (cells%is_land) field%axial = field%axial + 0.5_dp*cells%supply%groove_width
     end associate
     field%pressure = solver%oil%pressure(state%pressure)*solver%pressure_unit
-    field%thickness = solver%gap%at_cells*solver%cells%clearance
+    field%thickness = (spread(solver%gap%at_cells, 1, solver%cells%along) + solver%cells%beyond)*solver%cells%clearance
     field%fraction = state%fraction
     field%is_supplied = state%kind == supplied
   end subroutine find_field
@@ -152,6 +167,7 @@ contains
     self%max_pressure = 0
     self%least_fill = 1
     self%cells_per_gap = huge(1.0_dp)
+    self%max_tilting_moment = 0
   end subroutine begin
 
   !> Add a step that has taken a time [s].
@@ -169,6 +185,7 @@ contains
     self%max_pressure = max(self%max_pressure, row%max_pressure)
     self%least_fill = min(self%least_fill, row%fill)
     self%cells_per_gap = min(self%cells_per_gap, row%cells_per_gap)
+    self%max_tilting_moment = max(self%max_tilting_moment, norm2(row%tilting_moment))
   end subroutine add
 
   !> End a cycle: means over its time, the residual over the largest flow.

@@ -50,6 +50,7 @@ module film_step
     type(film_gap_t) :: gap                       !! of the last round
     type(film_balance_t) :: balance               !! of the last round
     logical :: is_free = .false.                  !! the load of the pin is given, not its eccentricity
+    real(dp) :: tilt(2) = 0                       !! slope of the pin's axis towards x and y [rad]
     integer :: bore_shapes = 0                    !! number of shapes without those of the eccentricity
     integer, private :: unknowns = 0              !! number of amplitudes that are unknown
     integer :: rounds = 0, factorisations = 0     !! counted since the beginning
@@ -134,7 +135,7 @@ contains
     real(dp) :: change(size(state%amplitude)), rise
     integer :: i, j, changed
     change = ratio*(state%amplitude - earlier%amplitude)
-    if (.not. all(matmul(self%shapes%at_cells, change) > -most_predicted*self%gap%at_cells)) return
+    if (.not. all(matmul(self%shapes%at_cells, change) > -most_predicted*(self%gap%at_cells + self%cells%least_beyond))) return
     state%amplitude = state%amplitude + change
     do i = 1, self%cells%around
       do j = 1, self%cells%along
@@ -199,8 +200,8 @@ contains
     type(film_state_t), intent(in) :: state
     obstacle = step_solved
     if (self%oil%coefficient*maxval(state%pressure) > most_reduced) obstacle = step_unbounded
-    if (min(minval(self%gap%at_cells), minval(self%gap%at_faces)) < least_gap .or. maxval(self%gap%at_cells) > most_gap) &
-      obstacle = step_closed
+    if (min(minval(self%gap%at_cells + self%cells%least_beyond), minval(self%gap%at_faces + self%cells%least_face_beyond)) &
+      < least_gap .or. maxval(self%gap%at_cells) > most_gap) obstacle = step_closed
   end function obstacle
 
   !> Factorise the film's matrix and that of the border.
@@ -284,9 +285,9 @@ contains
     integer :: i, j
     part = 1
     if (any(abs(shape_change) > 0)) then
-      closing = -matmul(self%shapes%at_cells, shape_change)/self%gap%at_cells
+      closing = -matmul(self%shapes%at_cells, shape_change)/(self%gap%at_cells + self%cells%least_beyond)
       part = most_closing/max(most_closing, maxval(closing))
-      closing = -matmul(self%shapes%at_faces, shape_change)/self%gap%at_faces
+      closing = -matmul(self%shapes%at_faces, shape_change)/(self%gap%at_faces + self%cells%least_face_beyond)
       part = min(part, most_closing/max(most_closing, maxval(closing)))
     end if
     if (.not. self%oil%coefficient > 0) return

@@ -6,10 +6,11 @@ module history_case
   use measured_curve, only: measured_curve_t
   use film_cells, only: supply_grooves, supply_holes, supply_circumferential
   use film_history, only: film_history_t
+  use constants, only: degree
   use ring_compliance, only: elastic_bore_t, new_ring
   implicit none
   private
-  public :: march_case_t, supply_case_t, bore_case_t, history_case_t
+  public :: march_case_t, supply_case_t, bore_case_t, shape_case_t, history_case_t
 
   integer, parameter, public :: most_positions = 8   !! largest number of grooves or holes
 
@@ -39,10 +40,18 @@ module history_case
     procedure :: parameters => bore_parameters
   end type bore_case_t
 
+  type, extends(has_parameters_t) :: shape_case_t
+    type(measured_curve_t) :: table            !! deviation [m] over the angle [degrees]
+    real(dp) :: direction_deg = 0, factor = 1, barrel = 0, tilt(2) = 0
+  contains
+    procedure :: parameters => shape_parameters
+  end type shape_case_t
+
   type :: history_case_t
     type(march_case_t), allocatable :: march   !! not allocated: no film is marched
     type(supply_case_t), allocatable :: supply !! not allocated: the film has no supply
     type(bore_case_t), allocatable :: bore     !! not allocated: the bore is rigid
+    type(shape_case_t), allocatable :: shape   !! not allocated: the bore is round and the pin in line
   contains
     procedure :: make
   end type history_case_t
@@ -70,6 +79,14 @@ contains
       history%bore = self%bore%compliances
       if (self%bore%outer_radius > 0) history%bore = new_ring(bearing%radius, self%bore%outer_radius, self%bore%youngs_modulus, &
         self%bore%poissons_ratio, self%bore%modes)
+    end if
+    if (allocated(self%shape)) then
+      history%shape%barrel = self%shape%barrel
+      history%shape%tilt = self%shape%tilt
+      if (allocated(self%shape%table%x)) then
+        history%shape%angle = (self%shape%table%x + self%shape%direction_deg)*degree
+        history%shape%deviation = self%shape%factor*self%shape%table%y
+      end if
     end if
     if (.not. allocated(self%supply)) return
     history%supply_pressure = self%supply%pressure
@@ -130,6 +147,21 @@ contains
     call list%word('fixed_to', self%fixed_to, 'bearing, pin', 'bearing', &
       'grooves and holes are in the bearing or turn with the pin')
   end subroutine supply_parameters
+
+  subroutine shape_parameters(self, list)
+    class(shape_case_t), intent(inout) :: self
+    class(parameter_list_t), intent(inout) :: list
+    call self%table%parameters(list, 'table', 'CSV file with columns angle[deg],deviation[m] of the bore: radial, > 0 '// &
+      'outwards; angles from x towards y of the bearing; linear between the rows. Or a NAME.wear.csv: its bore_depth of this '// &
+      'joint', default='')
+    call list%add('direction_deg', self%direction_deg, 'turns the table', 'degrees', '>= -360 and <= 360', default='0.0', &
+      usual='0 to 360')
+    call list%add('factor', self%factor, 'multiplies the deviations', default='1.0', usual='0.1 to 10')
+    call list%add('barrel', self%barrel, 'growth of the gap from the middle to both ends, with the square of the distance', 'm', &
+      '>= 0', default='0.0', example='1.0e-6', usual='1e-7 to 1e-4')
+    call list%add('tilt', self%tilt, 'slope of the axis of the pin along that of the bearing, towards x and y', 'rad', &
+      default='0.0', usual='1e-6 to 1e-3')
+  end subroutine shape_parameters
 
   subroutine bore_parameters(self, list)
     class(bore_case_t), intent(inout) :: self

@@ -3,7 +3,7 @@
 module bearing_definition
   use kinds, only: dp
   use model_parameters, only: has_parameters_t, parameter_list_t
-  use history_case, only: history_case_t, march_case_t, supply_case_t, bore_case_t
+  use history_case, only: history_case_t, march_case_t, supply_case_t, bore_case_t, shape_case_t
   use case_schema, only: schema_t, key_table_t
   implicit none
   private
@@ -56,6 +56,7 @@ contains
     type(oil_t) :: oil
     type(supply_case_t) :: supply
     type(bore_case_t) :: bore
+    type(shape_case_t) :: shape
     type(march_case_t) :: march
     type(digits_t) :: output
     call schema%begin()
@@ -69,6 +70,8 @@ contains
     call supply%parameters(schema)
     call schema%group('bore', 'Elastic ring round the bearing. Without this group the bore is rigid', .true.)
     call bore%parameters(schema)
+    call schema%group('shape', 'Shape of the bore, barrel, tilt of the pin. Without this group it is round and in line', .true.)
+    call shape%parameters(schema)
     call schema%group('film_history', 'March of the film with memory over a cycle', .false.)
     call march%parameters(schema)
     call schema%group('output', 'Numbers of the results', .false.)

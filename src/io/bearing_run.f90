@@ -15,7 +15,7 @@ module bearing_run
   use duty_file, only: read_duty
   use film_files, only: progress_watch_t
   use history_files, only: write_history, add_history
-  use history_rules, only: check_history, read_positions
+  use history_rules, only: check_history, check_shape, read_positions
   use posix_files, only: absolute_path
   use number_text, only: short_text
   use result_file, only: write_text
@@ -62,7 +62,7 @@ contains
     if (.not. values%problems%is_structural) then
       call values%problems%settle()
       call load(values, case)
-      call provide_history(values, path, case%history, 'supply', 'bore')
+      call provide_history(values, path, case%history, 'supply', 'bore', 'shape', 'piston_pin')
       call check_case(values, case)
     end if
     call values%problems%report(error)
@@ -85,7 +85,8 @@ contains
       clearance=case%joint%clearance), case%oil%viscosity, case%oil%pressure_viscosity, case%oil%ambient_over_cavitation, &
       case%oil%cavitation == 'mass_conserving', self%history)
     if (allocated(case%output%snapshot_times)) self%history%field_times = case%output%snapshot_times
-    call new_film_cells(self%history%bearing, self%history%supply, self%history%around, self%history%along, cells, error)
+    call new_film_cells(self%history%bearing, self%history%supply, self%history%around, self%history%along, cells, error, &
+      self%history%shape)
     if (allocated(error)) error%message = values%file//': &supply: '//error%message
     place = values%place_of('film_history', 'table')
     values%values(place)%text = absolute_path(table)
@@ -110,6 +111,10 @@ contains
         allocate (history%bore)
         call load_model(values, 'bore', history%bore)
       end if
+      if (values%is_present(find_group(values%groups, 'shape'))) then
+        allocate (history%shape)
+        call load_model(values, 'shape', history%shape)
+      end if
       call read_positions(history)
     end associate
     call read_times(case%output%film_times, case%output%snapshot_times)
@@ -126,6 +131,8 @@ contains
       'must be times >= 0 in rising order with commas, or from:to:count')
     call check_history(values, case%history, case%joint%bearing_radius, case%joint%bearing_length, case%oil%pressure_viscosity, &
       case%oil%ambient_over_cavitation, 'supply', 'bore')
+    if (allocated(case%history%shape)) call check_shape(values, case%history, case%joint%clearance, case%joint%bearing_radius, &
+      case%joint%bearing_length, 'shape')
     if (.not. allocated(case%history%supply)) return
     call values%forbid(case%history%supply%feed%is_wanted(), 'supply', 'pressure_table', &
       'is for a run of a mechanism: here it is the column supply_pressure[Pa] of the table')

@@ -7,15 +7,16 @@ module case_curves
   use measured_curve, only: measured_curve_t
   use measured_pressure, only: measured_pressure_periods
   use number_text, only: short_text
-  use text_tools, only: printable, integer_text, path_beside
+  use text_tools, only: printable, integer_text, path_beside, next_line
   use text_file, only: read_text_file
   use case_definition, only: case_t
   use compliance_file, only: parse_compliances
   use history_case, only: history_case_t, bore_case_t
-  use joint_places, only: n_places
+  use joint_places, only: places, n_places
   use case_schema, only: shown_group
   use case_values, only: case_values_t
-  use curve_file, only: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque, load, height, relief
+  use curve_file, only: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque, load, height, relief, &
+    place_angle, deviation
   implicit none
   private
   public :: provide_curves, provide_history, period_fault
@@ -39,7 +40,7 @@ contains
       into%drive%table)
     do i = 1, n_places
       call provide_history(values, into%file, into%joints(i)%history, values%law_group('supply', i), &
-        values%law_group('bore', i))
+        values%law_group('bore', i), values%law_group('shape', i), trim(places(i)%name))
     end do
     if (allocated(into%load)) then
       if (mod(into%load%period_deg, 360) == 0) call provide(values, into%file, 'bearing_load', 'table', crank_angle, load, &
@@ -57,15 +58,21 @@ contains
     end associate
   end subroutine provide_curves
 
-  !> Read the tables of a film with memory: the pressure of its supply over the crank angle, the compliances of its bore.
-  subroutine provide_history(values, case_file, history, supply_group, bore_group)
+  !> Read the tables of a film with memory: the pressure of its supply over the crank angle, the compliances and the shape of its
+  !> bore, which may be that of a file of wear.
+  subroutine provide_history(values, case_file, history, supply_group, bore_group, shape_group, joint)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: case_file
     type(history_case_t), intent(inout) :: history
-    character(len=*), intent(in) :: supply_group, bore_group
+    character(len=*), intent(in) :: supply_group, bore_group, shape_group
+    character(len=*), intent(in) :: joint   !! name of the bearing in a file of wear
     if (allocated(history%supply)) then
       if (history%supply%feed%is_wanted()) call provide(values, case_file, supply_group, 'pressure_table', crank_angle, pressure, &
         history%supply%feed)
+    end if
+    if (allocated(history%shape)) then
+      if (history%shape%table%is_wanted()) call provide(values, case_file, shape_group, 'table', place_angle, deviation, &
+        history%shape%table, joint=joint)
     end if
     if (.not. allocated(history%bore)) return
     if (history%bore%table%is_wanted()) call provide_compliances(values, case_file, bore_group, history%bore)
@@ -91,14 +98,15 @@ contains
     call finish_table(values, group, key, bore%table)
   end subroutine provide_compliances
 
-  !> Read one curve. A curve with a period is a pressure or a load; a load may have two components.
-  subroutine provide(values, case_file, group, key, x_is, y_is, curve, period, offset)
+  !> Read one curve. A curve with a period is a pressure or a load; a load may have two components; deviations may be worn depths.
+  subroutine provide(values, case_file, group, key, x_is, y_is, curve, period, offset, joint)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: case_file, group, key
     type(quantity_t), intent(in) :: x_is, y_is
     type(measured_curve_t), intent(inout) :: curve
     integer, intent(in), optional :: period   !! [degrees]
     real(dp), intent(in), optional :: offset   !! added to a pressure when it acts [Pa]
+    character(len=*), intent(in), optional :: joint   !! whose rows of a file of wear are read
     character(len=:), allocatable :: text, message
     type(error_t), allocatable :: error
     integer, allocatable :: lines(:)
@@ -109,10 +117,12 @@ contains
         call parse_curve(text, x_is, y_is, curve%x, curve%y, lines, message, line, curve%z)
         if (message == '') call close_load(curve, period, lines, message, line)
       else
+        if (present(joint)) call select_worn_bore(text, joint)
         call parse_curve(text, x_is, y_is, curve%x, curve%y, lines, message, line)
         if (message /= '' .and. y_is%name == pressure%name) message = message// &
           '; gudgeon.read_pressure of the Python package makes such a table of a rig''s file'
         if (message == '' .and. present(period)) call close_period(curve, period, offset, lines, message, line)
+        if (message == '' .and. y_is%name == deviation%name) call close_turn(curve, lines, message, line)
       end if
       if (message /= '') then
         call fail(error, printable(curve%path, 200)//':'//integer_text(line)//': '//message, status_case_file)
@@ -238,6 +248,52 @@ contains
       curve%z = curve%z(:n - 1)
     end if
   end subroutine close_load
+
+  !> Make of the text of a file of wear a table of the deviations of one bore, each row in its line; other texts stay.
+  pure subroutine select_worn_bore(text, joint)
+    character(len=:), allocatable, intent(inout) :: text
+    character(len=*), intent(in) :: joint   !! a main bearing or big end may have its number behind it
+    character(len=*), parameter :: newline = achar(10)
+    character(len=:), allocatable :: line, table
+    integer :: at, comma(4), i
+    if (index(text, 'joint,angle[deg],pin_depth[m],bore_depth[m],') /= 1) return
+    table = 'angle[deg],deviation[m]'//newline
+    at = index(text, newline) + 1
+    do while (at <= len(text))
+      call next_line(text, at, line)
+      comma = 0
+      do i = 1, size(comma)
+        comma(i) = comma(max(1, i - 1)) + index(line(comma(max(1, i - 1)) + 1:), ',')
+      end do
+      if (index(line, joint//',') == 1 .or. index(line, joint//'_') == 1) &
+        table = table//line(comma(1) + 1:comma(2))//line(comma(3) + 1:comma(4) - 1)
+      table = table//newline
+    end do
+    text = table
+  end subroutine select_worn_bore
+
+  !> Check the deviations of a bore over one turn and remove a last row that repeats the first one. If they are wrong, `message`
+  !> says what is wrong and `line` where.
+  subroutine close_turn(curve, lines, message, line)
+    type(measured_curve_t), intent(inout) :: curve
+    integer, intent(in) :: lines(:)
+    character(len=:), allocatable, intent(out) :: message
+    integer, intent(out) :: line
+    integer, parameter :: turn = 360   ! [degrees]
+    integer :: n
+    n = size(curve%x)
+    message = ''
+    line = lines(n)
+    if (curve%x(n) - curve%x(1) > turn + same_angle(turn)) then
+      message = 'the table spans '//short_text(curve%x(n) - curve%x(1))//' degrees, more than one turn'
+    else if (curve%x(n) - curve%x(1) > turn - same_angle(turn)) then
+      if (abs(curve%y(n) - curve%y(1)) > 0) message = 'the deviation must be that of the first row, a turn before'
+      n = n - 1
+    end if
+    if (message == '' .and. n < 3) message = 'needs a header and at least three rows within one turn'
+    curve%x = curve%x(:n)
+    curve%y = curve%y(:n)
+  end subroutine close_turn
 
   !> Find a fault in a pressure curve over one period, and the point at which it occurs. The message is empty if there is none.
   pure subroutine period_fault(angle, pressure, period, message, at)

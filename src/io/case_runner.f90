@@ -11,6 +11,7 @@ module case_runner
   use case_values, only: case_values_t
   use command_line, only: command_line_t
   use film_files, only: provide_tables, tell_tables
+  use joint_places, only: n_places
   use trace_columns, only: column_list_t, choose_columns
   use run_summary, only: build_advice
   use report_files, only: result_suffixes
@@ -166,13 +167,17 @@ contains
     character(len=*), intent(in) :: base
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: written
-    integer :: i
+    integer :: i, k
     do i = 1, size(result_suffixes)
       written = absolute_path(base//trim(result_suffixes(i)))
       call refuse_table('&drive torque_table', case%drive%table)
       if (.not. allocated(error) .and. allocated(case%measured)) call refuse_table('&cylinder_pressure table', case%measured%curve)
       if (.not. allocated(error) .and. allocated(case%guide)) call refuse_table('&guide profile_table', case%guide%profile)
       if (.not. allocated(error) .and. allocated(case%load)) call refuse_table('&bearing_load table', case%load%curve)
+      do k = 1, n_places
+        if (.not. allocated(error) .and. allocated(case%joints(k)%history%shape)) &
+          call refuse_table('&shape table', case%joints(k)%history%shape%table)
+      end do
       if (allocated(error)) return
     end do
     if (all(absolute_path(case%file) /= [character(len=4096) :: absolute_path(base//'.resolved.nml'), &

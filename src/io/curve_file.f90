@@ -7,7 +7,8 @@ module curve_file
   use value_reader, only: read_real
   implicit none
   private
-  public :: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque, load, height, relief
+  public :: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque, load, height, relief, &
+    place_angle, deviation
 
   integer, parameter :: most_rows = 1000000
 
@@ -22,7 +23,8 @@ module curve_file
   type(quantity_t), parameter :: crank_angle = quantity_t('crank angle', 'degrees', 'deg', .false.), &
     pressure = quantity_t('pressure', 'Pa', 'Pa'), turning_speed = quantity_t('speed', 'rad/s', 'rad/s', .false.), &
     torque = quantity_t('torque', 'N m', 'N.m'), load = quantity_t('load', 'N', 'N'), &
-    height = quantity_t('height', 'm', 'm', .false.), relief = quantity_t('relief', 'm', 'm')
+    height = quantity_t('height', 'm', 'm', .false.), relief = quantity_t('relief', 'm', 'm'), &
+    place_angle = quantity_t('angle', 'degrees', 'deg', .false.), deviation = quantity_t('deviation', 'm', 'm')
 
 contains
 

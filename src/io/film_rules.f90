@@ -4,7 +4,7 @@ module film_rules
   use joint_case, only: joint_case_t
   use oil_viscosity, only: oil_t
   use case_values, only: case_values_t
-  use history_rules, only: check_history
+  use history_rules, only: check_history, check_shape
   use number_text, only: short_text
   implicit none
   private
@@ -72,12 +72,13 @@ contains
     character(len=*), intent(in) :: group   !! of the joint
     integer, intent(in) :: place            !! index in `places`
     type(case_values_t), intent(inout) :: values
-    character(len=:), allocatable :: own, oil, supply, bore, cavitation
+    character(len=:), allocatable :: own, oil, supply, bore, shape, cavitation
     integer :: key
     own = values%law_group('film_history', place)
     oil = values%law_group('lubrication', place)
     supply = values%law_group('supply', place)
     bore = values%law_group('bore', place)
+    shape = values%law_group('shape', place)
     cavitation = ''
     key = values%place_of(oil, 'cavitation')
     if (allocated(joint%film)) then
@@ -87,6 +88,7 @@ contains
       if (.not. allocated(history%march)) then
         call values%forbid(allocated(history%supply), supply, 'kind', 'needs the group film_history, whose film it feeds')
         call values%forbid(allocated(history%bore), bore, 'outer_radius', 'needs the group film_history, whose film deforms it')
+        call values%forbid(allocated(history%shape), shape, 'table', 'needs the group film_history, whose film has this shape')
         call values%forbid(joint%ambient_over_cavitation > 0, oil, 'ambient_over_cavitation', 'needs the group film_history')
         call values%forbid(cavitation == 'mass_conserving', oil, 'cavitation', &
           'needs the group film_history, whose film conserves its oil')
@@ -102,6 +104,8 @@ contains
       if (values%problems%concerns(group)) return
       call check_history(values, history, joint%bearing_radius, joint%bearing_length, joint%elastic%pressure_viscosity, &
         joint%ambient_over_cavitation, supply, bore)
+      if (allocated(history%shape)) call check_shape(values, history, joint%clearance, joint%bearing_radius, &
+        joint%bearing_length, shape)
       if (.not. allocated(history%supply)) return
       associate (feed => history%supply%feed)
         if (.not. (feed%is_wanted() .and. allocated(feed%x))) return

@@ -113,6 +113,7 @@ contains
     call file%append('time[s],eccentricity_x[m],eccentricity_y[m],film_force_x[N],film_force_y[N],min_film_thickness[m],'// &
       'max_film_pressure[Pa],film_fill[-],supply_flow[m3/s],side_flow[m3/s],film_moment[N.m]')
     if (has_bore) call file%append(',bore_deflection[m]')
+    if (history%shape%is_tilted()) call file%append(',film_tilting_moment_x[N.m],film_tilting_moment_y[N.m]')
     if (present(of)) call file%append(',crank_angle[rad],quick_film_thickness[m],quick_film_pressure[Pa]')
     call file%append(newline)
     do i = 1, size(history%rows)
@@ -120,6 +121,7 @@ contains
         numbers = [row%time, row%eccentricity, row%force, row%min_thickness, row%max_pressure, row%fill, row%supply_flow, &
           row%side_flow, row%moment]
         if (has_bore) numbers = [numbers, row%bore_deflection]
+        if (history%shape%is_tilted()) numbers = [numbers, row%tilting_moment]
       end associate
       if (present(of)) numbers = [numbers, of%angle(i), of%quick_thickness(i), of%quick_pressure(i)]
       call append_numbers(file, numbers, digits)
@@ -127,7 +129,7 @@ contains
     call write_text(base//'.film_history.csv', file%text(:file%used), error)
   end subroutine write_rows
 
-  !> Append one row for each cell on half of the bearing; that on the other half is the same.
+  !> Append one row for each cell on half of the bearing; that on the other half is the same, unless the pin is tilted.
   subroutine append_field(file, field, head, digits)
     type(growing_text_t), intent(inout) :: file
     type(film_field_t), intent(in) :: field
@@ -138,7 +140,7 @@ contains
       do k = 1, size(field%axial)
         call file%append(head//',')
         call append_numbers(file, &
-          [field%angle(j), field%thickness(j), field%axial(k), field%pressure(k, j), field%fraction(k, j)], digits)
+          [field%angle(j), field%thickness(k, j), field%axial(k), field%pressure(k, j), field%fraction(k, j)], digits)
       end do
     end do
   end subroutine append_field
@@ -197,6 +199,8 @@ contains
       call table%add('film_history_mean_power_loss', mean_loss(history, duty), prefix)
       call table%add('film_history_mass_residual', found%mass_residual, prefix)
       call table%add('film_history_cells_per_gap', found%cells_per_gap, prefix)
+      if (history%shape%is_tilted()) call table%add('film_history_max_tilting_moment', found%max_tilting_moment, prefix)
+      if (history%shape%is_there()) call table%add('film_history_shape_depth', history%shape%depth(), prefix)
     end associate
   end subroutine add_history
 

@@ -7,7 +7,7 @@ module history_rules
   use value_reader, only: read_numbers
   implicit none
   private
-  public :: check_history, read_positions
+  public :: check_history, check_shape, read_positions
 
 contains
 
@@ -50,6 +50,27 @@ contains
       call values%forbid(size(supply%positions) == 0, supply_group, 'position_deg', 'must be 1 to 8 angles')
     end associate
   end subroutine check_history
+
+  !> Note the errors of the shape of a bore and of the tilt of its pin.
+  subroutine check_shape(values, history, clearance, bearing_radius, bearing_length, group)
+    type(case_values_t), intent(inout) :: values
+    type(history_case_t), intent(in) :: history
+    real(dp), intent(in) :: clearance, bearing_radius, bearing_length   !! [m]
+    character(len=*), intent(in) :: group
+    real(dp), parameter :: deepest = 0.1_dp   !! over the radius
+    associate (shape => history%shape)
+      call values%forbid(norm2(shape%tilt)*bearing_length/2 >= clearance, group, 'tilt', &
+        'must be < 2 clearance/bearing_length = '//short_text(2*clearance/bearing_length)//': the pin would touch at its ends')
+      if (allocated(history%supply)) call values%forbid(any(abs(shape%tilt) > 0) .and. &
+        history%supply%kind == 'circumferential_groove', group, 'tilt', &
+        'cannot be combined with a circumferential_groove: the film beside it is one of two equal lands')
+      if (.not. allocated(shape%table%x)) return
+      call values%forbid(any(abs(shape%factor*shape%table%y) > deepest*bearing_radius), group, 'table', &
+        'must have deviations of at most 0.1 bearing_radius = '//short_text(deepest*bearing_radius)//' m, times factor')
+      call values%forbid(clearance + minval(shape%factor*shape%table%y) <= 0, group, 'table', &
+        'must have deviations > -clearance, times factor: the bore has no gap there')
+    end associate
+  end subroutine check_shape
 
   !> Read the angles of grooves and holes; none if they are not a list of 1 to 8 numbers.
   subroutine read_positions(history)

@@ -179,7 +179,8 @@ contains
     type(error_t), allocatable, intent(out) :: error
     character(len=*), parameter :: rigid_and_dry = 'joint.kind=ideal contact=none friction=none lubrication=none guide=none '// &
       'heat=none wear=none elastic_rod=none crankshaft=none combustion=none working_gas=none wall_heat=none '// &
-      'film_history=none supply=none bore=none output.columns=standard output.ideal_twin=F output.film_times='
+      'film_history=none supply=none bore=none shape=none output.columns=standard output.ideal_twin=F '// &
+      'output.film_times='
     character(len=:), allocatable :: changes
     character(len=60), allocatable :: overrides(:)
     type(case_t) :: case

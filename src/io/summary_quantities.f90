@@ -124,6 +124,9 @@ module summary_quantities
     quantity_t('film_history_mass_residual', '1', 'largest error of the balance of its oil, over the largest flow'), &
     quantity_t('film_history_cells_per_gap', '1', &
       'cells over the length in which the thinnest gap doubles; fewer than 4: too coarse'), &
+    quantity_t('film_history_max_tilting_moment', 'N.m', 'largest moment of the film on a tilted pin, about an axis across it'), &
+    quantity_t('film_history_shape_depth', 'm', &
+      'largest less smallest deviation of the bore (`&shape`); the film of the run is that of a round bore in line'), &
     quantity_t('film_history_min_film_thickness_angle', 'deg', 'crank angle of the thinnest film'), &
     quantity_t('film_history_quick_min_film_thickness', 'm', 'thinnest film of the run in the rows of that cycle'), &
     quantity_t('film_history_quick_max_film_pressure', 'Pa', 'largest pressure of the film of the run in these rows'), &

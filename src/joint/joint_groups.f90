@@ -4,7 +4,7 @@ submodule (joint_case) joint_groups
   use contact_laws, only: offer_contact_laws, offer_contact_geometries
   use friction_laws, only: offer_friction_laws
   use films, only: offer_film_laws
-  use history_case, only: history_case_t, march_case_t, supply_case_t, bore_case_t
+  use history_case, only: history_case_t, march_case_t, supply_case_t, bore_case_t, shape_case_t
   implicit none
 
 contains
@@ -95,6 +95,7 @@ contains
     type(march_case_t) :: march
     type(supply_case_t) :: supply
     type(bore_case_t) :: bore
+    type(shape_case_t) :: shape
     call list%group('film_history', 'Film with memory under the load of the run, marched over its last cycle when it has ended', &
       .true., place)
     call march%parameters(list)
@@ -108,6 +109,11 @@ contains
     call bore%parameters(list)
     if (list%sets) history%bore = bore
     if (list%is_absent()) deallocate (history%bore)
+    call list%group('shape', 'Shape of the bore of the film of film_history, barrel, tilt of the pin. Without this group it is '// &
+      'round and in line', .true., place)
+    call shape%parameters(list)
+    if (list%sets) history%shape = shape
+    if (list%is_absent()) deallocate (history%shape)
   end subroutine visit_history
 
   !> Select the film law that a case names, if it names one.

@@ -290,7 +290,7 @@ def _prepared(case: Case) -> Case:
     if case["drive.ramp_time"] > 0:
         raise OrbitError("no orbit: drive.ramp_time prescribes the speed over time")
     case = case.copy()
-    for group in [group for group in groups() if group.endswith(("film_history", "supply", "bore")) and group in case]:
+    for group in [group for group in groups() if group.endswith(("film_history", "supply", "bore", "shape")) and group in case]:
         case.remove(group)
     for group in [group for group in groups() if group.endswith("lubrication") and group in case]:
         if case[f"{group}.cavitation"] == "mass_conserving":  # of that film; during a run it is as reynolds

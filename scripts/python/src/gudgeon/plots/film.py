@@ -1,10 +1,14 @@
 """Pictures of films: the pressure in the bearing at chosen times, and the six simulations with each film."""
 
+from pathlib import Path
+from typing import Any
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from gudgeon.plots.style import BLACK, BLUE, GREEN, VERMILION, WIDTH
-from gudgeon.results import Results, Run
+from gudgeon.results import Results, Run, read_table
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import StrMethodFormatter
 
@@ -73,7 +77,14 @@ def with_memory(run: Run, table: pd.DataFrame, name: str) -> Drawing:
     angle = np.degrees(table["crank_angle"].to_numpy())
     order = np.argsort(angle % 720)
     x = (angle % 720)[order]
-    drawing, axes = plt.subplots(4, 1, figsize=(WIDTH, 6.6), sharex=True)
+    gap = gap_of(run)
+    drawing, axes = plt.subplots(4 + bool(gap), 1, figsize=(WIDTH, 6.6 + 1.2 * bool(gap)))
+    if gap:
+        draw_gap(axes[0], gap)
+        axes = axes[1:]
+    for axis in axes[:3]:
+        axis.sharex(axes[3])
+        axis.tick_params(labelbottom=False)
     series = (
         (0, "min_film_thickness", 1e6, "film with memory", BLUE), (0, "quick_film_thickness", 1e6, "film of the run", GREEN),
         (1, "max_film_pressure", 1e-6, "film with memory", BLUE), (1, "quick_film_pressure", 1e-6, "film of the run", GREEN),
@@ -95,6 +106,47 @@ def with_memory(run: Run, table: pd.DataFrame, name: str) -> Drawing:
     kind = run.parameter("supply", "kind")
     drawing.suptitle(f"{name}: the film that must be fed" if kind else f"{name}: a film without supply")
     return drawing
+
+
+def gap_of(run: Run) -> list[np.ndarray]:
+    """Angles [deg] and the gap [m] there of a centred pin in the bearing of a film with memory, in the middle and at both ends; empty
+    if its bore is round, or its table is not there or in units that are not known here."""
+    case: dict[str, dict[str, Any]] = run.case
+    place = next((group.removesuffix("film_history") for group in case if group.endswith(".film_history")), None)
+    if place is None:   # the groups are for every bearing, and there is one
+        place = next((group.removesuffix("joint") for group, keys in case.items()
+                      if group.rpartition(".")[2] == "joint" and keys["kind"] != "ideal"), "")
+    shape = case.get(f"{place}shape", case.get("shape"))
+    if shape is None:
+        return []
+    joint = case[f"{place}joint"]
+    angle = np.linspace(0, 360, 721)
+    middle = np.full_like(angle, joint["clearance"])
+    if shape["table"]:
+        if not Path(shape["table"]).is_file():
+            return []
+        table, units = read_table(Path(shape["table"]), "angle")
+        if "joint" in table:
+            table = table[table["joint"].str.startswith(place[:-1] or "piston_pin")]
+        depth = "bore_depth" if "joint" in table else "deviation"
+        if depth not in table or (units["angle"], units[depth]) not in (("deg", "m"), ("deg", "mm"), ("deg", "um")):
+            return []
+        factor = shape["factor"] * {"m": 1.0, "mm": 1e-3, "um": 1e-6}[units[depth]]
+        middle += factor * np.interp(angle - shape["direction_deg"], table["angle"], table[depth], period=360)
+    tilt = np.outer(shape["tilt"], [1.0]) * (np.cos(np.radians(angle)), np.sin(np.radians(angle)))
+    return [angle, middle, *(middle + shape["barrel"] - 0.5 * end * joint["bearing_length"] * tilt.sum(axis=0) for end in (1, -1))]
+
+
+def draw_gap(axes: Axes, gap: list[np.ndarray]) -> None:
+    """The gap of a centred pin over the angle of the bearing, in the middle and at both ends."""
+    angle, *gaps = gap
+    for values, colour, label in zip(gaps, (BLUE, GREEN, VERMILION), ("in the middle", "at the ends", None)):
+        axes.plot(angle, 1e6 * values, color=colour, label=label, linewidth=None if colour == BLUE else 0.6)
+    axes.set_xticks(range(0, 361, 90))
+    axes.set_xlim(0, 360)
+    axes.set_xlabel("angle in the bearing [°]")
+    axes.set_ylabel("gap of a centred pin [µm]")
+    axes.legend(loc="best", ncols=2)
 
 
 def simulations(results: Results) -> Drawing:
