@@ -32,7 +32,7 @@ module reference_pages
     'combustion.duration_deg=40'
 
   !> Kinds of scenes that together have every column.
-  type(scene_kind_t), parameter :: kinds(21) = [ &
+  type(scene_kind_t), parameter :: kinds(22) = [ &
     scene_kind_t('Every scene', 'drive.kind=constant_speed'), &
     scene_kind_t('Joint with clearance (the last three columns only with `&contact`)', play//contact), &
     scene_kind_t('Contact with `geometry = ''conformal''`', play//contact//'contact.geometry=conformal'), &
