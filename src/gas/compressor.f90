@@ -44,7 +44,7 @@ contains
     call list%add('discharge_pressure', self%discharge_pressure, 'pressure while the discharge valve is open', 'Pa', '> 0', &
       example='4.0e5', usual='5e4 to 1e8')
     call list%add('polytropic_exponent', self%polytropic_exponent, 'exponent n of p V^n = const. while both valves are '// &
-      'closed; not with &valve, where it follows from the heat', range='>= 0.1 and <= 10', example='1.3', usual='1 to 1.67')
+      'closed; not with &valve, where it follows from the heat', range='>= 0 and <= 10', default='0.0', usual='1 to 1.67')
     call self%add_crankcase_pressure(list)
   end subroutine parameters
 

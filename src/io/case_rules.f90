@@ -230,8 +230,11 @@ contains
       if (key /= '') call values%refuse('combustion', key, wanted)
     end if
     if (allocated(c%combustion)) then
-      if (c%combustion%filling_pressure() > 0) call values%demand(allocated(c%valves) .or. values%is_given('combustion', &
-        'polytropic_exponent'), 'combustion', 'polytropic_exponent', 'with ideal valves')
+      if (c%combustion%filling_pressure() > 0 .and. .not. allocated(c%valves)) then
+        call values%demand(exponent_of(values) > 0, 'combustion', 'polytropic_exponent', 'with ideal valves')
+        call values%forbid(exponent_of(values) > 0 .and. exponent_of(values) < 0.1_dp, 'combustion', 'polytropic_exponent', &
+          'must be >= 0.1')
+      end if
     end if
     call check_charge(c, values)
     if (.not. allocated(c%measured)) return
@@ -276,6 +279,14 @@ contains
       'must be >= 1 with &wall_heat or leak_area: the rate of its heat would begin without a bound')
   end subroutine check_charge
 
+  !> The exponent of a compressor with ideal valves; 0 if it is not given.
+  pure real(dp) function exponent_of(values) result(exponent)
+    type(case_values_t), intent(in) :: values
+    integer :: place
+    place = values%place_of('combustion', 'polytropic_exponent')
+    exponent = values%values(place)%reals(1)
+  end function exponent_of
+
   !> Check that a compressor whose gas has a mass has valves with losses and no exponent.
   subroutine check_compressor(c, values)
     type(case_t), intent(in) :: c
@@ -285,13 +296,11 @@ contains
       call values%refuse_group('working_gas', 'needs &valve with cycle = ''compressor'': ideal valves have no flow')
       return
     end if
-    call values%forbid(values%is_given('combustion', 'polytropic_exponent'), 'combustion', 'polytropic_exponent', &
+    call values%forbid(exponent_of(values) > 0, 'combustion', 'polytropic_exponent', &
       'follows from the heat with &valve: give heat_capacity_ratio in &working_gas')
-    if (.not. values%is_given('working_gas', 'heat_capacity_ratio')) then
-      call values%refuse('working_gas', 'heat_capacity_ratio', 'required with &valve')
-    else
-      call values%forbid(.not. c%charge%heat_capacity_ratio > 1, 'working_gas', 'heat_capacity_ratio', 'must be > 1 with &valve')
-    end if
+    call values%demand(c%charge%heat_capacity_ratio > 0, 'working_gas', 'heat_capacity_ratio', 'with &valve')
+    call values%forbid(c%charge%heat_capacity_ratio > 0 .and. .not. c%charge%heat_capacity_ratio > 1, 'working_gas', &
+      'heat_capacity_ratio', 'must be > 1')
     if (allocated(c%walls)) then
       if (c%walls%needs_engine()) call values%refuse('wall_heat', 'law', 'is of engines: constant, hohenberg or reynolds')
     end if

@@ -57,6 +57,7 @@ contains
     real(dp), intent(in) :: y(*)
     type(guide_loads_t), intent(inout) :: now
     type(face_motion_t) :: at
+    real(dp) :: depth(n_corners), depth_rate(n_corners)
     associate (it => motion%tilting)
       at = face_motion_t(it%offset, it%tilt, it%offset_rate, it%tilt_rate, now%speed)
     end associate
@@ -66,7 +67,9 @@ contains
     now%force = now%force + now%skirt%force
     now%moment = now%moment + now%skirt%moment
     now%friction_force = now%friction_force + now%skirt%friction
-    call self%film%ends(at, now%corner%depth, now%corner%depth_rate)
+    call self%film%ends(at, depth, depth_rate)
+    now%corner%depth = depth
+    now%corner%depth_rate = depth_rate
     now%skirt_power = -(now%skirt%force*at%offset_rate + now%skirt%moment*at%tilt_rate + now%skirt%friction*at%velocity)
   end subroutine find_loads
 

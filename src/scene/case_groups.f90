@@ -74,9 +74,7 @@ contains
     call list%group('combustion', &
       'Gas pressure on the piston, of an engine or a compressor. Without this group there is none', .true.)
     call list%choice('cycle', 'four_stroke', 'working cycle; compressor: without combustion')
-    call list%make_optional('polytropic_exponent')
     call offer_gas_cycles(list)
-    call list%make_optional('')
     if (list%sets) call select_gas(list%chosen, case%combustion)
     call list%group('cylinder_pressure', 'Measured gas pressure on the piston, from a table', .true., instead_of='combustion')
     if (list%sets .and. allocated(case%measured)) measured = case%measured   ! its table has been read
