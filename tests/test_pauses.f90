@@ -60,7 +60,7 @@ contains
     do
       read (unit, '(a)', iostat=status) file
       if (status /= 0) exit
-      call read_case(trim(file), [character(len=long) :: 'integrator.max_steps=1200'], case, error)
+      call read_case(trim(file), [character(len=long) :: 'integrator.max_steps=600'], case, error)
       if (.not. allocated(error)) call shorten(case)
       if (allocated(error)) exit
       call go(case, 0, whole)
@@ -80,7 +80,7 @@ contains
     case%output%window = 'all'
     if (.not. allocated(case%joints(piston_pin)%film)) return
     if (case%joints(piston_pin)%film%name /= 'finite_bearing') return
-    call read_case(case%file, [character(len=long) :: 'integrator.max_steps=1200', 'lubrication.table_points=17', &
+    call read_case(case%file, [character(len=long) :: 'integrator.max_steps=600', 'lubrication.table_points=17', &
       'lubrication.film_points=32'], small, error)
     case = small
   end subroutine shorten

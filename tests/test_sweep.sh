@@ -196,21 +196,27 @@ run -q -o "$work/all" -s integrator.revolutions=0.1 -s crank_pin.joint.kind=clea
   -s crankshaft.flywheel_inertia=0.02 -s crankshaft.torsional_stiffness=2e4 "$work/slap.nml"
 check "a scene with all clearances and elastic members, status $status" [ "$status" = 0 ]
 awk -v q="'" '/^&/ { group = substr($1, 2) } $1 == "place" { group = substr($3, 2, length($3) - 2) "." group }
-  group ~ /^(guide|elastic_rod|crankshaft|crank_pin.joint)$/ && $3 ~ /^[-0-9.]/ && !/,.*!/ && $1 !~ /^(bearing_length|load_share)$/ &&
+  group ~ /^(guide|elastic_rod|crankshaft|crank_pin.joint)$/ && $3 ~ /^[-0-9.]/ && !/,.*!/ && $1 !~ /^(bearing_length|load_share|half_angle_deg|barrel|barrel_height|ovality)$/ &&
     !(group == "crankshaft" && $1 !~ /^(flywheel_inertia|torsional_stiffness|torsional_damping)$/) { print group "." $1, $3 + 0 }
   group == "initial" && $1 ~ /^piston_/ { print group "." $1, $3 + 0 }' "$work/all/slap.resolved.nml" >"$work/keys"
 check "number of keys of these groups" [ "$(wc -l <"$work/keys")" -ge 34 ]
+run -q -o "$work/all" -s integrator.revolutions=0.1 cases/joints/skirt.nml
+for key in half_angle_deg barrel barrel_height ovality; do   # of the film at a skirt
+  echo "guide.$key $(sed -n "s/^  $key = \([^ ]*\).*/\1/p" "$work/all/skirt.resolved.nml")" >>"$work/keys"
+done
 stuck=
 while read -r key value; do
+  base=slap
   case $key in
     *_modes | *_shapes) other=$((value + 1)) ;;
     *.dissipation) value=0.3 other=0.4 ;;
     *.shank_mass) value=0.2 other=0.19 ;;
     *.exponent) other=1.01 ;;
     *.least_impact_speed) other=1 ;;
+    guide.half_angle_deg | guide.barrel | guide.barrel_height | guide.ovality) base=skirt other=$(awk -v v="$value" 'BEGIN { print v == 0 ? 1e-6 : 0.95 * v }') ;;
     *) other=$(awk -v v="$value" 'BEGIN { print v == 0 ? 1e-4 : 0.99 * v }') ;;
   esac
-  printf "&study case = '%s' /\n&parameter key = '%s', values = %s, %s /\n" "$work/all/slap.resolved.nml" "$key" "$value" "$other" >"$work/key.nml"
+  printf "&study case = '%s' /\n&parameter key = '%s', values = %s, %s /\n" "$work/all/$base.resolved.nml" "$key" "$value" "$other" >"$work/key.nml"
   run sweep --fresh -j 1 -o "$work/key" -s integrator.revolutions=1.05 -s integrator.relative_tolerance=1e-4 -s drive.kind=constant_speed \
     "$work/key.nml"
   [ "$status" = 0 ] && [ "$(awk -F, 'NR > 1' "$work/key/key.runs.csv" | cut -d, -f4- | sort -u | wc -l)" = 2 ] || stuck="$stuck $key"

@@ -5,7 +5,7 @@ module body_rules
   use number_text, only: short_text
   use text_tools, only: integer_text
   use case_definition, only: case_t
-  use case_schema, only: find_group
+  use case_schema, only: find_group, real_kind, word_kind
   use case_values, only: case_values_t
   use film_rules, only: check_oil
   use friction_law, only: friction_law_t
@@ -75,7 +75,7 @@ contains
     character(len=*), parameter :: groups(2) = [character(len=17) :: 'guide.lubrication', 'guide.asperities'], &
       of_corners(5) = [character(len=11) :: 'contact_law', 'restitution', 'exponent', 'law', 'coefficient'], &
       needed = 'needs the groups lubrication and asperities with place = ''guide'''
-    logical :: is_wanted
+    logical :: is_wanted, acts
     integer :: i, place
     is_wanted = .false.
     if (allocated(c%guide)) is_wanted = c%guide%is_lubricated()
@@ -88,7 +88,13 @@ contains
     if (.not. is_wanted) return
     do i = 1, size(of_corners)
       place = values%place_of('guide', trim(of_corners(i)))
-      if (place > 0) call values%forbid(values%is_given('guide', trim(of_corners(i))), 'guide', trim(of_corners(i)), &
+      if (place == 0) cycle
+      associate (key => values%keys(place), value => values%values(place))
+        acts = value%given(1)   ! a resolved case has defaults, and 0 for no friction
+        if (key%kind == word_kind) acts = acts .and. value%text /= trim(key%default)
+        if (key%kind == real_kind) acts = acts .and. values%is_said(place) .and. abs(value%reals(1)) > 0
+      end associate
+      call values%forbid(acts, 'guide', trim(of_corners(i)), &
         'is for kind = ''clearance'': a lubricated skirt has no dry corners')
     end do
     call values%forbid(c%guide%stiffness > 0, 'guide', 'stiffness', 'must be 0 with kind = ''lubricated'': its faces are rigid')
@@ -111,7 +117,7 @@ contains
     type(case_values_t), intent(inout) :: values
     if (.not. c%guide%profile%is_wanted()) return
     call values%forbid(c%guide%barrel > 0, 'guide', 'barrel', 'is in profile_table: one of both')
-    call values%forbid(values%is_given('guide', 'barrel_height'), 'guide', 'barrel_height', 'is in profile_table: one of both')
+    call values%forbid(values%is_said(values%place_of('guide', 'barrel_height')), 'guide', 'barrel_height', 'is in profile_table: one of both')
     if (.not. allocated(c%guide%profile%x)) return
     associate (z => c%guide%profile%x)
       call values%forbid(z(1) > -c%guide%skirt_bottom .or. z(size(z)) < c%guide%skirt_top, 'guide', 'profile_table', &
