@@ -117,7 +117,8 @@ contains
     type(case_values_t), intent(inout) :: values
     if (.not. c%guide%profile%is_wanted()) return
     call values%forbid(c%guide%barrel > 0, 'guide', 'barrel', 'is in profile_table: one of both')
-    call values%forbid(values%is_said(values%place_of('guide', 'barrel_height')), 'guide', 'barrel_height', 'is in profile_table: one of both')
+    call values%forbid(values%is_said(values%place_of('guide', 'barrel_height')), 'guide', 'barrel_height', &
+      'is in profile_table: one of both')
     if (.not. allocated(c%guide%profile%x)) return
     associate (z => c%guide%profile%x)
       call values%forbid(z(1) > -c%guide%skirt_bottom .or. z(size(z)) < c%guide%skirt_top, 'guide', 'profile_table', &
