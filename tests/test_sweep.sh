@@ -213,7 +213,8 @@ while read -r key value; do
     *.shank_mass) value=0.2 other=0.19 ;;
     *.exponent) other=1.01 ;;
     *.least_impact_speed) other=1 ;;
-    guide.half_angle_deg | guide.barrel | guide.barrel_height | guide.ovality) base=skirt other=$(awk -v v="$value" 'BEGIN { print v == 0 ? 1e-6 : 0.95 * v }') ;;
+    guide.barrel_height) base=skirt other=5e-3 ;;
+    guide.half_angle_deg | guide.barrel | guide.ovality) base=skirt other=$(awk -v v="$value" 'BEGIN { print v == 0 ? 1e-6 : 0.95 * v }') ;;
     *) other=$(awk -v v="$value" 'BEGIN { print v == 0 ? 1e-4 : 0.99 * v }') ;;
   esac
   printf "&study case = '%s' /\n&parameter key = '%s', values = %s, %s /\n" "$work/all/$base.resolved.nml" "$key" "$value" "$other" >"$work/key.nml"
