@@ -92,7 +92,8 @@ contains
       associate (key => values%keys(place), value => values%values(place))
         acts = value%given(1)   ! a resolved case has defaults, and 0 for no friction
         if (key%kind == word_kind) acts = acts .and. value%text /= trim(key%default)
-        if (key%kind == real_kind) acts = acts .and. values%is_said(place) .and. abs(value%reals(1)) > 0
+        if (key%kind == real_kind) acts = values%is_said(place)
+        if (key%kind == real_kind) acts = acts .and. abs(value%reals(1)) > 0
       end associate
       call values%forbid(acts, 'guide', trim(of_corners(i)), &
         'is for kind = ''clearance'': a lubricated skirt has no dry corners')
