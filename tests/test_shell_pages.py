@@ -55,7 +55,7 @@ def as_json(path: Path) -> dict:
     if re.search(r"=\s*[-+.\deE*]+ +[A-Za-z]|&supply", re.sub(r"!.*", "", path.read_text())):
         read = f90nml.reads(gudgeon.read(path).to_nml())
     for name, group in json.loads(json.dumps(read.todict())).items():
-        if repeated := re.fullmatch(r"_grp_(\w+)_\d+", name) or re.fullmatch(r"(cylinder|damper|ring)_\d+", name):
+        if repeated := re.fullmatch(r"_grp_(\w+)_\d+", name) or re.fullmatch(r"(cylinder|damper|ring|valve)_\d+", name):
             case.setdefault(repeated[1], []).append(group)
         elif name != "_start_index":
             case[name] = group
