@@ -16,6 +16,7 @@ module test_notes
   use value_reader, only: read_bounds, read_real
   use unit_hints, only: likely_unit
   use cycle_watch, only: cycle_watch_t
+  use run_length, only: longest_period
   use checks, only: checks_t
   implicit none
   private
@@ -341,6 +342,7 @@ contains
     type(run_report_t) :: report
     type(error_t), allocatable :: error
     integer :: k
+    allocate (watch%recent(0:longest_period - 1))
     do k = 1, 6   ! three cycles of two revolutions, with 8, 4 and 2 in the second revolution of each
       watch%ended = k
       watch%followed = k

@@ -9,7 +9,7 @@ module joint_places
   implicit none
   private
   public :: place_t, places, n_places, in_order, name_prefix, pin_title, joint_group, crank_pin, piston_pin, small_end, main_bearing
-  public :: n_spots, spot_of, place_of, number_of, spot_prefix, spot_name
+  public :: n_spots, spot_of, place_of, number_of, spot_prefix, spot_name, spot_title
 
   !> One place: its names, and how its joint enters the chain. The eccentricity of the pin in its bearing is that of the chain
   !> at this pin, the joint's force on its pin acts on the body nearer to the crank, and the opposite force on the other; the other
@@ -87,13 +87,20 @@ contains
     if (spot > n_places) name = name//'_'//trim(digits(number_of(spot)))
   end function spot_name
 
+  !> The bearing of a spot, in texts: main bearing 3.
+  pure function spot_title(spot) result(title)
+    integer, intent(in) :: spot
+    character(len=:), allocatable :: title
+    title = trim(places(place_of(spot))%title)
+    if (spot > n_places) title = title//' '//trim(digits(number_of(spot)))
+  end function spot_title
+
   !> The pin of a spot, in texts.
   pure function pin_title(spot) result(title)
     integer, intent(in) :: spot
     character(len=:), allocatable :: title
-    title = trim(places(place_of(spot))%title)
+    title = spot_title(spot)
     if (spot == small_end) title = 'piston pin in the small end'
-    if (spot > n_places) title = title//' '//trim(digits(number_of(spot)))
   end function pin_title
 
   !> Name of the group of a place's joint in cases.

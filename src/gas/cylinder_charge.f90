@@ -153,7 +153,8 @@ contains
     if (i > 1) return
     list%of_totals = .true.
     call list%add('gas_sums', y(self%sums%first:self%sums%last), '', &
-      'integrals over time: energy of the gas, heat to the walls [J], mass lost [kg], its enthalpy, size of the work [J]')
+      'integrals over time: energy of the gas, heat to the walls [J], mass lost [kg], its enthalpy, size of the work [J]; of a '// &
+      'compressor also mass delivered [kg], that times its temperature [kg K], losses of both valves, work on the gas [J]')
     call list%add('opening_temperature', self%opening_temperature, 'K', 'temperature of the gas when the cylinder last opened')
     list%of_totals = .false.
   end subroutine declare
@@ -244,17 +245,18 @@ contains
     class(charge_t), intent(in) :: self
     real(dp), intent(in) :: rate
     type(charge_motion_t), intent(inout) :: now
-    real(dp) :: excess(2)   ! pressure that opens each of them [Pa]
+    real(dp) :: pressure(2, 2), temperature(2), excess(2), share   ! (before, behind; valve), before it, which opens it [Pa], [K]
     integer :: i
-    excess = [self%chamber%closing_pressure - now%pressure, now%pressure - self%discharge_pressure]
+    pressure(:, suction) = [self%chamber%closing_pressure, now%pressure]
+    pressure(:, discharge) = [now%pressure, self%discharge_pressure]
+    temperature = [self%given%temperature, now%temperature]
+    excess = pressure(1, :) - pressure(2, :)
     do i = suction, discharge
-      now%valve_lift(i) = self%valves(i)%lift*self%valves(i)%open_share(excess(i))
+      share = self%valves(i)%open_share(excess(i))
+      now%valve_lift(i) = self%valves(i)%lift*share
+      now%valve_flow(i) = orifice_flow(self%valves(i)%area*share, self%chamber%gas_constant, self%chamber%heat_capacity_ratio, &
+        pressure(:, i), temperature([i, i]))
     end do
-    associate (g => self%chamber%heat_capacity_ratio, constant => self%chamber%gas_constant)
-      now%valve_flow(suction) = self%valves(suction)%flow(constant, g, [self%chamber%closing_pressure, now%pressure], &
-        self%given%temperature)
-      now%valve_flow(discharge) = self%valves(discharge)%flow(constant, g, [now%pressure, self%discharge_pressure], now%temperature)
-    end associate
     now%rates(delivered) = now%valve_flow(discharge)
     now%rates(delivered_heat) = now%valve_flow(discharge)*now%temperature
     now%rates(suction_loss) = max(excess(suction), 0.0_dp)*rate

@@ -8,7 +8,6 @@
 module flow_valve
   use kinds, only: dp
   use model_parameters, only: has_parameters_t, parameter_list_t
-  use nozzle_flow, only: orifice_flow
   implicit none
   private
   public :: flow_valve_t, suction, discharge
@@ -25,7 +24,6 @@ module flow_valve
   contains
     procedure :: parameters
     procedure, non_overridable :: open_share
-    procedure, non_overridable :: flow
   end type flow_valve_t
 
 contains
@@ -55,14 +53,4 @@ contains
       open_share = merge(1.0_dp, 0.0_dp, difference > 0)
     end if
   end function open_share
-
-  !> Mass flow through the valve, in its sense [kg/s].
-  pure real(dp) function flow(self, gas_constant, ratio, pressure, temperature)
-    class(flow_valve_t), intent(in) :: self
-    real(dp), intent(in) :: gas_constant, ratio            !! R_g [J/(kg K)], g [-]
-    real(dp), intent(in) :: pressure(2), temperature       !! before and behind it [Pa]; before it [K]
-    flow = 0
-    if (pressure(1) > pressure(2)) flow = orifice_flow(self%area*self%open_share(pressure(1) - pressure(2)), gas_constant, ratio, &
-      pressure, [temperature, temperature])
-  end function flow
 end module flow_valve

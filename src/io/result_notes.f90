@@ -6,7 +6,7 @@ module result_notes
   use simulation, only: run_report_t
   use cycle_answers, only: cycle_quantities
   use run_figures, only: pin_figures_t
-  use joint_places, only: places, n_places, in_order, piston_pin, small_end, pin_title
+  use joint_places, only: n_places, in_order, piston_pin, small_end, spot_title
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use number_text, only: short_text, quantity_text
@@ -33,16 +33,14 @@ contains
   function notes_on_results(case, report) result(notes)
     type(case_t), intent(in) :: case
     type(run_report_t), intent(in) :: report
-    character(len=:), allocatable :: notes, title
+    character(len=:), allocatable :: notes
     integer, allocatable :: spots(:)
     integer :: i, k
     notes = ''
     do i = 1, n_places
       spots = case%spots(in_order(i))
       do k = 1, size(spots)
-        title = trim(places(in_order(i))%title)
-        if (spots(k) > n_places) title = pin_title(spots(k))
-        call note_joint(case%joints(in_order(i)), report%figures%pin(spots(k)), title//': ')
+        call note_joint(case%joints(in_order(i)), report%figures%pin(spots(k)), spot_title(spots(k))//': ')
       end do
     end do
     if (allocated(report%histories)) then

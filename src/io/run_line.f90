@@ -6,7 +6,7 @@ module run_line
   use simulation, only: run_report_t
   use run_figures, only: pin_figures_t, floating_figures_t
   use period_watch, only: period_watch_t
-  use joint_places, only: places, n_places, in_order, name_prefix, pin_title, place_of
+  use joint_places, only: places, n_places, in_order, name_prefix, spot_title
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
   use result_notes, only: notes_on_results, relative_residual
@@ -88,7 +88,7 @@ contains
       end do
     end do
     if (at == 0) return
-    text = '; thinnest film '//quantity_text(thinnest, 'm')//' at '//pin_title(at)
+    text = '; thinnest film '//quantity_text(thinnest, 'm')//' at '//spot_title(at)
     call report%value_of('cycle_bearings_power', power, is_known)
     if (is_known) text = text//', bearings '//quantity_text(power, 'W')
   end function bearings_text
@@ -127,16 +127,14 @@ contains
   !> Text about the films with memory, each beside the film of the run.
   function histories_text(histories) result(text)
     type(history_record_t), intent(in) :: histories(:)
-    character(len=:), allocatable :: text, title
+    character(len=:), allocatable :: text
     integer :: i
     text = ''
     do i = 1, size(histories)
       associate (found => histories(i)%history)
         if (.not. allocated(found%rows)) cycle
         if (size(found%rows) == 0) cycle
-        title = trim(places(place_of(histories(i)%spot))%title)
-        if (histories(i)%spot > n_places) title = pin_title(histories(i)%spot)
-        text = text//'; film with memory at the '//title//': thinnest '// &
+        text = text//'; film with memory at the '//spot_title(histories(i)%spot)//': thinnest '// &
           quantity_text(found%summary%min_thickness, 'm')//' ('//quantity_text(minval(histories(i)%quick_thickness), 'm')// &
           ' in the run), pressure up to '//quantity_text(found%summary%max_pressure, 'Pa')
       end associate

@@ -33,7 +33,7 @@ module cycle_watch
     integer :: strobes = 0                         !! number of samples taken; sample i is in revolution uncounted + i
     real(dp), allocatable :: strobe_values(:, :)   !! (columns, strobes)
     real(dp) :: direction = 1                      !! sense in which the crank turns: 1 or -1
-    type(cycle_t) :: recent(0:longest_period - 1)   !! revolution k in element mod(k, longest_period), for the last ones that ended
+    type(cycle_t), allocatable :: recent(:)   !! from 0: revolution k in element mod(k, longest_period), of the last that ended
     real(dp) :: pin_turn = 0              !! of a floating pin in the revolutions followed [rad]
     real(dp), private :: pin_angle = 0    !! its angle at the start of the present one
     type(machine_record_t), private :: machine
@@ -79,6 +79,7 @@ contains
     real(dp), intent(in) :: initial_energy   !! [J]
     type(revolutions_t), intent(in) :: crank   !! its revolutions so far
     if (in_domain) call self%machine%begin(scene, t, now)
+    if (.not. allocated(self%recent)) allocate (self%recent(0:longest_period - 1))
     self%statistics = cycle_statistics_t()
     self%present = cycle_t()
     self%uncounted = self%settle

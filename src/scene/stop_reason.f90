@@ -6,7 +6,7 @@ module stop_reason
   use ode_method, only: ode_settings_t, step_too_small, tolerance_too_small, start_outside, left_domain
   use ode_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached
   use scene_problem, only: scene_t, evaluation_t, phase_free
-  use joint_places, only: in_order, n_places, pin_title
+  use joint_places, only: in_order, spot_title
   use film_heat, only: hottest
   implicit none
   private
@@ -148,8 +148,7 @@ contains
     type(scene_t), intent(in) :: scene
     integer, intent(in) :: i
     character(len=:), allocatable :: text
-    text = trim(scene%joints(i)%site%title)
-    if (scene%joints(i)%spot > n_places) text = pin_title(scene%joints(i)%spot)
+    text = spot_title(scene%joints(i)%spot)
   end function joint_name
 
   !> Text that says why no step size was small enough.

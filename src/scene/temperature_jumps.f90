@@ -10,7 +10,6 @@
 module temperature_jumps
   use kinds, only: dp
   use film_heat, only: uptake
-  use clearance_joint, only: most_bearings
   use scene_problem, only: scene_t
   use period_watch, only: period_watch_t, noise
   use run_length, only: longest_period
@@ -38,8 +37,8 @@ module temperature_jumps
 
   type :: temperature_jumps_t
     logical :: is_due = .false.         !! the integration is to go on with the new temperatures
-    real(dp) :: jump(most_bearings) = 0   !! of the temperature at each joint [K]
-    type(film_t), private :: films(most_bearings)
+    real(dp), allocatable, private :: jump(:)        !! of the temperature at each joint [K]
+    type(film_t), allocatable, private :: films(:)   !! of each joint
     integer, private :: cycle = 0       !! over which changes are known [revolutions]
     integer, private :: since = -1      !! number of revolutions made when the present temperatures began; -1: the start
   contains
@@ -60,6 +59,7 @@ contains
     integer :: i, p, made
     made = periods%made
     if (self%since < 0) self%since = made
+    if (.not. allocated(self%films)) allocate (self%films(size(scene%joints)), self%jump(size(scene%joints)))
     do i = 1, size(scene%joints)
       if (.not. allocated(scene%joints(i)%heat)) cycle
       associate (heat => scene%joints(i)%heat, film => self%films(i))

@@ -273,7 +273,7 @@ static void threads(void) {
   gudgeon_run_free(run), gudgeon_case_free(it);
   pthread_t all[8];
   pthread_attr_t small;
-  pthread_attr_init(&small), pthread_attr_setstacksize(&small, 512 * 1024);
+  pthread_attr_init(&small), pthread_attr_setstacksize(&small, 256 * 1024);
   long wrong = 0;
   for (long i = 0; i < 8; i++) pthread_create(&all[i], &small, thread, (void *)i);
   for (int i = 0; i < 8; i++) {

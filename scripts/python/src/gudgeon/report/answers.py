@@ -133,7 +133,7 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
         ("up to", rows.shown("cycle_max_gas_temperature", "K", 1)), ("to the walls", rows.shown("cycle_heat_to_walls", "J", 1)),
         ("leak", rows.shown("cycle_leak_share", "%", 100)), ("efficiency", rows.shown("cycle_indicated_efficiency", "%", 100)),
         ("delivers", rows.shown("cycle_mass_flow", "g/s", 1000)), ("volumetric efficiency", rows.shown("cycle_volumetric_efficiency", "%", 100)),
-        ("isentropic efficiency", rows.shown("cycle_isentropic_efficiency", "%", 100)), ("at", rows.shown("cycle_discharge_temperature", "K", 1)),
+        ("isentropic efficiency", rows.shown("cycle_isentropic_efficiency", "%", 100)), ("delivery temperature", rows.shown("cycle_discharge_temperature", "K", 1)),
         ("lost in the suction valve", rows.shown("cycle_suction_loss", "W", 1)), ("in the discharge valve", rows.shown("cycle_discharge_loss", "W", 1))) if text]
     if gas:
         found.append(("Gas", ", ".join(gas)))
