@@ -213,8 +213,7 @@ contains
     type(error_t), allocatable, intent(inout) :: error
     character(len=*), intent(in) :: name, value
     logical, intent(in), optional :: has_value   !! of an option that may do without
-    character(len=:), allocatable :: wanted, groups
-    type(key_table_t) :: table
+    character(len=:), allocatable :: wanted
     line%option_count = line%option_count + 1
     select case (name)
     case ('out')
@@ -255,11 +254,7 @@ contains
       if (.not. is_clean(value)) wanted = 'must not contain control characters or bytes that are not UTF-8'
     case ('reference')
       line%reference = value
-      call case_schema_of(table)
-      groups = joined(group_names(table%groups))
-      if (.not. is_listed(value, subjects) .and. find_group(table%groups, value) == 0 .and. &
-          find_group(table%groups, value//'_1') == 0) &
-        wanted = 'must be '//subjects//' or a group of cases: '//groups//likely_word(value, subjects//', '//groups)
+      call check_subject(value, wanted)
     case ('completion')
       line%completion = value
       if (.not. is_listed(value, shells)) wanted = 'must be bash, zsh or fish'
@@ -281,6 +276,19 @@ contains
     end select
     if (allocated(wanted)) call refuse(error, '--'//trim(name)//' '//printable(value, 60)//': '//wanted)
   end subroutine set_option
+
+  !> What the subject of --reference must be, if it is not that.
+  subroutine check_subject(value, wanted)
+    character(len=*), intent(in) :: value
+    character(len=:), allocatable, intent(inout) :: wanted
+    type(key_table_t) :: table
+    character(len=:), allocatable :: groups
+    call case_schema_of(table)
+    groups = joined(group_names(table%groups))
+    if (.not. is_listed(value, subjects) .and. find_group(table%groups, value) == 0 .and. &
+        find_group(table%groups, value//'_1') == 0) &
+      wanted = 'must be '//subjects//' or a group of cases: '//groups//likely_word(value, subjects//', '//groups)
+  end subroutine check_subject
 
   !> Check that no two files would have results of the same name, as a/x.nml and b/x.nml, and that no name ends as those of the
   !> results of another one.

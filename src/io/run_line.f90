@@ -6,6 +6,7 @@ module run_line
   use simulation, only: run_report_t
   use run_figures, only: pin_figures_t, floating_figures_t
   use period_watch, only: period_watch_t
+  use cycle_answers, only: cycle_quantities
   use joint_places, only: places, n_places, in_order, name_prefix, spot_title
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
@@ -45,7 +46,7 @@ contains
           if (.not. report%periods%is_on .and. is_driven(case)) text = text//settling_text(case%joints(place), f%pin(place))
         end associate
       end do
-      text = text//bearings_text(case, report)
+      text = text//bearings_text(report)
       if (f%floating%is_present) text = text//'; '//turn_text(f%floating)
       if (case%has_skirt_corners()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
         ' contacts, force up to '//quantity_text(maxval(f%corner%max_force), 'N')
@@ -62,35 +63,24 @@ contains
     if (notes /= '') text = text//newline//'  note: '//replaced(notes, newline, newline//'  note: ')
   end function lines_for_user
 
-  !> Text about numbered bearings: the thinnest film of the last cycle, or of a run without one, and the losses; empty: there are
-  !> none.
-  function bearings_text(case, report) result(text)
-    type(case_t), intent(in) :: case
+  !> Text about numbered bearings: the thinnest film of the last cycle, and the losses; empty without such a cycle or bearings.
+  function bearings_text(report) result(text)
     type(run_report_t), intent(in) :: report
     character(len=:), allocatable :: text
-    integer, allocatable :: spots(:)
-    real(dp) :: thickness, thinnest, power
+    real(dp) :: thickness, power
     logical :: is_known
-    integer :: i, k, at
-    real(dp), parameter :: same = 1e-4_dp   ! difference of films of equal bearings
+    integer :: i
     text = ''
-    at = 0
-    thinnest = huge(thinnest)
-    do i = 1, n_places
-      if (.not. case%has_numbers(in_order(i))) cycle
-      spots = case%spots(in_order(i))
-      do k = 1, size(spots)
-        call report%value_of(name_prefix(spots(k))//'cycle_min_film_thickness', thickness, is_known)
-        if (.not. is_known) thickness = report%figures%pin(spots(k))%min_film_thickness
-        if (thickness >= (1 - same)*thinnest) cycle
-        thinnest = thickness
-        at = spots(k)
-      end do
-    end do
-    if (at == 0) return
-    text = '; thinnest film '//quantity_text(thinnest, 'm')//' at '//spot_title(at)
     call report%value_of('cycle_bearings_power', power, is_known)
-    if (is_known) text = text//', bearings '//quantity_text(power, 'W')
+    if (.not. is_known) return
+    do i = 1, size(report%answers)
+      associate (it => report%answers(i))
+        if (cycle_quantities(it%quantity)%name /= 'cycle_thinnest_bearing') cycle
+        call report%value_of(trim(it%text)//'_cycle_min_film_thickness', thickness, is_known)
+        text = '; thinnest film '//quantity_text(thickness, 'm')//' at '//replaced(trim(it%text), '_', ' ')
+      end associate
+    end do
+    text = text//', bearings '//quantity_text(power, 'W')
   end function bearings_text
 
   !> Text about a lubricated skirt, in the last cycle, or of a run without one; empty: there is none.

@@ -79,18 +79,8 @@ contains
       end do
       call check_values(sweep, error)
       if (allocated(error)) return
-      sweep%last = design%runs
-      if (options%last_row > sweep%last) then
-        call fail(error, at//'--rows '//integer_text(options%first_row)//':'//integer_text(options%last_row)// &
-                  ': the study has '//integer_text(sweep%last)//' runs', status_case_file)
-        return
-      else if (options%last_row > 0 .and. study%start == 'previous') then
-        call fail(error, at//'--rows: with &study start = ''previous'' each run follows the one before it', status_case_file)
-        return
-      else if (options%last_row > 0) then
-        sweep%first = options%first_row
-        sweep%last = options%last_row
-      end if
+      call choose_rows(options, at, sweep, error)
+      if (allocated(error)) return
       if (study%strobe_columns == '') then
         allocate (sweep%strobe_list%id(0))
       else
@@ -106,6 +96,24 @@ contains
       sweep%has_strobes = study%strobe_columns /= ''
     end associate
   end subroutine read_sweep
+
+  !> The runs that are wanted: all, or those of --rows.
+  subroutine choose_rows(options, at, sweep, error)
+    type(command_line_t), intent(in) :: options
+    character(len=*), intent(in) :: at   !! place of a problem
+    type(sweep_t), intent(inout) :: sweep
+    type(error_t), allocatable, intent(out) :: error
+    sweep%last = sweep%design%runs
+    if (options%last_row == 0) return
+    if (options%last_row > sweep%last) then
+      call fail(error, at//'--rows '//integer_text(options%first_row)//':'//integer_text(options%last_row)// &
+                ': the study has '//integer_text(sweep%last)//' runs', status_case_file)
+    else if (sweep%study%start == 'previous') then
+      call fail(error, at//'--rows: with &study start = ''previous'' each run follows the one before it', status_case_file)
+    end if
+    sweep%first = options%first_row
+    sweep%last = options%last_row
+  end subroutine choose_rows
 
   !> Check that the results do not replace a file that the study reads, such as the table x.runs.csv of the study x.nml.
   subroutine keep_inputs(sweep, error)
