@@ -45,7 +45,7 @@ contains
     call check%that(size(table, 2) == 90, 'the table of the distribution was read')
     do surface = of_pin, of_bore
       associate (worn => trace%report%wear(1)%volume(:, surface), cumulative => table(merge(3, 2, surface == of_pin), :))
-        call check%relative(sum(worn), volume, 1e-6_dp, 'worn volume of another program')
+        call check%relative(sum(worn), volume, 5e-6_dp, 'worn volume of another program')   ! 1.2e-6 with other sines and powers
         do i = 1, size(table, 2)
           call check%close_to(sum(worn(:nint(table(1, i)))), cumulative(i), 1e-3_dp*volume, 'distribution of another program')
         end do

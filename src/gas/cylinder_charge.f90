@@ -131,14 +131,21 @@ contains
     self%crankcase_pressure = crankcase_pressure
   end subroutine prepare
 
-  !> Claim pressures and masses of a number of cylinders, and the integrals, which have no influence on the steps.
+  !> Claim pressures and masses of a number of cylinders, and the integrals. They have no influence on the steps, but for the losses
+  !> of valves: their rates have a kink where the pressure passes that of the chamber, which a step of high order must not cross.
   subroutine claim(self, layout, cylinders)
     class(charge_t), intent(inout) :: self
     type(layout_t), intent(inout) :: layout
     integer, intent(in) :: cylinders
+    type(slice_t) :: more
     call layout%claim_states(cylinders, self%chamber%closing_pressure, self%pressures)
     call layout%claim_states(cylinders, self%closed_mass, self%masses)
-    call layout%claim_quadratures(merge(n_charge_sums, n_closed_sums, allocated(self%valves)), 0.0_dp, self%sums)
+    call layout%claim_quadratures(n_closed_sums, 0.0_dp, self%sums)
+    if (.not. allocated(self%valves)) return
+    call layout%claim_quadratures(2, 0.0_dp, more)
+    call layout%claim_quadratures(2, self%chamber%closing_pressure*self%chamber%displacement, more)
+    call layout%claim_quadratures(1, 0.0_dp, more)
+    self%sums%last = more%last
   end subroutine claim
 
   !> Declare the states of cylinder i, with a prefix for their names, and with the first one the integrals.

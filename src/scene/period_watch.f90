@@ -10,8 +10,7 @@
 !>
 !> A motion that approaches its limit from alternating sides has small differences over two periods first. Before a period is told,
 !> its divisors are tested: one over which the states differ by the tolerance at most is the period; one over which they still
-!> approach each other, and may come as near, is waited for. Since less than the tolerance is to come over the period itself, states
-!> that differ by more than five tolerances will not, with room for the range of a component that is still settling.
+!> approach each other is waited for. Differences over the divisor of a true period become constant.
 module period_watch
   use kinds, only: dp
   use constants, only: two_pi
@@ -28,7 +27,9 @@ module period_watch
                                                 !! rest does not require infinite accuracy
   real(dp), parameter :: resolved = 10          !! of a bearing by itself: least difference that is told from an error of the
                                                 !! integration, over the tolerance of that
-  real(dp), parameter :: near = 5   !! differences over a divisor of a period that may still come within the tolerance, over it
+  real(dp), parameter :: near = 5   !! differences over a divisor of a period that may come within the tolerance at any rate, over it
+  real(dp), parameter :: approaching = 0.9_dp   !! larger differences over it that are so many times those of up to 32 revolutions
+                                                !! before approach 0: errors of the integration change them by less
   real(dp), parameter :: noise = 1e-2_dp            !! differences due to the integration, relative to the tolerance
 
   type :: period_watch_t
@@ -222,7 +223,7 @@ contains
   subroutine look_for_period(self)
     class(period_watch_t), intent(inout) :: self
     real(dp) :: range(size(self%at)), newest, oldest, any_of_them, factor
-    integer :: p, k, told
+    integer :: p, k, told, span
     do p = self%forcing, self%longest, self%forcing
       if (self%made < (repeats_needed + 1)*p) return
       range = self%smallest_range
@@ -244,6 +245,8 @@ contains
         newest = largest(self%made - p + 1, self%made, told)
         if (newest <= self%tolerance) exit
         if (newest <= near*self%tolerance .and. newest < largest(self%made - 2*p + 1, self%made - p, told)) return
+        span = p*(min(depth/2, self%made - p - told)/p)
+        if (newest < approaching*largest(self%made - span - p + 1, self%made - span, told)) return
       end do
       told = min(told, p)
       self%period = told
