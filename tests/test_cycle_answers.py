@@ -303,7 +303,8 @@ EXTREME_COLUMNS = (("cycle_max_drive_torque", lambda row: row.get("crank_moment"
 def test_extremes(program: Path, work: Path) -> None:
     """No row of the last cycle is beyond an extreme of the cycle, by more than the digits that a trace has; of a force by more than
     1e-6, since a step is not searched where three values of a force at ends of steps show that it only rises or only falls, and so
-    of an eccentricity; of twists and torques by more than 1e-4, since they are cubics between the ends of steps."""
+    of an eccentricity; of twists and torques by more than 1e-4, and of the angle of a pin by more than 1e-6, since they are cubics
+    between the ends of steps."""
     for name, settings in EXTREMES:
         summary, rows = run(program, work, ROOT / "cases" / f"{name}.nml", "output.samples_per_revolution=3600", "output.ideal_twin=F",
                             "output.digits=12", *settings)
@@ -314,7 +315,7 @@ def test_extremes(program: Path, work: Path) -> None:
                 continue
             most = max(inside, key=lambda row: sense*column(row))
             margin = {"cycle_max_force": 1e-6, "cycle_max_drive_torque": 1e-6, "cycle_min_drive_torque": 1e-6, "cycle_max_eccentricity_ratio": 1e-6, "cycle_max_segment_8_torque": 1e-4,
-                      "cycle_max_station_9_twist": 1e-4}.get(answer, 1e-9)
+                      "cycle_max_station_9_twist": 1e-4, "cycle_max_pin_angle": 1e-6, "cycle_min_pin_angle": 1e-6}.get(answer, 1e-9)
             check(sense*(summary[answer] - column(most)) >= -margin*abs(column(most)), f"{name}: no row is beyond {answer}",
                   f"{summary[answer]}, {column(most)}")
             check(close(summary[answer], column(most), 1e-3), f"{name}: {answer} is near the largest of the rows",
