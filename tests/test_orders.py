@@ -7,6 +7,7 @@ what it and other scripts that analyse runs refuse.
 Ends with the line "N passed, N failed".
 """
 
+import re
 import subprocess
 import sys
 import tempfile
@@ -26,7 +27,7 @@ import pandas as pd
 from assertions import Assertions
 from gudgeon.cycles import bearing_loads, orders, spectrum, whole_cycles, work
 from gudgeon.language import Language
-from gudgeon.plots.cycles import draw_bearings
+from gudgeon.plots.cycles import draw_bearings, draw_indicator, ideal_diagram
 from gudgeon.program import release_program
 from gudgeon.report.cycles import section
 from gudgeon.report.page import page
@@ -117,7 +118,18 @@ def runs(folder: Path) -> None:
     check(told.returncode == 0, "the script runs", told.stderr)
     for kind in ("orders.csv", "work.csv", "cycles.png", "orders.png", "bearings.png", "indicator.png"):
         check((folder / f"sim_IV.{kind}").stat().st_size > 100, f"it writes {kind}")
+    (folder / "sim_IV.indicator.png").unlink()
+    told = subprocess.run([*PLOT, "indicator", folder / "sim_IV.csv", "--settle", "0"], capture_output=True, text=True, check=False)
+    check(told.returncode == 0 and (folder / "sim_IV.indicator.png").stat().st_size > 100, "gudgeon-plot indicator", told.stderr)
     settled_cycles = whole_cycles(fired, 0)
+    shown = [float(part) for part in re.findall(r"\d+\.\d", draw_indicator(settled_cycles).axes[1].get_title())]
+    wanted = [340 + 40 * (-np.log(1 - share * (1 - np.exp(-5))) / 5) ** (1 / 3) for share in (0.1, 0.5, 0.9)]   # by Wiebe's function
+    check(len(shown) == 3 and np.allclose(shown, wanted, atol=0.3), "the heat beside the indicator diagram of an engine", f"{shown} {wanted}")
+    # ideal valves of the compressor of data/gas/air_springs.nml: 1403.144 W at 25 turns a second, in closed form
+    machine = {"combustion": {"suction_pressure": 1e5, "discharge_pressure": 5e5}, "working_gas": {"heat_capacity_ratio": 1.4}}
+    swept = 0.08 * np.pi / 4 * 0.07**2
+    volume, pressure = ideal_diagram(replace(fired, case=machine), 0.05 * swept, 1.05 * swept)
+    check(abs(np.trapezoid(1e5 * pressure, volume) / -(1403.144 / 25) - 1) < 1e-4, "the diagram of ideal valves", f"{np.trapezoid(1e5 * pressure, volume)}")
     drawing = draw_bearings(settled_cycles)
     force = bearing_loads(settled_cycles)["crank on the main bearing"].mean(axis=1)
     numbers = {int(text.get_text()): text.xy for text in drawing.axes[-1].texts}

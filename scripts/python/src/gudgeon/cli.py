@@ -14,6 +14,7 @@ WHAT = {
     "report": "an HTML page about one run: animation, plots, case, summary, warnings",
     "figure": "figures of the dissertation",
     "orders": "settled cycles of a run: orders, means and scatter, work, loads on the bearings",
+    "indicator": "pressure over volume, losses of valves, the heat that a pressure shows",
     "bearing": "the orbit of a pin in its clearance circle, in fixed axes and in those of the load",
     "campbell": "critical speeds of a crankshaft: natural frequencies, orders, shapes",
     "branch": "periodic orbits of a case over a key: stability, flips, folds, ends",

@@ -11,7 +11,7 @@ equal crank angles. The most accurate input is a run with `&run until = 'periodi
     NAME.orders.csv      each column's amplitude, phase and scatter by order
     NAME.work.csv        work on the bodies in the last whole cycle [J], by its parts, from the summary; with gas also as mean
                          effective pressures [Pa]: work over the swept volume
-    NAME.cycles.png, NAME.orders.png, NAME.bearings.png and, with gas, NAME.indicator.png
+    NAME.cycles.png, NAME.orders.png, NAME.bearings.png and, with gas, NAME.indicator.png, as gudgeon-plot indicator
 """
 
 import argparse

@@ -2,9 +2,11 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
+from gudgeon._heat import heat_release
 from gudgeon.cycles import Cycles, bearing_loads, orders, spectrum
 from gudgeon.plots.style import BLACK, BLUE, GREY, ORANGE, VERMILION, WIDTH
-from gudgeon.results import numbered
+from gudgeon.results import Run, numbered
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import MaxNLocator
 
@@ -97,9 +99,29 @@ def draw_bearings(cycles: Cycles) -> Drawing:
     return drawing
 
 
+def ideal_diagram(run: Run, least: float, largest: float) -> tuple[np.ndarray, np.ndarray]:
+    """Volumes and pressures [bar] of a compressor with ideal valves and no heat between two volumes: isentropic compression, delivery,
+    expansion and suction."""
+    low, high = (1e-5 * float(str(run.parameter("combustion", f"{side}_pressure"))) for side in ("suction", "discharge"))
+    ratio = float(str(run.parameter("working_gas", "heat_capacity_ratio")))
+    rising = np.linspace(low, min(high, low * (largest / least) ** ratio), 200)
+    compression = largest * (low / rising) ** (1 / ratio)
+    expansion = least * (rising[-1] / rising) ** (1 / ratio)
+    return np.concatenate((compression, expansion[::-1], [largest])), np.concatenate((rising, rising[::-1], [low]))
+
+
+def shows_heat(run: Run) -> bool:
+    """Whether the pressure of a run shows the heat of a four-stroke engine."""
+    return run.parameter("combustion", "cycle") == "four_stroke"
+
+
 def draw_indicator(cycles: Cycles) -> Drawing:
-    """Pressure over volume: single cycles light, the mean dark; of a compressor whose valves have losses these are shaded."""
-    drawing, axis = plt.subplots(figsize=(0.65 * WIDTH, 0.5 * WIDTH))
+    """Pressure over volume: single cycles light, the mean dark. Of a compressor whose valves have losses these are shaded, with the diagram of
+    ideal valves dashed; of a four-stroke engine the heat that the mean pressure shows stands beside it."""
+    run = cycles.run
+    heats = shows_heat(run)
+    drawing, axes = plt.subplots(1, 1 + heats, figsize=((1 if heats else 0.65) * WIDTH, (0.42 if heats else 0.5) * WIDTH), squeeze=False)
+    axis = axes[0, 0]
     volume, pressure = cycles["cylinder_volume"] * 1e6, cycles["cylinder_pressure"] / 1e5
     for k in range(min(cycles.number, 40)):
         axis.plot(volume[k], pressure[k], color=GREY, linewidth=0.3)
@@ -110,7 +132,26 @@ def draw_indicator(cycles: Cycles) -> Drawing:
             level = 1e-5 * float(str(cycles.run.parameter("combustion", key)))
             axis.fill_between(mean_volume, level, mean_pressure, where=beyond(mean_pressure, level), color=BLUE, alpha=0.3, linewidth=0)
             axis.axhline(level, color=GREY, linewidth=0.5, zorder=0)
+        axis.plot(*ideal_diagram(run, mean_volume.min(), mean_volume.max()), color=BLACK, linewidth=0.6, linestyle="--", label="ideal valves")
+        axis.legend()
+    if heats:
+        draw_heat(cycles, axes[0, 1])
     axis.set_xlabel(f"{cycles.run.volume} [cm³]")
     axis.set_ylabel("cylinder pressure [bar]")
-    axis.set_title(cycles.run.name)
+    axis.set_title(run.name)
     return drawing
+
+
+def draw_heat(cycles: Cycles, axis: Axes) -> None:
+    """The heat that the mean pressure of a four-stroke engine shows, with the angles of 10, 50 and 90 % of it."""
+    order = np.argsort(cycles.place)
+    columns = {name: cycles[name].mean(axis=0)[order] for name in ("cylinder_pressure", "cylinder_volume")}
+    columns["crank_angle"] = cycles.place[order]
+    found = heat_release({name: np.tile(values, 2) + (name == "crank_angle") * np.repeat([0, cycles.length], len(order)) for name, values in columns.items()},
+                         float(str(cycles.run.parameter("combustion", "heat_capacity_ratio"))))
+    axis.plot(found.angle, found.heat, color=BLUE)
+    for at in found.angles:
+        axis.axvline(at, color=GREY, linewidth=0.5)
+    axis.set_xlabel("crank angle [deg]")
+    axis.set_ylabel("heat shown by the pressure [J]")
+    axis.set_title(f"10, 50, 90 % at {found.angles[0]:.1f}, {found.angles[1]:.1f}, {found.angles[2]:.1f} deg")

@@ -131,7 +131,8 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
         found.append(("Cylinder pressure", text))
     gas = [f"{name} {text}" for name, text in (
         ("up to", rows.shown("cycle_max_gas_temperature", "K", 1)), ("to the walls", rows.shown("cycle_heat_to_walls", "J", 1)),
-        ("leak", rows.shown("cycle_leak_share", "%", 100)), ("efficiency", rows.shown("cycle_indicated_efficiency", "%", 100)),
+        ("to the walls", rows.shown("cycle_wall_heat_flow", "W", 1)), ("leak", rows.shown("cycle_leak_share", "%", 100)),
+        ("leak", rows.shown("cycle_leak_flow", "g/s", 1000)), ("efficiency", rows.shown("cycle_indicated_efficiency", "%", 100)),
         ("delivers", rows.shown("cycle_mass_flow", "g/s", 1000)), ("volumetric efficiency", rows.shown("cycle_volumetric_efficiency", "%", 100)),
         ("isentropic efficiency", rows.shown("cycle_isentropic_efficiency", "%", 100)), ("delivery temperature", rows.shown("cycle_discharge_temperature", "K", 1)),
         ("lost in the suction valve", rows.shown("cycle_suction_loss", "W", 1)), ("in the discharge valve", rows.shown("cycle_discharge_loss", "W", 1))) if text]
