@@ -30,6 +30,7 @@ from measured import use_virtual_environment
 
 use_virtual_environment()
 
+from gudgeon.language import Language
 from gudgeon.report.answers import Answers, lines, losses_of, section, warnings
 
 TOP = Path(__file__).resolve().parents[1]
@@ -335,6 +336,18 @@ def check_answers(checks: Assertions) -> None:
     checks.check(places == ["piston pin", "crank pin"], f"bearings with answers: {places}")
     checks.check(said == wanted, f"answers: {said}")
     checks.check(len(ours) + len(others) <= 10, "ten lines at most")
+    gases = ({"cycle_max_gas_temperature": ("1235.4", "K"), "cycle_heat_to_walls": ("33.48", "J"), "cycle_leak_share": ("0.01007", "1"), "cycle_indicated_efficiency": ("0.4666", "1")},
+             {"cycle_max_gas_temperature": ("491.4", "K"), "cycle_wall_heat_flow": ("21.5", "W"), "cycle_leak_flow": ("2.47e-5", "kg/s"), "cycle_mass_flow": ("7.544e-3", "kg/s"),
+              "cycle_volumetric_efficiency": ("0.8439", "1"), "cycle_isentropic_efficiency": ("0.9247", "1"), "cycle_discharge_temperature": ("488.4", "K"),
+              "cycle_suction_loss": ("51.1", "W"), "cycle_discharge_loss": ("31.8", "W")}, {"cycle_volumetric_efficiency": ("0.8922", "1")})
+    texts = ("up to 1235 K, to the walls 33.48 J, leak 1.007 %, efficiency 46.66 %",
+             "up to 491.4 K, to the walls 21.5 W, leak 0.0247 g/s, delivers 7.544 g/s, volumetric efficiency 84.39 %, isentropic efficiency 92.47 %, delivery temperature 488.4 K, "
+             "lost in the suction valve 51.1 W, in the discharge valve 31.8 W", "volumetric efficiency 89.22 %")
+    portuguese = Language("pt")
+    for summary, text in zip(gases, texts):
+        found = dict(lines(SimpleNamespace(summary={"cycle_start": ("0", "s")} | summary))[2])["Gas"]
+        checks.check(found == text, f"answers of the gas: {found}")
+        checks.check(len(portuguese.say(found)) > 10 and not portuguese.unknown, f"answers of the gas in Portuguese: {portuguese.unknown}")
     of_losses = {"cycle_work_gas": ("200", "J"), "cycle_imep": ("8e5", "Pa"), "cycle_fmep": ("2.5e4", "Pa"), "cycle_indicated_power": ("8e3", "W"), "cycle_work_guide": ("-4", "J"),
                  "cycle_ring_fmep": ("1e4", "Pa"), "cycle_ring_1_fmep": ("7e3", "Pa"), "cycle_ring_2_fmep": ("3e3", "Pa"), "crank_pin_cycle_joint_fmep": ("6e3", "Pa"),
                  "cycle_joint_fmep": ("2e3", "Pa"), "cycle_work_contact": ("-0.25", "J")}

@@ -125,10 +125,6 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
               if (value := rows(f"cycle_{key}_power")) is not None]
     if powers:
         found.append(("Power", ", ".join(powers)))
-    if text := slap(rows):
-        found.append(("Hardest slap", text))
-    if text := rows.shown("cycle_max_cylinder_pressure", "bar", 1e-5):
-        found.append(("Cylinder pressure", text))
     gas = [f"{name} {text}" for name, text in (
         ("up to", rows.shown("cycle_max_gas_temperature", "K", 1)), ("to the walls", rows.shown("cycle_heat_to_walls", "J", 1)),
         ("to the walls", rows.shown("cycle_wall_heat_flow", "W", 1)), ("leak", rows.shown("cycle_leak_share", "%", 100)),
@@ -138,6 +134,10 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
         ("lost in the suction valve", rows.shown("cycle_suction_loss", "W", 1)), ("in the discharge valve", rows.shown("cycle_discharge_loss", "W", 1))) if text]
     if gas:
         found.append(("Gas", ", ".join(gas)))
+    if text := slap(rows):
+        found.append(("Hardest slap", text))
+    if text := rows.shown("cycle_max_cylinder_pressure", "bar", 1e-5):
+        found.append(("Cylinder pressure", text))
     speed = rows(rows.of("", "cycle_mean_crank_speed", "mean_crank_speed"))
     if speed is not None:
         text = f"{number(speed * 9.549296585513721)} rpm"
