@@ -23,6 +23,7 @@ contains
     class(checks_t), intent(inout) :: check
     call jacobians_of_scenes(check)
     call jacobian_of_heat(check)
+    call jacobian_of_gas(check)
     call no_jacobian_outside(check)
     call radau_agrees_with_adams(check)
     call loose_tolerances_survive(check)
@@ -70,6 +71,43 @@ contains
       deallocate (a_p, a_v, b_p, b_v, scale)
     end do
   end subroutine jacobians_of_scenes
+
+  !> The same for gas with a mass: of an engine, open, compressed and burning, and of a compressor whose valves are shut or open.
+  subroutine jacobian_of_gas(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: files(2) = [character(len=40) :: 'cases/gas/engine_walls.nml', 'cases/gas/compressor_valves.nml']
+    real(dp), parameter :: pressures(4, 2) = reshape([1.0e5_dp, 4.0e5_dp, 2.5e6_dp, 6.0e5_dp, &
+      0.7e5_dp, 2.0e5_dp, 5.3e5_dp, 7.0e5_dp], [4, 2])   ! [Pa]
+    real(dp), parameter :: angles(4) = [0.5_dp, 4.0_dp, 6.2_dp, 7.0_dp]
+    type(case_t) :: case
+    type(error_t), allocatable :: error
+    type(scene_t), allocatable :: scene
+    real(dp), allocatable :: y(:), a_p(:, :), a_v(:, :), b_p(:, :), b_v(:, :), scale(:, :)
+    integer :: i, k, m, trial
+    do i = 1, size(files)
+      call read_case(trim(files(i)), [character(len=1) ::], case, error)
+      call build_scene(case, .false., scene, error)
+      m = scene%n_positions
+      k = m + 2
+      y = scene%initial_state()
+      allocate (a_p(k, m), a_v(k, k), b_p(k, m), b_v(k, k))
+      do trial = 1, size(angles)
+        call set_pin(scene, y, 0.55_dp*case%joints(piston_pin)%clearance*[cos(1.0_dp*trial), sin(1.0_dp*trial)], &
+          [0.03_dp*cos(2.3_dp*trial), 0.02_dp*sin(3.1_dp*trial)])
+        call set_crank(scene, y, angles(trial), case%initial%crank_speed)
+        call scene%gas%start(angles(trial), case%initial%crank_speed)
+        y(scene%gas%charge%pressures%first) = pressures(trial, i)
+        call scene%jacobian(angles(trial)/case%initial%crank_speed, y, a_p, a_v)
+        call difference_jacobian(scene, angles(trial)/case%initial%crank_speed, y, b_p, b_v)
+        scale = spread(maxval(abs(b_p), 2) + tiny(1.0_dp), 2, m)
+        call check%close_to(maxval(abs(a_p - b_p)/scale), 0.0_dp, 1e-3_dp, 'Jacobian of gas by positions, '//trim(files(i)))
+        scale = spread(maxval(abs(b_v), 1) + tiny(1.0_dp), 1, k)   ! of each state: pascals, kilograms and metres
+        call check%close_to(maxval(abs(a_v - b_v)/scale), 0.0_dp, 1e-3_dp, 'Jacobian of gas by rates, pressure and mass, '// &
+          trim(files(i)))
+      end do
+      deallocate (a_p, a_v, b_p, b_v)
+    end do
+  end subroutine jacobian_of_gas
 
   !> The same for a film that heats up and thins with the shear, smooth and between rough surfaces, with a side flow of its own.
   subroutine jacobian_of_heat(check)

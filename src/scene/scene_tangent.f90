@@ -23,9 +23,9 @@ contains
     integer :: skip, n, i
 
     has_closed_form = self%chain%is_loose(piston_pin) .and. .not. (self%chain%is_loose(crank_pin) .or. allocated(self%guide) &
-      .or. allocated(self%chain%elastic) .or. size(self%carried) > 0 .or. self%has_charge)
+      .or. allocated(self%chain%elastic) .or. size(self%carried) > 0)
     if (has_closed_form) has_closed_form = all(self%joints(:self%n_joints)%has_slopes) .and. &
-      .not. (allocated(self%chain%floating) .and. allocated(self%chain%train))
+      count([allocated(self%chain%floating), allocated(self%chain%train), self%has_charge]) <= 1
     if (has_closed_form) then
       call self%evaluate(t, y, now, has_closed_form)
       if (has_closed_form) has_closed_form = .not. any(now%joint(:self%n_joints)%sticks)
@@ -54,7 +54,7 @@ contains
     call rod_slopes(self%chain%bodies, now%motion, rod_angle, rod_speed)
     call acceleration_slopes(self%chain%bodies, drive, now%loads, now%motion, now%accelerations, by_motion, by_loads)
     call follow_state(3, matmul(by_loads, of_loads(:, :by_pin_speed)), by_motion, rod_angle, rod_speed, slope(:3, :6))
-    if (allocated(self%gas)) &
+    if (allocated(self%gas) .and. .not. self%has_charge) &
       slope(2, 1) = slope(2, 1) + self%chain%bodies%per_piston_mass*self%gas%force_slope(now%motion%crank_angle)
     if (n > 0) then
       slope(:3, 7:6 + n) = matmul(by_loads, of_loads(:, n_motions + 1:n_motions + n))
@@ -72,6 +72,9 @@ contains
       call torque_slopes(self%chain%bodies, drive, now%motion, by_torque)
       call self%chain%train%add_slopes(of_case, now%motion%train%inertia, self%crank, [(i, i=1, 3 - skip)], &
         by_torque(1 + skip:), a_p, a_v)
+    else if (self%has_charge) then
+      call place_slopes(self, n, skip, slope, a_p, a_v)
+      call add_gas_slopes(self, now, 2 - skip, y, a_p, a_v)
     else
       a_p = slope(1 + skip:3 + n, 1 + skip:3)
       a_v = slope(1 + skip:3 + n, 4 + skip:6 + n)
@@ -207,6 +210,48 @@ contains
       end do
     end subroutine spread_columns
   end subroutine floating_jacobian
+
+  !> Add the derivatives of the rates of pressure and mass of the gas, by differences of the gas alone, and those of the
+  !> acceleration of the pin by the pressure.
+  subroutine add_gas_slopes(scene, now, piston_row, y, a_p, a_v)
+    class(scene_t), intent(in) :: scene
+    type(evaluation_t), intent(in) :: now
+    integer, intent(in) :: piston_row     !! row of the acceleration that follows the force on the piston
+    real(dp), intent(in) :: y(:)
+    real(dp), intent(inout) :: a_p(:, :), a_v(:, :)
+    real(dp), parameter :: small = 1e-7_dp
+    type(charge_motion_t) :: moved
+    real(dp) :: state(size(y)), step
+    integer :: rows(2), i, m
+    m = size(a_p, 2)
+    associate (gas => scene%gas, q => now%motion%crank_angle, speed => now%motion%crank_speed)
+      rows = [gas%charge%pressures%first, gas%charge%masses%first] - m
+      do i = 1, 2
+        step = small*y(m + rows(i))
+        state = y
+        state(m + rows(i)) = y(m + rows(i)) + step
+        call gas%find_charge(q, speed, state, moved)
+        a_v(rows, rows(i)) = change_of_rates(moved)/step
+        if (i == 1) a_v(piston_row, rows(1)) = scene%joints(1)%site%sense*scene%chain%bodies%per_piston_mass* &
+          (gas%force(moved%pressure) - gas%force(now%charge%pressure))/step
+      end do
+      if (.not. scene%chain%drive%free_crank) return
+      call gas%find_charge(q + small, speed, y, moved)
+      a_p(rows, scene%crank%position) = change_of_rates(moved)/small
+      step = small*max(abs(speed), 1.0_dp)
+      call gas%find_charge(q, speed + step, y, moved)
+      a_v(rows, scene%crank%rate - m) = change_of_rates(moved)/step
+    end associate
+
+  contains
+
+    !> By how much the rates of pressure and mass differ from the present ones.
+    pure function change_of_rates(moved) result(rates)
+      type(charge_motion_t), intent(in) :: moved
+      real(dp) :: rates(2)
+      rates = [moved%pressure_rate - now%charge%pressure_rate, moved%mass_rate - now%charge%mass_rate]
+    end function change_of_rates
+  end subroutine add_gas_slopes
 
   !> Put the derivatives of the accelerations of crank and pin and of the rates of the joint's states to their places among those of
   !> a whole state; the others are 0.
