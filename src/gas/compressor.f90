@@ -73,7 +73,7 @@ contains
     gas%crankcase_pressure = self%crankcase_pressure
   end subroutine prepare
 
-  !> Gas with a mass, whose valves have losses instead of the ideal ones.
+  !> Gas with a mass; valves with losses take the place of the ideal ones.
   subroutine fill(self, linkage, sense, gas, charge)
     class(compressor_t), intent(in) :: self
     type(linkage_t), intent(in) :: linkage
@@ -85,7 +85,7 @@ contains
     call charge%prepare(cylinder, chamber_t(bore=self%bore, stroke=linkage%stroke(), closing_pressure=self%suction_pressure, &
       closing_volume=cylinder%dead_volume + cylinder%displacement), self%crankcase_pressure)
     charge%discharge_pressure = self%discharge_pressure
-    deallocate (gas%valves)
+    if (allocated(charge%valves)) deallocate (gas%valves)
   end subroutine fill
 
   pure real(dp) function fastest_piston(self)

@@ -73,6 +73,9 @@ module cylinder_charge
     procedure :: admits
     procedure, non_overridable :: move
     procedure :: move_adiabatic
+    procedure :: move_polytropic
+    procedure :: fresh_mass
+    procedure :: delivery_temperature
     procedure :: energy
     procedure :: totals
     procedure :: exchange
@@ -91,8 +94,8 @@ contains
     call list%add('leak_area', self%leak_area, 'effective area of the gap past the rings to the crankcase', 'm^2', '>= 0', &
       default='0.0', usual='1e-9 to 1e-4')
     call list%add('heat_capacity_ratio', self%heat_capacity_ratio, &
-      'ratio of the heat capacities of the gas of a compressor with &valve', range='>= 0 and <= 10', default='0.0', &
-      usual='1.05 to 1.67')
+      'ratio of the heat capacities of the gas of a compressor with &valve; air 1.4, R134a 1.11, R600a 1.09', &
+      range='>= 0 and <= 10', default='0.0', usual='1.05 to 1.67')
   end subroutine parameters
 
   !> Take over the groups of a case.
@@ -131,8 +134,8 @@ contains
     self%crankcase_pressure = crankcase_pressure
   end subroutine prepare
 
-  !> Claim pressures and masses of a number of cylinders, and the integrals. They have no influence on the steps, but for the losses
-  !> of valves: their rates have a kink where the pressure passes that of the chamber, which a step of high order must not cross.
+  !> Claim pressures and masses of a number of cylinders, and the integrals. Those of the losses of valves, whose rates have kinks
+  !> where the pressures are equal, take part in the error control; the others have no influence on the steps.
   subroutine claim(self, layout, cylinders)
     class(charge_t), intent(inout) :: self
     type(layout_t), intent(inout) :: layout
@@ -140,11 +143,13 @@ contains
     type(slice_t) :: more
     call layout%claim_states(cylinders, self%chamber%closing_pressure, self%pressures)
     call layout%claim_states(cylinders, self%closed_mass, self%masses)
-    call layout%claim_quadratures(n_closed_sums, 0.0_dp, self%sums)
-    if (.not. allocated(self%valves)) return
-    call layout%claim_quadratures(2, 0.0_dp, more)
+    if (.not. allocated(self%valves)) then
+      call layout%claim_quadratures(n_closed_sums, 0.0_dp, self%sums)
+      return
+    end if
+    call layout%claim_quadratures(suction_loss - 1, 0.0_dp, self%sums)
     call layout%claim_quadratures(2, self%chamber%closing_pressure*self%chamber%displacement, more)
-    call layout%claim_quadratures(1, 0.0_dp, more)
+    call layout%claim_quadratures(n_charge_sums - discharge_loss, 0.0_dp, more)
     self%sums%last = more%last
   end subroutine claim
 
@@ -271,7 +276,7 @@ contains
     now%rates(work_on_gas) = -now%pressure*rate
   end subroutine move_valves
 
-  !> The gas of the mechanism's cylinder where it has no states, at a pressure [Pa] with its slope over the angle [Pa/rad].
+  !> The gas of an engine where it has no states, at a pressure [Pa] with its slope over the angle [Pa/rad].
   pure subroutine move_adiabatic(self, angle, speed, pressure, slope, is_open, now)
     class(charge_t), intent(in) :: self
     real(dp), intent(in) :: angle, speed, pressure, slope
@@ -294,6 +299,29 @@ contains
     now%valve_lift = 0
     now%rates = 0
   end subroutine move_adiabatic
+
+  !> The gas between the ideal valves of a compressor, at a pressure [Pa] with its slope over the angle [Pa/rad]. Compressed with an
+  !> exponent n, delivered without a change of its state and expanded again it always has T = T_s (p/p_s)^((n - 1)/n).
+  pure subroutine move_polytropic(self, angle, speed, pressure, slope, exponent, now)
+    class(charge_t), intent(in) :: self
+    real(dp), intent(in) :: angle, speed, pressure, slope, exponent
+    type(charge_motion_t), intent(out) :: now
+    real(dp) :: volume
+    call self%move_adiabatic(angle, speed, pressure, slope, .false., now)
+    volume = self%cylinder%volume(angle)
+    now%temperature = self%delivery_temperature(pressure, exponent)
+    now%temperature_rate = (exponent - 1)/exponent*now%temperature*now%pressure_rate/pressure
+    now%mass = pressure*volume/(self%chamber%gas_constant*now%temperature)
+    now%mass_rate = now%mass*(now%pressure_rate/pressure + self%cylinder%volume_slope(angle)*speed/volume - &
+      now%temperature_rate/now%temperature)
+  end subroutine move_polytropic
+
+  !> Temperature of gas from the suction chamber that is compressed to a pressure [Pa] with an exponent [K].
+  pure real(dp) function delivery_temperature(self, pressure, exponent)
+    class(charge_t), intent(in) :: self
+    real(dp), intent(in) :: pressure, exponent
+    delivery_temperature = self%chamber%closing_temperature*(pressure/self%chamber%closing_pressure)**((exponent - 1)/exponent)
+  end function delivery_temperature
 
   !> Energy of the gas in the mechanism's cylinder, p V/(g - 1), at an angle of its cycle [rad] [J].
   pure real(dp) function energy(self, angle, y)

@@ -28,10 +28,10 @@ contains
       'engines (Annand), some 0.045 of compressors, with 0.8', range='> 0 and <= 1000', example='0.49', usual='0.02 to 1')
     call list%add('exponent', self%exponent, 'exponent of the Reynolds number: 0.7 of engines, 0.8 of compressors', &
       range='> 0 and <= 2', default='0.7', usual='0.5 to 0.9')
-    call list%add('viscosity', self%viscosity, 'dynamic viscosity of the gas at its mean temperature; air of 1000 K: 4.5e-5', &
-      'Pa s', '> 0', example='4.5e-5', usual='5e-6 to 1e-4')
+    call list%add('viscosity', self%viscosity, 'dynamic viscosity of the gas at its mean temperature; air of 1000 K: 4.5e-5, '// &
+      'R600a of 350 K: 9e-6', 'Pa s', '> 0', example='4.5e-5', usual='5e-6 to 1e-4')
     call list%add('conductivity', self%conductivity, 'thermal conductivity of the gas at its mean temperature; air of 1000 K: '// &
-      '0.075', 'W/(m K)', '> 0', example='0.075', usual='5e-3 to 0.3')
+      '0.075, R600a of 350 K: 0.022', 'W/(m K)', '> 0', example='0.075', usual='5e-3 to 0.3')
   end subroutine parameters
 
   pure real(dp) function heat_transfer(self, chamber, gas) result(h)

@@ -39,6 +39,7 @@ module valve_gas
     procedure :: pressure_slope
     procedure :: events
     procedure :: pass
+    procedure :: volumetric_efficiency
   end type valve_gas_t
 
 contains
@@ -135,6 +136,15 @@ contains
       call close_valves(self, self%pressure(q), self%cylinder%volume(q))
     end if
   end subroutine pass
+
+  !> Gas that is delivered in a revolution over that of the displacement at suction: 1 + c - c (p_d/p_s)^(1/n), c the dead space; 0
+  !> where the discharge pressure is not reached.
+  pure real(dp) function volumetric_efficiency(self) result(efficiency)
+    class(valve_gas_t), intent(in) :: self
+    associate (dead_space => self%cylinder%dead_volume/self%cylinder%displacement)
+      efficiency = max(0.0_dp, 1 + dead_space - dead_space*(self%discharge_pressure/self%suction_pressure)**(1/self%exponent))
+    end associate
+  end function volumetric_efficiency
 
   !> Set both valves to closed, with gas of this pressure [Pa] and volume [m^3].
   subroutine close_valves(self, pressure, volume)

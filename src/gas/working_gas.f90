@@ -13,7 +13,7 @@ module working_gas
   use cylinder_charge, only: charge_t, charge_motion_t, n_charge_sums, of_balance, moved
   use gas_cycle, only: part_open
   use flow_valve, only: suction, discharge
-  use trace_row, only: largest, of_cycle
+  use trace_row, only: least, largest, of_cycle
   implicit none
   private
   public :: working_gas_t
@@ -124,7 +124,10 @@ contains
     real(dp), intent(in) :: crank_angle, crank_speed, y(:)
     type(charge_motion_t), intent(out) :: now
     associate (angle => self%sense*self%angle(crank_angle), speed => self%sense*crank_speed)
-      if (.not. allocated(self%cycle)) then
+      if (allocated(self%valves)) then
+        call self%charge%move_polytropic(angle, speed, self%valves%pressure(self%angle(crank_angle)), &
+          self%sense*self%valves%pressure_slope(self%angle(crank_angle)), self%valves%exponent, now)
+      else if (.not. allocated(self%cycle)) then
         call self%charge%move(1, angle, speed, 0.0_dp, .false., y, now)
       else if (self%charge%is_state) then
         call self%charge%move(1, angle, speed, self%cycle%heat_slope(angle, self%part, self%cycle_start)*speed, &
@@ -205,6 +208,8 @@ contains
     call row%add('cylinder_pressure[Pa]', pressure, 'absolute pressure of the gas in the cylinder')
     if (self%has_states()) call row%keep('max_cylinder_pressure', largest, 'largest pressure of the gas in the cylinder', &
       rate=charge%pressure_rate, told=of_cycle, has_angle=.true.)
+    if (self%has_states()) call row%keep('min_cylinder_pressure', least, 'smallest pressure of the gas in the cylinder', &
+      rate=charge%pressure_rate, told=of_cycle)
     volume = 0
     if (row%wants(1)) volume = self%cylinder%volume_at(sin_crank, cos_crank)
     call row%add('cylinder_volume[m3]', volume, 'volume of the gas in the cylinder')
@@ -213,6 +218,7 @@ contains
     if (.not. allocated(self%charge)) return
     call row%add('gas_temperature[K]', charge%temperature, 'temperature of the gas in the cylinder')
     call row%keep('max_gas_temperature', largest, 'largest temperature of the gas in the cylinder', rate=charge%temperature_rate)
+    call row%keep('min_gas_temperature', least, 'smallest temperature of the gas in the cylinder', rate=charge%temperature_rate)
     call row%add('gas_mass[kg]', charge%mass, 'mass of the gas in the cylinder')
     call row%add_on_request('wall_heat_flow[W]', charge%heat_flow, 'heat of the gas to the walls of the cylinder')
     call row%add_on_request('leak_flow[kg/s]', charge%leak_flow, 'flow of gas past the rings, positive out of the cylinder')
@@ -223,7 +229,7 @@ contains
     call row%add_on_request('discharge_valve_lift[m]', charge%valve_lift(discharge), 'lift of the discharge valve')
   end subroutine add_columns
 
-  !> Derivative of the force with respect to the crank angle [N/rad].
+  !> Derivative of the force with respect to the crank angle, of gas without states [N/rad].
   pure real(dp) function force_slope(self, crank_angle)
     class(working_gas_t), intent(in) :: self
     real(dp), intent(in) :: crank_angle

@@ -255,6 +255,7 @@ contains
     type(case_t), intent(in) :: c
     type(remarks_t), intent(inout) :: to
     type(gas_figures_t) :: gas
+    character(len=*), parameter :: of_hermetic = ': in a hermetic compressor both are equal'
     if (allocated(c%measured)) then
       call find_gas_figures(c%measured, c%mechanism%linkage(), c%initial%crank_speed, gas)
       if (gas%is_known) call note_table(c, gas, to)
@@ -265,9 +266,12 @@ contains
     associate (suction => c%combustion%filling_pressure(), crankcase => c%combustion%crankcase_pressure)
       if (suction > 0 .and. crankcase > 1.05_dp*suction) then
         call to%remark('combustion', 'suction_pressure', 'is below the crankcase_pressure of '//quantity_text(crankcase, 'Pa')// &
-          ', which is on the other side of the piston', 'combustion.crankcase_pressure')
+          ', which is on the other side of the piston'//of_hermetic, 'combustion.crankcase_pressure')
         call to%remark('combustion', 'crankcase_pressure', 'is above the suction_pressure of '//quantity_text(suction, 'Pa'), &
           'combustion.suction_pressure')
+      else if (crankcase < 0.95_dp*suction .and. .not. to%is_given('combustion', 'crankcase_pressure')) then
+        call to%remark('combustion', 'suction_pressure', 'is above the crankcase_pressure of '//quantity_text(crankcase, 'Pa')// &
+          ' that is the default'//of_hermetic, '')
       end if
     end associate
     if (to%any_in('combustion') .or. .not. is_engine(c) .or. &

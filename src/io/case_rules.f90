@@ -293,11 +293,16 @@ contains
     type(case_values_t), intent(inout) :: values
     integer :: i
     if (.not. allocated(c%valves)) then
-      call values%refuse_group('working_gas', 'needs &valve with cycle = ''compressor'': ideal valves have no flow')
+      call values%forbid(c%charge%leak_area > 0, 'working_gas', 'leak_area', &
+        'needs &valve: a compressor with ideal valves has no leak')
+      if (allocated(c%walls)) call values%refuse_group('wall_heat', &
+        'needs &valve in a compressor: between ideal valves the heat is that of polytropic_exponent')
+      call values%forbid(c%charge%heat_capacity_ratio > 0, 'working_gas', 'heat_capacity_ratio', &
+        'is for &valve: with ideal valves the exponent is &combustion polytropic_exponent')
       return
     end if
     call values%forbid(exponent_of(values) > 0, 'combustion', 'polytropic_exponent', &
-      'follows from the heat with &valve: give heat_capacity_ratio in &working_gas')
+      'follows from the heat with &valve: leave it out, and give heat_capacity_ratio in &working_gas')
     call values%demand(c%charge%heat_capacity_ratio > 0, 'working_gas', 'heat_capacity_ratio', 'with &valve')
     call values%forbid(c%charge%heat_capacity_ratio > 0 .and. .not. c%charge%heat_capacity_ratio > 1, 'working_gas', &
       'heat_capacity_ratio', 'must be > 1')
@@ -305,8 +310,8 @@ contains
       if (c%walls%needs_engine()) call values%refuse('wall_heat', 'law', 'is of engines: constant, hohenberg or reynolds')
     end if
     if (size(c%valves) == 2) then
-      call values%forbid(c%valves(1)%port == c%valves(2)%port .or. any([c%valves(1)%port, c%valves(2)%port] == 'both'), 'valve_2', &
-        'port', 'must be the other of suction and discharge: the first group is of '//c%valves(1)%port)
+      call values%forbid(c%valves(1)%port == c%valves(2)%port .or. c%valves(1)%port == 'both' .or. c%valves(2)%port == 'both', &
+        'valve_2', 'port', 'must be the other of suction and discharge: the first group is of '//c%valves(1)%port)
     else
       call values%forbid(c%valves(1)%port /= 'both', 'valve_1', 'port', 'is one of two: give the other valve too, or both')
     end if

@@ -71,9 +71,10 @@ contains
       notes = notes//text//achar(10)
     end subroutine add_line
 
-    !> A leak of worn rings, and temperatures of no gas in a cylinder.
+    !> A leak of worn rings, temperatures of no gas in a cylinder, a compressor that does not deliver, a valve that does not shut.
     subroutine note_gas()
-      real(dp), parameter :: largest_share = 0.1_dp, hottest = 4000   ! [-], [K]
+      real(dp), parameter :: largest_share = 0.1_dp, hottest = 4000, coldest = 150   ! [-], [K], [K]
+      character(len=:), allocatable :: open_valve
       real(dp) :: temperature
       logical :: is_known
       associate (share => machine_answer(report, 'cycle_leak_share'))
@@ -83,9 +84,16 @@ contains
       call report%value_of('max_gas_temperature', temperature, is_known)
       if (is_known .and. temperature > hottest) call add_line('the gas reaches '//short_text(temperature, 4)//' K, usually up '// &
         'to 3000 K: &combustion heat, &working_gas temperature')
-      if (allocated(case%valves) .and. abs(machine_answer(report, 'cycle_work_gas')) > 0 .and. &
-        .not. machine_answer(report, 'cycle_mass_flow') > 0) call add_line('the compressor delivers no gas in the last cycle: '// &
-        'its discharge valve stays closed')
+      call report%value_of('min_gas_temperature', temperature, is_known)
+      if (is_known .and. temperature < coldest) call add_line('the gas is as cold as '//short_text(temperature, 4)//' K, '// &
+        'usually above 200 K: &working_gas temperature, pressures')
+      if (.not. allocated(case%combustion) .or. .not. machine_answer(report, 'cycle_duration') > 0) return
+      if (.not. case%combustion%filling_pressure() > 0) return
+      if (.not. machine_answer(report, 'cycle_volumetric_efficiency') > 0) call add_line('the compressor delivers no gas in '// &
+        'the last cycle: its discharge valve stays closed')
+      open_valve = machine_text(report, 'cycle_open_valve')
+      if (open_valve /= '') call add_line('the '//open_valve//' valve is open through the whole cycle: more &valve area, or '// &
+        'less leak_area')
     end subroutine note_gas
 
     !> A lubricated skirt that runs on its asperities.
@@ -188,6 +196,19 @@ contains
         value = report%answers(i)%value
     end do
   end function machine_answer
+
+  !> An answer of the machine that is a text; empty if the run has not given it.
+  pure function machine_text(report, name) result(text)
+    type(run_report_t), intent(in) :: report
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: text
+    integer :: i
+    text = ''
+    if (.not. allocated(report%answers)) return
+    do i = 1, size(report%answers)
+      if (cycle_quantities(report%answers(i)%quantity)%name == name) text = trim(report%answers(i)%text)
+    end do
+  end function machine_text
 
   !> Whether a floating pin is between dry bearings whose friction has the same moment: while it slides in both of them the moments
   !> cancel at every speed of the pin.

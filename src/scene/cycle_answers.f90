@@ -22,6 +22,7 @@ module cycle_answers
   use ideal_linkage, only: linkage_t
   use cylinder_charge, only: of_balance, to_walls, leaked, leaked_enthalpy, moved, delivered, delivered_heat, suction_loss, &
     discharge_loss, work_on_gas
+  use flow_valve, only: flow_valve_t, suction, discharge
   use film_heat, only: temperature_sum, heat_to_oil, heat_to_housing
   implicit none
   private
@@ -105,12 +106,17 @@ module cycle_answers
     quantity_t('cycle_indicated_efficiency', '1', 'work of the gas over the heat that combustion releases in all cylinders'), &
     quantity_t('cycle_gas_energy_residual', '1', 'energy of the gas less what it received by heat, work and leak in the cycle, '// &
       'over the size of its work: the error of the integration'), &
-    quantity_t('cycle_mass_flow', 'kg/s', 'gas that a compressor delivers through its discharge valve, with `&valve`'), &
+    quantity_t('cycle_mass_flow', 'kg/s', 'gas that the cylinder of a compressor delivers through its discharge valve, with '// &
+      '`&working_gas`'), &
     quantity_t('cycle_volumetric_efficiency', '1', 'that over the displacement full of gas of the suction chamber'), &
     quantity_t('cycle_isentropic_efficiency', '1', 'work of the isentropic compression of that gas over the work on the gas'), &
     quantity_t('cycle_discharge_temperature', 'K', 'mean temperature of that gas, by its mass'), &
     quantity_t('cycle_suction_loss', 'W', 'power lost in the suction valve: by pressures below that of suction'), &
     quantity_t('cycle_discharge_loss', 'W', 'power lost in the discharge valve: by pressures above that of discharge'), &
+    quantity_t('cycle_max_suction_valve_lift', 'm', 'largest lift of the suction valve in the cycle'), &
+    quantity_t('cycle_max_discharge_valve_lift', 'm', 'largest lift of the discharge valve in the cycle'), &
+    quantity_t('cycle_open_valve', '', &
+      'which valve is open through the whole cycle, `suction` or `discharge`; not told if both of them shut'), &
     quantity_t('cycle_leak_flow', 'kg/s', 'mean flow past the rings of a compressor'), &
     quantity_t('cycle_wall_heat_flow', 'W', 'mean heat of its gas to the walls'), &
     quantity_t('cycle_bmep', 'Pa', 'the same of the brake power'), &
@@ -281,7 +287,11 @@ contains
       call add('cycle_imep', work_of(by_gas)/displacement)
       if (allocated(scene%gas%cycle)) call add('cycle_heat_released', &
         scene%gas%cycle%release%heat*released_share(scene%gas%cycle%release%efficiency))
-      if (allocated(scene%gas%charge)) call add_charge(real(revolutions, dp)/scene%forced_revolutions())
+      if (allocated(scene%gas%valves)) then
+        call add_ideal_compressor()
+      else if (allocated(scene%gas%charge)) then
+        call add_charge(real(revolutions, dp)/scene%forced_revolutions())
+      end if
       call add('cycle_bmep', shaft/displacement)
       call add('cycle_fmep', loss/displacement)
       if (scene%n_works < size(scene%parts)) &
@@ -342,6 +352,21 @@ contains
       end associate
     end subroutine add_charge
 
+    !> The flow of a compressor with ideal valves.
+    subroutine add_ideal_compressor()
+      real(dp) :: delivered_volume   !! of gas at suction, in the cycle [m^3]
+      associate (valves => scene%gas%valves)
+        call add('cycle_volumetric_efficiency', valves%volumetric_efficiency())
+        if (.not. allocated(scene%gas%charge)) return
+        delivered_volume = valves%volumetric_efficiency()*valves%cylinder%displacement*revolutions
+        associate (charge => scene%gas%charge)
+          call add('cycle_mass_flow', charge%fresh_mass(delivered_volume)/cycle%duration)
+          if (delivered_volume > 0) call add('cycle_discharge_temperature', &
+            charge%delivery_temperature(valves%discharge_pressure, valves%exponent))
+        end associate
+      end associate
+    end subroutine add_ideal_compressor
+
     !> The flow of a compressor, what it does to the gas, and its losses.
     subroutine add_compressor()
       real(dp) :: ideal   !! isentropic work on a mass [J/kg]
@@ -355,10 +380,35 @@ contains
         if (cycle%gas(delivered) > 0) call add('cycle_discharge_temperature', cycle%gas(delivered_heat)/cycle%gas(delivered))
         call add('cycle_suction_loss', cycle%gas(suction_loss)/cycle%duration)
         call add('cycle_discharge_loss', cycle%gas(discharge_loss)/cycle%duration)
+        if (scene%gas%has_force) then
+          call add_lifts(charge%valves, chamber%closing_pressure - [kept('', 'min_cylinder_pressure'), &
+            kept('', 'max_cylinder_pressure')], [kept('', 'max_cylinder_pressure'), kept('', 'min_cylinder_pressure')] - &
+            charge%discharge_pressure)
+        end if
         if (charge%loses_gas()) call add('cycle_leak_flow', cycle%gas(leaked)/cycle%duration)
         if (allocated(charge%walls)) call add('cycle_wall_heat_flow', cycle%gas(to_walls)/cycle%duration)
       end associate
     end subroutine add_compressor
+
+    !> The largest lifts of the valves of a compressor, and which of them does not shut, from the largest and the least difference
+    !> of the pressures on each [Pa].
+    subroutine add_lifts(valves, on_suction, on_discharge)
+      type(flow_valve_t), intent(in) :: valves(2)
+      real(dp), intent(in) :: on_suction(2), on_discharge(2)
+      call add('cycle_max_suction_valve_lift', valves(suction)%lift*valves(suction)%open_share(on_suction(1)))
+      call add('cycle_max_discharge_valve_lift', valves(discharge)%lift*valves(discharge)%open_share(on_discharge(1)))
+      call add_open_valve('suction', valves(suction)%open_share(on_suction(2)))
+      call add_open_valve('discharge', valves(discharge)%open_share(on_discharge(2)))
+    end subroutine add_lifts
+
+    !> Tell of a valve whose least share of its lift is not 0.
+    subroutine add_open_valve(name, least_share)
+      character(len=*), intent(in) :: name
+      real(dp), intent(in) :: least_share
+      if (.not. least_share > 0) return
+      call add('cycle_open_valve', 0.0_dp)
+      answers(size(answers))%text = name
+    end subroutine add_open_valve
 
     !> The hardest impact of the skirt in the cycle.
     subroutine add_slap()
