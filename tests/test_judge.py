@@ -76,6 +76,10 @@ SCENES = {
     "weighted": ("film/weighted", {"integrator.revolutions": "0.3", "integrator.max_step": "2e-5"}),
     "compressor": ("gas/compressor", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "drive.kind": "'free'"}),
     "two_stroke": ("gas/two_stroke", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"}),
+    "woschni": ("gas/engine_walls", {"integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"}),
+    "hohenberg": ("gas/engine_walls", {"integrator.revolutions": "1.2", "initial.crank_angle_deg": "170", "wall_heat.law": "hohenberg", "initial.crank_speed": "-250"}),
+    "valves": ("gas/compressor_valves", {"integrator.revolutions": "1.2", "integrator.relative_tolerance": "1e-7"}),
+    "filled": ("gas/compressor", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "working_gas.gas_constant": "287", "working_gas.temperature": "300"}),
     "measured": ("gas/measured", {"integrator.method": "'auto'", "integrator.revolutions": "0.5", "initial.crank_angle_deg": "300",
                                   "cylinder_pressure.offset_deg": "-17.3"}),
     "ramp": ("drive/start_up", {"integrator.method": "'auto'", "integrator.end_time": "0.05", "output.interval": "2.5e-4"}),
@@ -215,7 +219,7 @@ PHASES = {"carried": {0}, "engine": {0, 2}, **dict.fromkeys(("still", "unexcited
           "wide": {1, 2}, "vanishing": {1, 2}, "massless": {0, 2}, "loose": {0, 2}, "start": {0, 2}, "dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "lugre": {0, 2},
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
           "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2}, "elastic": {1},
-          "inertia": {1, 2}, "compressor": {1}, "two_stroke": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1},
+          "inertia": {1, 2}, "compressor": {1}, "two_stroke": {1}, "woschni": {1}, "hohenberg": {1}, "valves": {1}, "filled": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1},
           "worn": {0, 2}, "slap": {0, 2}, "jammed": {0, 2}, "guide": {0}, "ideal": {0}, "rod": {0, 2}, "rods": {0, 2}, "shaft": {1}, "bent": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (fault, scene, column, change of (value, row), text that the verdict must contain)
@@ -335,6 +339,15 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("cylinder pressure too large", "film", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
     ("cylinder pressure of a compressor too large", "compressor", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
     ("cylinder pressure of a two-stroke engine too large", "two_stroke", "cylinder_pressure", lambda v, i: v * 1.001, "gas law"),
+    ("temperature of the gas too high", "woschni", "gas_temperature", lambda v, i: v * 1.001, "state of the gas"),
+    ("heat to the walls by Woschni's law too large", "woschni", "wall_heat_flow", lambda v, i: v * 1.001, "heat to the walls"),
+    ("heat to the walls by Hohenberg's law too large", "hohenberg", "wall_heat_flow", lambda v, i: v * 1.001, "heat to the walls"),
+    ("leak with the opposite sign", "woschni", "leak_flow", lambda v, i: -v, "leak"),
+    ("flow through a valve too large", "valves", "discharge_flow", lambda v, i: v * 1.001, "discharge flow"),
+    ("lift of a valve too large", "valves", "suction_valve_lift", lambda v, i: v * 1.001, "lift of the suction valve"),
+    ("pressure of a compressor that drifts", "valves", "cylinder_pressure", lambda v, i: v * (1 + 1e-5 * i), "cylinder_pressure is not the integral"),
+    ("mass between ideal valves too large", "filled", "gas_mass", lambda v, i: v * 1.001, "state of the gas"),
+    ("temperature between ideal valves too high", "filled", "gas_temperature", lambda v, i: v * 1.001, "temperature of the gas"),
     ("pressure that is not the measured one", "measured", "cylinder_pressure", lambda v, i: v * (1 + 1e-4), "gas law"),
     ("crank speed of a ramp wrong", "ramp", "crank_speed", lambda v, i: v * (1 + 1e-9), "held speed"),
     ("crank acceleration of a ramp wrong", "ramp", "crank_acceleration", lambda v, i: v * (1 + 1e-9), "held acceleration"),
@@ -508,6 +521,10 @@ MUTANTS = [
      "measured", "gas law"),
     ("gas pressure one part in a thousand too large", "gas_cycle.f90", "values(i) = p*(volume", "values(i) = 1.001_dp*p*(volume",
      "film", "gas law"),
+    ("a constant of Woschni's law wrong", "woschni.f90", "h = 3.26_dp*", "h = 3.27_dp*", "woschni", "heat to the walls"),
+    ("enthalpy of the incoming gas with the temperature of the cylinder", "cylinder_charge.f90", "now%valve_flow(suction)* &\n          self%given%temperature)",
+     "now%valve_flow(suction)* &\n          now%temperature)", "valves", "cylinder_pressure is not the integral"),
+    ("flow through an orifice without its parabola", "nozzle_flow.f90", "if (y < 1) psi = psi*y*(3 - y)/2", "if (y < 1) psi = psi*y", "woschni", "leak"),
 ]
 
 
@@ -682,7 +699,7 @@ class Mutants:
             return False, name, reason
         os.environ["XDG_CACHE_HOME"] = str(program.parent)   # a mutant must not use tables of films of others
         run = traced(program, scene)
-        if run.status == STOPPED and run.summary.get("status", "").startswith("energy not kept"):
+        if run.status == STOPPED and run.summary.get("status", "").startswith(("energy not kept", "energy of the gas not kept")):
             print(f"{name}: not needed, the program stops by itself: {run.summary['status']}", flush=True)
             return True, name, ""
         faults = judge_files(run).faults

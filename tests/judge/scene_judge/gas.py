@@ -110,7 +110,8 @@ class Gas(Cylinder):
                           for x, w in GAUSS_5)
 
     def wanted(self, i: int, q: float) -> float | None:
-        return None if self.loses else super().wanted(i, q)
+        found = super().wanted(i, q)
+        return None if self.loses and found != self.intake else found
 
     def pressure(self, q: float) -> float:
         """Pressure at the angle q [Pa]."""
@@ -201,6 +202,26 @@ class Compressor(Cylinder):
         return self.rows[i][1]
 
 
+class Throttled(Cylinder):
+    """Gas behind valves with losses, whose pressure is a state of the motion."""
+
+    def __init__(self, run: Run) -> None:
+        super().__init__(run, "combustion")
+        self.dead = self.displacement * run.number("combustion.dead_space")
+        c = run.columns
+        self.pieces, state = [0], None
+        for lifts in zip(c["suction_valve_lift"], c["discharge_valve_lift"]) if "suction_valve_lift" in c else ():
+            now = tuple((lift > 0) + (lift >= full) for lift, full in zip(lifts, (max(c["suction_valve_lift"]), max(c["discharge_valve_lift"]))))
+            self.pieces.append(self.pieces[-1] + (state is not None and now != state))
+            state = now
+
+    def wanted(self, i: int, q: float) -> float | None:
+        return None
+
+    def part_of(self, i: int, q: float, turn: float) -> int:
+        return self.pieces[min(i + 1, len(self.pieces) - 1)]
+
+
 class Measured(Cylinder):
     """A table of the pressure over a period, interpolated by Steffen's cubic polynomials."""
 
@@ -250,4 +271,6 @@ def gas_of(run: Run) -> Cylinder | None:
         return Measured(run)
     if "combustion.bore" not in run.case:
         return None
-    return Compressor(run) if run.text("combustion.cycle") == "compressor" else Gas(run)
+    if run.text("combustion.cycle") != "compressor":
+        return Gas(run)
+    return Throttled(run) if "valve_1.area" in run.case else Compressor(run)

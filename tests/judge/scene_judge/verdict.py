@@ -7,6 +7,7 @@ import zlib
 from pathlib import Path
 
 from .carried import judge_carried, requested_heat
+from .charge import judge_charge, requested_charge
 from .elastic import requested_columns
 from .energy import BLURRED, Balances, balances
 from .engine import Engine
@@ -39,7 +40,7 @@ class Verdict:
 
 def requested(run: Run) -> dict[str, str]:
     """The setting that adds to the trace the columns on request that the judge needs."""
-    names = requested_columns(run) + requested_heat(run) + (Engine(run).requested() if Engine.is_in(run) else [])
+    names = requested_columns(run) + requested_heat(run) + requested_charge(run) + (Engine(run).requested() if Engine.is_in(run) else [])
     return {"output.columns": "'" + ", ".join(("standard", *names)) + "'"} if names else {}
 
 
@@ -117,20 +118,21 @@ def judge_files(run: Run, resolved: bool = True) -> Verdict:
         verdict.faults.append(f"no rows to judge: {run.summary.get('status', run.message)[:120]}")
         return verdict
     checks = None if has_no_mechanism(run) else judge_rows(run, verdict)
+    judged = [judge_charge(checks, max(FLOOR, min(DRIFT, allowed_error(run))), resolved)] if checks else []
     if resolved:
-        judged = [judge_carried(run, max(FLOOR, min(CARRIED, allowed_error(run))))]
+        judged.append(judge_carried(run, max(FLOOR, min(CARRIED, allowed_error(run)))))
         if checks and checks.bodies.engine:
             judged.append(judge_stations(checks, max(FLOOR, min(DRIFT, allowed_error(run)))))
         elif checks:
             judge_energy(checks, verdict)
         if checks:
             judged.append(judge_wear(checks))
-        for made, faults, notes in judged:
-            verdict.checks += made
-            verdict.faults += faults
-            verdict.notes += notes
     else:
         verdict.notes.append("integrals not judged: too many steps for a row at each, and contacts between the rows of the grid")
+    for made, faults, notes in judged:
+        verdict.checks += made
+        verdict.faults += faults
+        verdict.notes += notes
     return verdict
 
 
