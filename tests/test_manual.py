@@ -287,7 +287,7 @@ def check_pictures_of_tutorials() -> None:
     seen = set()
     for page in sorted((ROOT / "data/manual").glob("tutorial_*.md")):
         text = page.read_text(encoding="utf-8")
-        named, shown = set(re.findall(r"^    results/(\w+\.png)", text, re.MULTILINE)), set(re.findall(r"!\[[^]]+\]\(tutorials/(\w+\.png)\)", text))
+        named, shown = set(re.findall(r"^    results/([\w.]+\.png)", text, re.MULTILINE)), set(re.findall(r"!\[[^]]+\]\(tutorials/([\w.]+\.png)\)", text))
         check(named <= shown, f"{page.name} shows what it makes", str(named - shown))
         seen |= shown
     check(seen == kept, "the pictures of tutorials are shown", str(seen ^ kept))
