@@ -35,10 +35,12 @@ module asperities
     procedure :: pressure
     procedure :: total_pressure
     procedure :: mean_gap
+    procedure :: film_gap
     procedure :: friction_force
   end type asperities_t
 
   real(dp), parameter :: farthest(2) = [8.0_dp, 4.0_dp]   !! h/s above which there is no contact: exact, fit
+  real(dp), parameter :: far_apart = 7                    !! h/s above which surfaces count as smooth
   real(dp), parameter :: deepest = -20                    !! smallest h/s of the table
   integer, parameter :: per_roughness = 8                 !! number of values per roughness in the table
   real(dp), parameter :: fit_power = 6.804_dp
@@ -251,6 +253,19 @@ contains
     slope = 0.5_dp*erfc(-x/sqrt(2.0_dp))
     gap = h*slope + self%roughness/sqrt(2*pi)*exp(-0.5_dp*x**2)
   end subroutine mean_gap
+
+  !> The same, h and 1 where the surfaces are so far apart that this has an error of 1e-12.
+  pure subroutine film_gap(self, h, gap, slope)
+    class(asperities_t), intent(in) :: self
+    real(dp), intent(in) :: h   !! [m]
+    real(dp), intent(out) :: gap, slope
+    if (h > far_apart*self%roughness) then
+      gap = h
+      slope = 1
+    else
+      call self%mean_gap(h, gap, slope)
+    end if
+  end subroutine film_gap
 
   !> Boundary friction at a sliding speed [m/s] under a normal force of the asperities [N].
   pure real(dp) function friction_force(self, sliding_speed, pressing)

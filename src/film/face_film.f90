@@ -23,7 +23,6 @@ module face_film
   public :: face_film_t, face_motion_t, face_loads_t, no_loads
 
   real(dp), parameter :: closer = 0.6_dp          !! how much closer the nodes at the ends are
-  real(dp), parameter :: far_apart = 7            !! gap over roughness above which surfaces count as smooth
   real(dp), parameter :: least_inflow = 1e-13_dp  !! over the largest source, with which a ruptured node fills again
   integer, parameter :: sweeps = 3                !! of Gauss and Seidel over the guess of that part
   integer, parameter :: most_rounds = 60          !! of the search for the part that is full
@@ -151,13 +150,13 @@ contains
       do i = 1, self%around
         gap(i, j) = self%clearance + self%relief(j) + self%oval(i, 1) - &
           side*(motion%offset + self%z(j)*motion%tilt)*self%cosine(i, 1)
-        call see(self, gap(i, j), mean(i, j), slope(i, j))
+        call self%asperities%film_gap(gap(i, j), mean(i, j), slope(i, j))
       end do
     end do
     mean_half = 0
     do j = 1, self%along
       do i = 1, self%around
-        call see(self, self%clearance + self%relief_half(j) + self%oval(i, 1) - &
+        call self%asperities%film_gap(self%clearance + self%relief_half(j) + self%oval(i, 1) - &
           side*(motion%offset + self%z_half(j)*motion%tilt)*self%cosine(i, 1), mean_half(i, j), unused)
       end do
     end do
@@ -184,19 +183,6 @@ contains
     loads%pressure = max(loads%pressure, maxval(p))
   end subroutine find_loads
 
-  !> Mean gap H and its derivative by the gap h [m].
-  pure subroutine see(self, gap, mean, slope)
-    type(face_film_t), intent(in) :: self
-    real(dp), intent(in) :: gap
-    real(dp), intent(out) :: mean, slope
-    if (gap > far_apart*self%asperities%roughness) then
-      mean = gap
-      slope = 1
-    else
-      call self%asperities%mean_gap(gap, mean, slope)
-    end if
-  end subroutine see
-
   !> Pressures of the nodes, 0 at the edges and in a frame around the face [Pa].
   pure subroutine pressures(self, side, motion, speed, mean_half, slope, p)
     class(face_film_t), intent(in) :: self
@@ -219,7 +205,7 @@ contains
         conducts = self%width(j)/(12*self%viscosity*self%step)
         squeeze = side*(motion%offset_rate + self%z(j)*motion%tilt_rate)*self%step*self%width(j)
         do i = 1, n
-          call see(self, self%clearance + self%relief(j) + self%oval(i, 2) - &
+          call self%asperities%film_gap(self%clearance + self%relief(j) + self%oval(i, 2) - &
             side*(motion%offset + self%z(j)*motion%tilt)*self%cosine(i, 2), mean, unused)
           round(i, j) = conducts*mean**3
           source(i, j) = squeeze*slope(i, j)*self%cosine(i, 1) + 0.5_dp*speed*(mean_half(i, j + 1) - mean_half(i, j))*self%step

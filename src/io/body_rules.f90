@@ -173,6 +173,14 @@ contains
         call values%forbid(ring%gas_below > ring%gas_behind, group, 'gas_below', 'must be <= gas_behind = '// &
           short_text(ring%gas_behind))
         above = ring%gas_below
+        if (ring%has_film()) then
+          if (.not. allocated(c%rings%asperities)) call values%refuse(group, 'model', 'needs the group asperities with '// &
+            'place = ''rings'': a smooth ring would touch the bore')
+          call values%forbid(2*abs(ring%crown_offset) >= ring%height, group, 'crown_offset', &
+            'must be shorter than half of height = '//short_text(ring%height))
+        else
+          call values%forbid(abs(ring%crown_offset) > 0, group, 'crown_offset', 'needs model = ''film''')
+        end if
       end associate
     end do
     if (.not. (allocated(c%combustion) .or. allocated(c%measured))) &

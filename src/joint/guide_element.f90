@@ -11,12 +11,20 @@ module guide_element
   use contact_law, only: contact_law_t
   use piston_skirt, only: skirt_t, corner_t, n_corners
   use guide_case, only: guide_case_t
+  use ring_case, only: most_piston_rings
   use face_film, only: face_loads_t
   implicit none
   private
-  public :: guide_element_t, guide_loads_t, most_guide_states
+  public :: guide_element_t, guide_loads_t, ring_now_t, most_guide_states
 
   integer, parameter :: most_guide_states = 10   !! of all elements of a guide
+
+  !> A piston ring.
+  type :: ring_now_t
+    real(dp) :: friction          !! on the piston along x [N]
+    real(dp) :: least_gap         !! of a film [m]
+    real(dp) :: asperities        !! force of the asperities beside a film [N]
+  end type ring_now_t
 
   !> Loads of the guide on the piston.
   type :: guide_loads_t
@@ -33,6 +41,7 @@ module guide_element
     type(corner_t) :: corner(n_corners)   !! with clearance in the bore
     type(face_loads_t) :: skirt           !! of the film of the skirt
     real(dp) :: skirt_power               !! that it takes [W]
+    type(ring_now_t) :: ring(most_piston_rings)
   end type guide_loads_t
 
   type, abstract :: guide_element_t
@@ -74,9 +83,10 @@ module guide_element
 
 contains
 
-  !> Whether the element is defined where the piston is: everywhere.
-  pure logical function all_places(self, tilting) result(admits)
+  !> Whether the element is defined in this state and, with clearance, where the piston is: everywhere.
+  pure logical function all_places(self, y, tilting) result(admits)
     class(guide_element_t), intent(in) :: self
+    real(dp), intent(in) :: y(*)
     type(tilting_t), intent(in) :: tilting
     admits = .true.
   end function all_places

@@ -38,7 +38,7 @@ module piston_guide
     procedure :: find_loads
     procedure :: set_rates
     procedure :: own_speed
-    procedure :: admits_place
+    procedure :: admits_state
   end type piston_guide_t
 
 contains
@@ -167,16 +167,18 @@ contains
     end associate
   end subroutine find_contact_state
 
-  !> Whether the position of the piston is admissible, for the bore and for every element.
-  pure logical function admits_place(self, tilting) result(admits)
+  !> Whether the state is admissible for every element and, with clearance, the position of the piston for the bore.
+  pure logical function admits_state(self, y, tilting) result(admits)
     class(piston_guide_t), intent(in) :: self
-    type(tilting_t), intent(in) :: tilting
+    real(dp), intent(in) :: y(*)
+    type(tilting_t), intent(in) :: tilting   !! not read without clearance
     integer :: k
-    admits = self%admits(tilting)
+    admits = .true.
+    if (self%is_loose) admits = self%admits(tilting)
     do k = 1, self%n_elements
-      if (admits) admits = self%slots(k)%element%admits(tilting)
+      if (admits) admits = self%slots(k)%element%admits(y, tilting)
     end do
-  end function admits_place
+  end function admits_state
 
   !> Loads of the bore on the piston. With clearance force and moment are set in those of the chain too; the friction is not.
   pure subroutine find_loads(self, motion, y, now, all)

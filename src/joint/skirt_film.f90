@@ -73,8 +73,9 @@ contains
     now%skirt_power = -(now%skirt%force*at%offset_rate + now%skirt%moment*at%tilt_rate + now%skirt%friction*at%velocity)
   end subroutine find_loads
 
-  pure logical function admits(self, tilting)
+  pure logical function admits(self, y, tilting)
     class(skirt_film_t), intent(in) :: self
+    real(dp), intent(in) :: y(*)
     type(tilting_t), intent(in) :: tilting
     admits = self%film%least_relief_gap(tilting%offset, tilting%tilt) > deepest*self%film%asperities%roughness
   end function admits

@@ -51,10 +51,10 @@ contains
       now%motion%crank_pin_rate = 0
     end if
     in_domain = .true.
-    if (self%chain%bodies%piston%is_loose) then
-      call self%guide%read_state(y, now%motion%tilting)
-      in_domain = self%guide%admits_place(now%motion%tilting)
-      if (in_domain) call place_piston(self%chain%bodies%piston, now%motion)
+    if (allocated(self%guide)) then
+      if (self%guide%is_loose) call self%guide%read_state(y, now%motion%tilting)
+      in_domain = self%guide%admits_state(y, now%motion%tilting)
+      if (in_domain .and. self%guide%is_loose) call place_piston(self%chain%bodies%piston, now%motion)
     end if
     if (allocated(self%chain%floating)) then
       associate (joint => self%joints(self%joint_at(small_end)), relative => now%joint(self%joint_at(small_end)))

@@ -31,7 +31,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(ode_settings_t), intent(in) :: settings
     real(dp), intent(in) :: t, y(:)
-    character(len=:), allocatable :: text
+    character(len=:), allocatable :: text, wall
     select case (status)
     case (step_too_small)
       text = small_step_reason(scene, settings, t, y)
@@ -41,11 +41,12 @@ contains
       text = hot_film_reason(scene, y)
       if (text /= '') return
       text = 'the state left the range of the model ('//leaving_pin(scene, y)//' left its bearing or its film)'
-      if (has_skirt_film(scene)) then
+      wall = film_at_wall(scene)
+      if (wall /= '') then
         if (scene%n_joints == 0) then
-          text = 'the state left the range of the model (the skirt went into the bore, through its asperities)'
+          text = 'the state left the range of the model ('//wall//' went into the bore, through its asperities)'
         else
-          text = text(:len(text) - 1)//', or the skirt went into the bore, through its asperities)'
+          text = text(:len(text) - 1)//', or '//wall//' went into the bore, through its asperities)'
         end if
       end if
       if (scene%chain%has_elastic_rod()) text = text(:len(text) - 1)// &
@@ -72,12 +73,17 @@ contains
     end select
   end function reason
 
-  !> Whether the piston has clearance in its bore without corners that may touch it: on a film.
-  pure logical function has_skirt_film(scene)
+  !> What has a film at the bore; empty: nothing.
+  pure function film_at_wall(scene) result(text)
     type(scene_t), intent(in) :: scene
-    has_skirt_film = .false.
-    if (allocated(scene%guide)) has_skirt_film = scene%guide%is_loose .and. scene%guide%touching == 0
-  end function has_skirt_film
+    character(len=:), allocatable :: text
+    text = ''
+    if (.not. allocated(scene%guide)) return
+    if (scene%guide%is_loose .and. scene%guide%touching == 0) text = 'the skirt'
+    if (scene%guide%n_states == 0) return
+    if (text /= '') text = text//' or '
+    text = text//'a piston ring'
+  end function film_at_wall
 
   !> Text that says that a film has left the range of temperatures, or an empty one.
   function hot_film_reason(scene, y) result(text)
