@@ -61,6 +61,9 @@ def variants_of_made_cases(template: dict) -> None:
     check(skirt["no model of the guide"] == ("guide=none", "guide.lubrication=none", "guide.asperities=none"), "the film of a skirt goes with its guide")
     check(skirt["film of the skirt: cavitation gumbel"] == ("guide.lubrication.cavitation=gumbel",), "the other condition of rupture in the film of a skirt")
     check("guide.kind=clearance" in skirt["skirt with dry corners"], "dry corners instead of the film of the skirt")
+    rings = dry | {"ring_1": {"model": "closed_form", "crown_offset": 0.0}, "ring_2": {"model": "film", "crown_offset": 0.0}}
+    check(settings_of(variants_of(rings | {"rings.asperities": {}}, template))["piston rings: film"] == ("ring_1.model=film", "ring_2.model=film"), "films of all rings")
+    check("piston rings: film" not in settings_of(variants_of(rings, template)), "smooth rings have no film")
     check(found["crank held at its starting speed"] == ("drive.kind=constant_speed",), "the crank can be held at its starting speed")
     check(len([label for label in found if label.startswith("contact ") and "geometry" not in label]) == 9, "there are nine other contact laws")
     check(found["friction"][0] == "friction.law=ambrosio", "friction can be added")

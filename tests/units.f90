@@ -37,6 +37,7 @@ program units
   use test_ring, only: run_test_ring
   use test_film_cells, only: run_test_film_cells
   use test_face_film, only: run_test_face_film
+  use test_ring_film, only: run_test_ring_film
   use test_engine_films, only: run_test_engine_films
   use test_finite_bearing, only: run_test_finite_bearing
   use test_film_derivatives, only: run_test_film_derivatives
@@ -88,6 +89,7 @@ program units
   call all%run('ring', run_test_ring)
   call all%run('film_cells', run_test_film_cells)
   call all%run('face_film', run_test_face_film)
+  call all%run('ring_film', run_test_ring_film)
   call all%run('engine_films', run_test_engine_films)
   call all%run('finite_bearing', run_test_finite_bearing)
   call all%run('film_derivatives', run_test_film_derivatives)

@@ -2,7 +2,7 @@
 !> asperities.
 !>
 !> The face is a parabola of height b with its crown at x_0 from the middle; h_r is its least gap, the ring's only coordinate. With
-!> x up along the bore, the speed U of the ring, pressures of the gas at both edges and the load W that presses the ring to the wall,
+!> x up along the bore, the speed U of the ring, pressures of the gas at both edges and the load W that presses it to the wall,
 !>
 !>     h = h_r + a ((x - x_0)/(b/2))^2
 !>     d/dx( H^3/(12 mu) dp/dx ) = H'(h) dh_r/dt - (U/2) dH/dx,   p >= 0 (Reynolds' condition)

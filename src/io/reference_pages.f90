@@ -22,7 +22,7 @@ module reference_pages
   !> A kind of scene: changes to the case of the template, separated by blanks.
   type :: scene_kind_t
     character(len=80) :: title = ''
-    character(len=320) :: changes = ''
+    character(len=400) :: changes = ''
   end type scene_kind_t
 
   character(len=*), parameter :: play = 'joint.kind=clearance ', contact = 'contact.law=hertz ', &
@@ -58,8 +58,9 @@ module reference_pages
       'guide.bore_clearance=1e-4 guide.skirt_top=0.02 guide.skirt_bottom=0.02 guide.piston_radius=0.035 '// &
       'guide.piston_inertia=1e-3 guide.lubrication.viscosity=0.008 guide.asperities.roughness=1e-6'), &
     scene_kind_t('Gas', engine), &
-    scene_kind_t('Piston rings (the numbers are those of the case)', 'ring_1.height=1.2e-3 ring_1.crown=6e-6 ring_1.tension=8 '// &
-      'rings.lubrication.viscosity=0.008 '//engine), &
+    scene_kind_t('Piston rings, numbered as in the case (gap and asperities: `model = ''film''`)', 'ring_1.model=film '// &
+      'ring_1.height=1.2e-3 ring_1.crown=6e-6 ring_1.tension=8 rings.lubrication.viscosity=0.008 '// &
+      'rings.asperities.roughness=0.4e-6 '//engine), &
     scene_kind_t('Gas with a mass (`&working_gas`)', 'working_gas.gas_constant=287 working_gas.temperature=350 '// &
       'wall_heat.wall_temperature=450 '//engine), &
     scene_kind_t('Compressor with the losses of its valves (`&valve`)', 'combustion.cycle=compressor combustion.bore=0.07 '// &

@@ -7,12 +7,33 @@ import math
 import re
 
 from .contact import Contact
+from .films import Asperities
 from .laws import LANDING, ROUNDING, Friction
 from .mechanics import Row, rotated
 from .trace import Run
 
 LAW = 1e-6    # allowed relative error of a law's force, beyond the rounding of its arguments
 SUM = 1e-9    # allowed error of a sum, relative to its terms
+F52 = 1e-5    # allowed relative error of the program's series for the pressure of asperities
+
+
+class RingFilm:
+    """The face of a piston ring with a film, and its asperities."""
+
+    def __init__(self, run: Run, ring: str) -> None:
+        own = {key.removeprefix("rings."): value for key, value in run.case.items() if key.startswith("rings.")}
+        own |= {"joint.bearing_radius": [1.0], "joint.bearing_length": [1.0]}
+        self.asperities = Asperities(dataclasses.replace(run, case=own))
+        height, crown, offset = (run.number(f"{ring}.{key}") for key in ("height", "crown", "crown_offset"))
+        n = int(run.number("rings.lubrication.along"))
+        self.relief = [crown * ((2 * j / n - 1) - 2 * offset / height)**2 for j in range(n + 1)]
+        bore = run.number("combustion.bore") or run.number("cylinder_pressure.bore")
+        self.area = [math.pi * bore * height / n * (0.5 if j in (0, n) else 1.0) for j in range(n + 1)]
+
+    def pressing(self, gap: float) -> float:
+        """Force of the asperities around the circumference at a least gap [N]."""
+        return self.asperities.scale * math.fsum(area * self.asperities.pressure(h) for area, h in
+                                                 zip(self.area, ((gap + relief) / self.asperities.roughness for relief in self.relief)) if h < 8)
 
 
 class Guide:
@@ -22,6 +43,7 @@ class Guide:
         n = run.number
         self.viscous = n("guide.viscous")
         self.rings = [name for name in run.columns if re.fullmatch(r"ring_\d_friction_force", name)]
+        self.films = {name[:6]: RingFilm(run, name[:6]) for name in self.rings if f"{name[:6]}_film_thickness" in run.columns}
         case = {key.replace("guide.", "friction."): value for key, value in run.case.items() if key.startswith("guide.")}
         self.friction = Friction(dataclasses.replace(run, case={"friction.law": ["ambrosio"]} | case))   # without &guide: of no coefficient
         self.is_loose = run.has_loose_guide
@@ -104,7 +126,11 @@ class Guide:
         rings = get.get("ring_friction_force", 0.0)
         one_by_one = [get[name] for name in self.rings]
         checks.take("friction of the rings", abs(sum(one_by_one) - rings), SUM * abs(rings) + 1e-300, t)
-        checks.take("friction of a ring drives", max(0.0, *(force * v for force in one_by_one)) if one_by_one else 0.0, 1e-300, t)
+        plain = [get[name] * v for name in self.rings if name[:6] not in self.films]   # gas and squeeze may make a film push
+        checks.take("friction of a ring drives", max(0.0, *plain) if plain else 0.0, 1e-300, t)
+        for name, film in self.films.items():
+            force = film.pressing(get[f"{name}_film_thickness"])
+            checks.take("asperities of a ring", abs(get[f"{name}_asperity_force"] - force), F52 * force + 1e-9 * film.asperities.scale * film.area[1], t)
         if not self.is_loose:
             low, high = self.friction.range(v, give)
             normal, got = abs(get["guide_force"]), get["guide_friction_force"] + self.viscous * v - rings

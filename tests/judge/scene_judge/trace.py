@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 
 Values = dict[str, list]         # values of a case: 'joint.clearance' -> [4e-05]
-REPEATED = "cylinder", "damper", "valve"   # groups that are numbered in their order
+REPEATED = "cylinder", "damper", "valve", "ring"   # groups that are numbered in their order
 Columns = dict[str, list[float]]  # columns of a trace: 'crank_angle' -> values
 
 

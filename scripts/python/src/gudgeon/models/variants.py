@@ -97,14 +97,18 @@ def variants_of(case: Case, template: dict[str, dict[str, Key]]) -> list[Variant
 
 
 def rungs(case: Case) -> list[Variant]:
-    """The other steps from an ideal pin over a film that carries its load, one way, to a joint with clearance; and from the film of a skirt
-    to dry corners."""
+    """The other steps from an ideal pin over a film that carries its load, one way, to a joint with clearance; from the film of a skirt
+    to dry corners; and between rings in closed form and with a film."""
     found = []
     if SKIRT[0] in case:
         other = "gumbel" if case[SKIRT[0]].get("cavitation") == "reynolds" else "reynolds"
         found.append(Variant("exchanged", f"film of the skirt: cavitation {other}", (f"{SKIRT[0]}.cavitation={other}",)))
         dry = ("guide.kind=clearance", "guide.stiffness=5e7", "guide.restitution=0.4", "guide.coefficient=0.05", *(f"{name}=none" for name in SKIRT))
         found.append(Variant("exchanged", "skirt with dry corners", dry, "stiffness 5e7 N/m, restitution 0.4, friction 0.05"))
+    rings = [name for name in case if name.startswith("ring_")]
+    if rings and "rings.asperities" in case and not any(case[name].get("crown_offset") for name in rings):
+        model = "film" if any(case[name].get("model") != "film" for name in rings) else "closed_form"
+        found.append(Variant("exchanged", f"piston rings: {model.replace('_', ' ')}", tuple(f"{name}.model={model}" for name in rings)))
     loose = loose_joints(case)
     for name in loose:
         own = [law for group in ("contact", "friction") for law in {group, name.replace("joint", group)} if law in case]
