@@ -36,7 +36,9 @@ module asperities
     procedure :: total_pressure
     procedure :: mean_gap
     procedure :: film_gap
+    procedure :: gap_curvature
     procedure :: friction_force
+    procedure :: friction_slope
   end type asperities_t
 
   real(dp), parameter :: farthest(2) = [8.0_dp, 4.0_dp]   !! h/s above which there is no contact: exact, fit
@@ -267,10 +269,24 @@ contains
     end if
   end subroutine film_gap
 
+  !> Second derivative of the mean gap [1/m].
+  pure real(dp) function gap_curvature(self, h) result(curvature)
+    class(asperities_t), intent(in) :: self
+    real(dp), intent(in) :: h   !! [m]
+    curvature = exp(-0.5_dp*(h/self%roughness)**2)/(sqrt(2*pi)*self%roughness)
+  end function gap_curvature
+
   !> Boundary friction at a sliding speed [m/s] under a normal force of the asperities [N].
   pure real(dp) function friction_force(self, sliding_speed, pressing)
     class(asperities_t), intent(in) :: self
     real(dp), intent(in) :: sliding_speed, pressing
     friction_force = -self%coefficient*pressing*tanh(sliding_speed/self%transition_speed)
   end function friction_force
+
+  !> Its derivative by the speed [N s/m].
+  pure real(dp) function friction_slope(self, sliding_speed, pressing)
+    class(asperities_t), intent(in) :: self
+    real(dp), intent(in) :: sliding_speed, pressing
+    friction_slope = -self%coefficient*pressing*(1 - tanh(sliding_speed/self%transition_speed)**2)/self%transition_speed
+  end function friction_slope
 end module asperities

@@ -18,23 +18,26 @@ module face_film
   use asperities, only: asperities_t
   use bearing_size, only: bearing_t
   use monotone_cubic, only: monotone_cubic_t
+  use face_balance, only: guess_full, balance
   implicit none
   private
-  public :: face_film_t, face_motion_t, face_loads_t, no_loads
+  public :: face_film_t, face_motion_t, face_loads_t, face_tangent_t, no_loads, &
+    no_tangent, tangent_found, tangent_acts
 
   real(dp), parameter :: closer = 0.6_dp          !! how much closer the nodes at the ends are
-  real(dp), parameter :: least_inflow = 1e-13_dp  !! over the largest source, with which a ruptured node fills again
-  integer, parameter :: sweeps = 3                !! of Gauss and Seidel over the guess of that part
-  integer, parameter :: most_rounds = 60          !! of the search for the part that is full
+  !> What is seen at the nodes (cell, node, this): gap h; H and H' there, in the middle of the interval below, at the outer edge.
+  integer, parameter :: gap = 1, mean = 2, slope = 3, mean_half = 4, slope_half = 5, mean_edge = 6, slope_edge = 7, n_seen = 7
 
   !> Motion of the piston across its bore.
   type :: face_motion_t
-    real(dp) :: offset = 0        !! y of the centre of mass [m]
-    real(dp) :: tilt = 0          !! b, positive from x to y [rad]
-    real(dp) :: offset_rate = 0   !! [m/s]
-    real(dp) :: tilt_rate = 0     !! [rad/s]
-    real(dp) :: velocity = 0      !! of the centre of mass along x [m/s]
+    real(dp) :: offset            !! y of the centre of mass [m]
+    real(dp) :: tilt              !! b, positive from x to y [rad]
+    real(dp) :: offset_rate       !! [m/s]
+    real(dp) :: tilt_rate         !! [rad/s]
+    real(dp) :: velocity          !! of the centre of mass along x [m/s]
   end type face_motion_t
+
+  integer, parameter :: n_motion = 5   !! number of these components, by which slopes are counted
 
   !> Loads on the piston, of one face or of both.
   type :: face_loads_t
@@ -45,6 +48,18 @@ module face_film
     real(dp) :: least_gap     !! [m]
     real(dp) :: pressure      !! largest pressure of the film [Pa]
   end type face_loads_t
+
+  integer, parameter :: no_tangent = 0, tangent_found = 1, tangent_acts = 2
+
+  !> Loads of both faces that are linear in the motion, near that at which they were found.
+  type :: face_tangent_t
+    integer :: role                  !! tangent_found: it is found beside the loads; tangent_acts: instead of the films; else none
+    type(face_motion_t) :: motion
+    type(face_loads_t) :: loads
+    real(dp) :: slopes(3, n_motion)  !! of force, moment and friction
+  contains
+    procedure :: loads_at
+  end type face_tangent_t
 
   type(face_loads_t), parameter :: no_loads = face_loads_t(0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, huge(1.0_dp), 0.0_dp)
 
@@ -72,8 +87,22 @@ module face_film
     procedure :: find_loads
     procedure :: least_relief_gap
     procedure :: ends
-    procedure, private :: pressures
+    procedure :: field
+    procedure, private, non_overridable :: find_flows
   end type face_film_t
+
+  interface
+    !> Add the slopes of the loads of a face, from pressures that are not cut off at 0, while the part that is full stays.
+    pure module subroutine add_slopes(self, side, motion, at, full, p, slopes)
+      type(face_film_t), intent(in) :: self
+      integer, intent(in) :: side
+      type(face_motion_t), intent(in) :: motion
+      real(dp), intent(in) :: at(self%around, 0:self%along + 1, n_seen)
+      logical, intent(in) :: full(self%around, self%along - 1)
+      real(dp), intent(in) :: p(0:self%around + 1, 0:self%along)
+      real(dp), intent(inout) :: slopes(3, n_motion)
+    end subroutine add_slopes
+  end interface
 
 contains
 
@@ -135,235 +164,139 @@ contains
     depth(:2) = depth(:2) - self%clearance - relief
   end subroutine ends
 
-  !> Add the loads of the face on one side, +1 or -1.
-  pure subroutine find_loads(self, side, motion, loads)
+  !> Add the loads of the face on one side, +1 or -1, and their slopes.
+  pure subroutine find_loads(self, side, motion, loads, slopes)
     class(face_film_t), intent(in) :: self
     integer, intent(in) :: side
     type(face_motion_t), intent(in) :: motion
     type(face_loads_t), intent(inout) :: loads
-    real(dp), dimension(self%around, 0:self%along) :: gap, mean, slope
-    real(dp) :: mean_half(self%around, 0:self%along + 1), p(0:self%around + 1, 0:self%along)   ! mean_half: 0 beyond the ends
-    real(dp) :: speed, area, pressing, boundary, carried, friction, unused
+    real(dp), intent(inout), optional :: slopes(3, n_motion)   !! of force, moment and friction, by the components of the motion
+    real(dp) :: at(self%around, 0:self%along + 1, n_seen), p(0:self%around + 1, 0:self%along)
+    real(dp) :: speed, area, pressing, boundary, carried, friction
+    logical :: full(self%around, self%along - 1)
     integer :: i, j
     speed = motion%velocity - side*self%arm*motion%tilt_rate
-    do j = 0, self%along
-      do i = 1, self%around
-        gap(i, j) = self%clearance + self%relief(j) + self%oval(i, 1) - &
-          side*(motion%offset + self%z(j)*motion%tilt)*self%cosine(i, 1)
-        call self%asperities%film_gap(gap(i, j), mean(i, j), slope(i, j))
-      end do
-    end do
-    mean_half = 0
-    do j = 1, self%along
-      do i = 1, self%around
-        call self%asperities%film_gap(self%clearance + self%relief_half(j) + self%oval(i, 1) - &
-          side*(motion%offset + self%z_half(j)*motion%tilt)*self%cosine(i, 1), mean_half(i, j), unused)
-      end do
-    end do
-    call self%pressures(side, motion, speed, mean_half, slope, p)
+    call see_gaps(self, side, motion, at)
+    call find_pressures(self, side, motion, at, full, p)
+    if (present(slopes)) call add_slopes(self, side, motion, at, full, p, slopes)
+    p = max(p, 0.0_dp)
     friction = 0
     carried = 0
     do j = 0, self%along
       area = 2*self%step*self%width(j)   ! with its mirror image
       do i = 1, self%around
         boundary = 0
-        if (gap(i, j) < 8*self%asperities%roughness) boundary = self%asperities%pressure(-gap(i, j), 0.0_dp)
+        if (at(i, j, gap) < 8*self%asperities%roughness) boundary = self%asperities%pressure(-at(i, j, gap), 0.0_dp)
         pressing = (p(i, j) + boundary)*self%cosine(i, 1)*area
         loads%force = loads%force - side*pressing
         loads%moment = loads%moment - side*pressing*self%z(j)
         loads%asperities = loads%asperities + boundary*self%cosine(i, 1)*area
-        friction = friction - self%viscosity*speed/mean(i, j)*area - p(i, j)*(mean_half(i, j + 1) - mean_half(i, j))*self%step
+        friction = friction - self%viscosity*speed/at(i, j, mean)*area - &
+          p(i, j)*(at(i, j + 1, mean_half) - at(i, j, mean_half))*self%step
         carried = carried + boundary*area
       end do
     end do
     friction = friction + self%asperities%friction_force(speed, carried)
     loads%friction = loads%friction + friction
     loads%moment = loads%moment - side*self%arm*friction
-    loads%least_gap = min(loads%least_gap, minval(gap))
+    loads%least_gap = min(loads%least_gap, minval(at(:, :self%along, gap)))
     loads%pressure = max(loads%pressure, maxval(p))
   end subroutine find_loads
 
-  !> Pressures of the nodes, 0 at the edges and in a frame around the face [Pa].
-  pure subroutine pressures(self, side, motion, speed, mean_half, slope, p)
+  !> Gap [m] and pressure [Pa] of the film on the nodes of half a face, (cell, node), on one side.
+  pure subroutine field(self, side, motion, gaps, pressures)
     class(face_film_t), intent(in) :: self
     integer, intent(in) :: side
     type(face_motion_t), intent(in) :: motion
-    real(dp), intent(in) :: speed
-    real(dp), intent(in) :: mean_half(self%around, 0:self%along + 1), slope(self%around, 0:self%along)
-    real(dp), intent(out) :: p(0:self%around + 1, 0:self%along)
-    real(dp) :: source(self%around, self%along - 1)
-    real(dp) :: along(self%around, self%along), round(0:self%around, self%along - 1)   ! conductances
-    real(dp) :: mean, conducts, squeeze, unused
+    real(dp), intent(out) :: gaps(self%around, 0:self%along), pressures(self%around, 0:self%along)
+    real(dp) :: at(self%around, 0:self%along + 1, n_seen), p(0:self%around + 1, 0:self%along)
     logical :: full(self%around, self%along - 1)
+    call see_gaps(self, side, motion, at)
+    call find_pressures(self, side, motion, at, full, p)
+    gaps = at(:, :self%along, gap)
+    pressures = max(p(1:self%around, :), 0.0_dp)
+  end subroutine field
+
+  !> Gaps of nodes, of the middles of the intervals below them and of the outer edges of their cells; 0 beyond the ends.
+  pure subroutine see_gaps(self, side, motion, at)
+    type(face_film_t), intent(in) :: self
+    integer, intent(in) :: side
+    type(face_motion_t), intent(in) :: motion
+    real(dp), intent(out) :: at(self%around, 0:self%along + 1, n_seen)
+    real(dp) :: shift, shift_half
     integer :: i, j
-    associate (n => self%around, m => self%along)
-      do j = 1, m
-        along(:, j) = self%step/(12*self%viscosity*(self%z(j) - self%z(j - 1)))*mean_half(:, j)**3
+    at(:, 0, mean_half:slope_half) = 0
+    at(:, self%along + 1, mean_half:slope_half) = 0
+    do j = 0, self%along
+      shift = side*(motion%offset + self%z(j)*motion%tilt)
+      do i = 1, self%around
+        at(i, j, gap) = self%clearance + self%relief(j) + self%oval(i, 1) - shift*self%cosine(i, 1)
+        call self%asperities%film_gap(at(i, j, gap), at(i, j, mean), at(i, j, slope))
+        call self%asperities%film_gap(self%clearance + self%relief(j) + self%oval(i, 2) - shift*self%cosine(i, 2), &
+          at(i, j, mean_edge), at(i, j, slope_edge))
       end do
-      round(0, :) = 0   ! the mirror
-      do j = 1, m - 1
-        conducts = self%width(j)/(12*self%viscosity*self%step)
-        squeeze = side*(motion%offset_rate + self%z(j)*motion%tilt_rate)*self%step*self%width(j)
-        do i = 1, n
-          call self%asperities%film_gap(self%clearance + self%relief(j) + self%oval(i, 2) - &
-            side*(motion%offset + self%z(j)*motion%tilt)*self%cosine(i, 2), mean, unused)
-          round(i, j) = conducts*mean**3
-          source(i, j) = squeeze*slope(i, j)*self%cosine(i, 1) + 0.5_dp*speed*(mean_half(i, j + 1) - mean_half(i, j))*self%step
-        end do
-        round(n, j) = 2*round(n, j)   ! p = 0 half a cell away
+      if (j == 0) cycle
+      shift_half = side*(motion%offset + self%z_half(j)*motion%tilt)
+      do i = 1, self%around
+        call self%asperities%film_gap(self%clearance + self%relief_half(j) + self%oval(i, 1) - shift_half*self%cosine(i, 1), &
+          at(i, j, mean_half), at(i, j, slope_half))
       end do
-      full = .true.
-      if (.not. self%cuts_suction) call guess_full(n, m, along, round, source, full)
-      call balance(n, m, along, round, source, self%cuts_suction, full, p)
-    end associate
-  end subroutine pressures
+    end do
+  end subroutine see_gaps
 
-  !> Nodes that are probably full: from the pressures of a grid of half as many cells and intervals, with the same flows, after some
-  !> sweeps over the nodes. All of them if that grid cannot be made.
-  pure subroutine guess_full(n, m, along, round, source, full)
-    integer, intent(in) :: n, m
-    real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1)
-    logical, intent(inout) :: full(n, m - 1)
-    real(dp) :: along_pair(n/2, m/2), round_pair(0:n/2, m/2 - 1), source_pair(n/2, m/2 - 1), p(0:n/2 + 1, 0:m/2)
-    real(dp) :: guess(0:n + 1, 0:m)
-    logical :: full_pair(n/2, m/2 - 1)
-    integer :: i, j, pass
-    if (mod(n, 2) + mod(m, 2) > 0) return
-    do j = 1, m/2
-      do i = 1, n/2   ! two flows side by side, each through two conductances one after the other
-        along_pair(i, j) = sum(along(2*i - 1:2*i, 2*j - 1)*along(2*i - 1:2*i, 2*j)/ &
-          (along(2*i - 1:2*i, 2*j - 1) + along(2*i - 1:2*i, 2*j)))
-      end do
+  !> Conductances and inflows of the nodes.
+  pure subroutine find_flows(self, side, motion, at, along, round, source)
+    class(face_film_t), intent(in) :: self
+    integer, intent(in) :: side
+    type(face_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: at(self%around, 0:self%along + 1, n_seen)
+    real(dp), intent(out) :: along(self%around, self%along), round(0:self%around, self%along - 1)
+    real(dp), intent(out) :: source(self%around, self%along - 1)
+    real(dp) :: speed, conducts, squeeze
+    integer :: i, j
+    speed = motion%velocity - side*self%arm*motion%tilt_rate
+    do j = 1, self%along
+      along(:, j) = self%step/(12*self%viscosity*(self%z(j) - self%z(j - 1)))*at(:, j, mean_half)**3
     end do
-    do j = 1, m/2 - 1
-      round_pair(:, j) = 0.5_dp*(round(::2, 2*j) + 0.5_dp*(round(::2, 2*j - 1) + round(::2, 2*j + 1)))
-      do i = 1, n/2
-        source_pair(i, j) = sum(source(2*i - 1:2*i, 2*j) + &
-          0.5_dp*(source(2*i - 1:2*i, 2*j - 1) + source(2*i - 1:2*i, 2*j + 1)))
+    round(0, :) = 0   ! the mirror
+    do j = 1, self%along - 1
+      conducts = self%width(j)/(12*self%viscosity*self%step)
+      squeeze = side*(motion%offset_rate + self%z(j)*motion%tilt_rate)*self%step*self%width(j)
+      do i = 1, self%around
+        round(i, j) = conducts*at(i, j, mean_edge)**3
+        source(i, j) = squeeze*at(i, j, slope)*self%cosine(i, 1) + &
+          0.5_dp*speed*(at(i, j + 1, mean_half) - at(i, j, mean_half))*self%step
       end do
+      round(self%around, j) = 2*round(self%around, j)   ! p = 0 half a cell away
     end do
-    full_pair = .true.
-    call balance(n/2, m/2, along_pair, round_pair, source_pair, .false., full_pair, p)
-    guess = 0
-    do j = 1, m/2
-      do i = 1, n/2
-        guess(2*i - 1:2*i, 2*j - 1) = 0.5_dp*(p(i, j - 1) + p(i, j))
-        guess(2*i - 1:2*i, 2*j) = p(i, j)
-      end do
-    end do
-    do pass = 1, sweeps
-      do j = 1, m - 1
-        do i = 1, n
-          guess(i, j) = max(0.0_dp, (source(i, j) + along(i, j)*guess(i, j - 1) + along(i, j + 1)*guess(i, j + 1) + &
-            round(i - 1, j)*guess(i - 1, j) + round(i, j)*guess(i + 1, j))/ &
-            (along(i, j) + along(i, j + 1) + round(i - 1, j) + round(i, j)))
-        end do
-      end do
-    end do
-    full = guess(1:n, 1:m - 1) > 0
-  end subroutine guess_full
+  end subroutine find_flows
 
-  !> Pressures of the nodes for which the flows balance, by one of both conditions; for Reynolds' from a guess of the nodes that are
-  !> full. Where suction is cut off all must be full.
-  pure subroutine balance(n, m, along, round, source, cuts_suction, full, p)
-    integer, intent(in) :: n, m
-    real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1)
-    logical, intent(in) :: cuts_suction
-    logical, intent(inout) :: full(n, m - 1)
-    real(dp), intent(out) :: p(0:n + 1, 0:m)
-    real(dp) :: a(0:n + 1, n*m + 2), x(n*m + 2)
-    integer :: number(n, m)   ! of a full node among them
-    real(dp) :: inflow, least
-    logical :: changes, is_full
-    integer :: i, j, k, pass
-    least = least_inflow*maxval(abs(source))
-    p = 0
-    number = 0
-    do pass = 1, most_rounds
-      k = 0
-      do j = 1, m - 1
-        do i = 1, n
-          if (.not. full(i, j)) cycle
-          k = k + 1
-          number(i, j) = k
-        end do
-      end do
-      a(:, :k + n + 2) = 0
-      a(0, k + 1:k + n + 2) = 1
-      x(:k + n + 2) = 0
-      do j = 1, m - 1
-        do i = 1, n
-          if (.not. full(i, j)) cycle
-          associate (l => number(i, j))
-            x(l) = source(i, j)
-            a(0, l) = along(i, j) + along(i, j + 1) + round(i - 1, j) + round(i, j)
-            if (i < n) then
-              if (full(i + 1, j)) a(1, l) = -round(i, j)
-            end if
-            if (j == m - 1) cycle
-            if (full(i, j + 1)) a(number(i, j + 1) - l, l) = -along(i, j + 1)
-          end associate
-        end do
-      end do
-      call solve_symmetric(k, n, a, x)
-      do j = 1, m - 1
-        do i = 1, n
-          p(i, j) = 0
-          if (full(i, j)) p(i, j) = x(number(i, j))
-        end do
-      end do
-      if (cuts_suction) exit
-      changes = .false.
-      do j = 1, m - 1
-        do i = 1, n
-          if (full(i, j)) then
-            is_full = .not. p(i, j) < 0
-          else
-            inflow = source(i, j) + along(i, j)*p(i, j - 1) + along(i, j + 1)*p(i, j + 1) + round(i - 1, j)*p(i - 1, j) + &
-              round(i, j)*p(i + 1, j)
-            is_full = inflow > least
-          end if
-          if (is_full .neqv. full(i, j)) changes = .true.
-          full(i, j) = is_full
-        end do
-      end do
-      if (.not. changes) exit
-    end do
-    p = max(p, 0.0_dp)
-  end subroutine balance
+  !> Pressures of the nodes, 0 at the edges and in a frame around the face, still to be cut off at 0 [Pa], and which nodes are full.
+  pure subroutine find_pressures(self, side, motion, at, full, p)
+    type(face_film_t), intent(in) :: self
+    integer, intent(in) :: side
+    type(face_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: at(self%around, 0:self%along + 1, n_seen)
+    logical, intent(out) :: full(self%around, self%along - 1)
+    real(dp), intent(out) :: p(0:self%around + 1, 0:self%along)
+    real(dp) :: along(self%around, self%along), round(0:self%around, self%along - 1), source(self%around, self%along - 1)
+    call self%find_flows(side, motion, at, along, round, source)
+    full = .true.
+    if (.not. self%cuts_suction) call guess_full(self%around, self%along, along, round, source, full)
+    call balance(self%around, self%along, along, round, source, self%cuts_suction, full, p)
+  end subroutine find_pressures
 
-  !> Solve a symmetric positive definite system of n equations, whose diagonals are 0 or more above the main one: a(i, k) is the
-  !> element of row k + i and column k. Two columns are eliminated in each pass. Beyond the last equation a must be 0, but for
-  !> ones on the main diagonal; beyond the last diagonal too.
-  pure subroutine solve_symmetric(n, band, a, x)
-    integer, intent(in) :: n, band
-    real(dp), intent(inout) :: a(0:band + 1, n + band + 2), x(n + band + 2)
-    real(dp) :: pivot(2), first, second
-    integer :: i, k, l
-    do k = 1, n, 2
-      pivot(1) = 1/a(0, k)
-      first = a(1, k)*pivot(1)
-      a(0:band, k + 1) = a(0:band, k + 1) - first*a(1:band + 1, k)
-      a(1, k) = first
-      x(k + 1) = x(k + 1) - first*x(k)
-      pivot(2) = 1/a(0, k + 1)
-      do i = 2, band + 1
-        first = a(i, k)*pivot(1)
-        second = a(i - 1, k + 1)*pivot(2)
-        if (.not. (abs(first) > 0 .or. abs(second) > 0)) cycle
-        do l = i, band + 1
-          a(l - i, k + i) = a(l - i, k + i) - first*a(l, k) - second*a(l - 1, k + 1)
-        end do
-        x(k + i) = x(k + i) - first*x(k) - second*x(k + 1)
-        a(i, k) = first
-        a(i - 1, k + 1) = second
-      end do
-      x(k:k + 1) = x(k:k + 1)*pivot
-    end do
-    do k = n, 1, -1
-      do i = 1, band
-        x(k) = x(k) - a(i, k)*x(k + i)
-      end do
-    end do
-  end subroutine solve_symmetric
+  !> The linear loads at a motion; least gap and pressure are those of the tangent.
+  pure type(face_loads_t) function loads_at(self, motion) result(loads)
+    class(face_tangent_t), intent(in) :: self
+    type(face_motion_t), intent(in) :: motion
+    real(dp) :: change(3)
+    change = matmul(self%slopes, [motion%offset - self%motion%offset, motion%tilt - self%motion%tilt, &
+      motion%offset_rate - self%motion%offset_rate, motion%tilt_rate - self%motion%tilt_rate, &
+      motion%velocity - self%motion%velocity])
+    loads = self%loads
+    loads%force = loads%force + change(1)
+    loads%moment = loads%moment + change(2)
+    loads%friction = loads%friction + change(3)
+  end function loads_at
 end module face_film

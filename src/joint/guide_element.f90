@@ -12,7 +12,7 @@ module guide_element
   use piston_skirt, only: skirt_t, corner_t, n_corners
   use guide_case, only: guide_case_t
   use ring_case, only: most_piston_rings
-  use face_film, only: face_loads_t
+  use face_film, only: face_loads_t, face_tangent_t
   implicit none
   private
   public :: guide_element_t, guide_loads_t, ring_now_t, most_guide_states
@@ -41,6 +41,7 @@ module guide_element
     type(corner_t) :: corner(n_corners)   !! with clearance in the bore
     type(face_loads_t) :: skirt           !! of the film of the skirt
     real(dp) :: skirt_power               !! that it takes [W]
+    type(face_tangent_t) :: tangent       !! of that film
     type(ring_now_t) :: ring(most_piston_rings)
   end type guide_loads_t
 

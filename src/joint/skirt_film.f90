@@ -6,7 +6,7 @@ module skirt_film
   use trace_row, only: trace_row_t, least, largest, largest_size, mean, of_cycle
   use chain_motion, only: motion_t, tilting_t
   use piston_skirt, only: skirt_t, n_corners, corner_names
-  use face_film, only: face_film_t, face_motion_t, no_loads
+  use face_film, only: face_film_t, face_motion_t, no_loads, tangent_found, tangent_acts
   use guide_case, only: guide_case_t
   use guide_element, only: guide_element_t, guide_loads_t
   implicit none
@@ -22,6 +22,7 @@ module skirt_film
     procedure :: find_loads
     procedure :: admits
     procedure :: add_columns
+    procedure, private :: find_film_loads
   end type skirt_film_t
 
 contains
@@ -61,9 +62,11 @@ contains
     associate (it => motion%tilting)
       at = face_motion_t(it%offset, it%tilt, it%offset_rate, it%tilt_rate, now%speed)
     end associate
-    now%skirt = no_loads
-    call self%film%find_loads(1, at, now%skirt)
-    call self%film%find_loads(-1, at, now%skirt)
+    if (now%tangent%role == tangent_acts) then
+      now%skirt = now%tangent%loads_at(at)
+    else
+      call self%find_film_loads(at, now)
+    end if
     now%force = now%force + now%skirt%force
     now%moment = now%moment + now%skirt%moment
     now%friction_force = now%friction_force + now%skirt%friction
@@ -72,6 +75,27 @@ contains
     now%corner%depth_rate = depth_rate
     now%skirt_power = -(now%skirt%force*at%offset_rate + now%skirt%moment*at%tilt_rate + now%skirt%friction*at%velocity)
   end subroutine find_loads
+
+  !> Loads of the films of both faces, and their tangent if it is wanted.
+  pure subroutine find_film_loads(self, at, now)
+    class(skirt_film_t), intent(in) :: self
+    type(face_motion_t), intent(in) :: at
+    type(guide_loads_t), intent(inout) :: now
+    integer :: side
+    now%skirt = no_loads
+    if (now%tangent%role == tangent_found) then
+      now%tangent%motion = at
+      now%tangent%slopes = 0
+      do side = 1, -1, -2
+        call self%film%find_loads(side, at, now%skirt, now%tangent%slopes)
+      end do
+      now%tangent%loads = now%skirt
+    else
+      do side = 1, -1, -2
+        call self%film%find_loads(side, at, now%skirt)
+      end do
+    end if
+  end subroutine find_film_loads
 
   pure logical function admits(self, y, tilting)
     class(skirt_film_t), intent(in) :: self

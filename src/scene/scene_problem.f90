@@ -18,6 +18,7 @@ module scene_problem
   use carried_bearing, only: carried_bearing_t
   use bearing_load, only: bearing_load_t
   use piston_guide, only: piston_guide_t, guide_loads_t
+  use face_film, only: no_tangent
   use working_gas, only: working_gas_t
   use other_cylinders, only: other_cylinders_t
   use cylinder_charge, only: charge_motion_t, n_charge_sums
@@ -117,6 +118,7 @@ module scene_problem
     procedure, non_overridable :: find_loads
     procedure, non_overridable :: load_gas
     procedure :: derivatives
+    procedure, non_overridable :: find_rates
     procedure :: evaluate
     procedure :: jacobian
     procedure :: initial_state
@@ -316,6 +318,17 @@ contains
     real(dp), intent(out) :: dydt(self%n)
     logical, intent(out) :: in_domain
     type(evaluation_t) :: now
+    if (allocated(self%guide)) now%guide%tangent%role = no_tangent
+    call self%find_rates(t, y, now, dydt, in_domain)
+  end subroutine derivatives
+
+  !> The same, with the evaluation: on entry its tangent of the guide's film, which may be wanted or act.
+  pure subroutine find_rates(self, t, y, now, dydt, in_domain)
+    class(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(self%n)
+    type(evaluation_t), intent(inout) :: now
+    real(dp), intent(out) :: dydt(self%n)
+    logical, intent(out) :: in_domain
     integer :: i
     if (self%clears_loads) then
       do i = 1, self%n_joints
@@ -355,7 +368,7 @@ contains
     do i = 1, size(self%reported)
       dydt(self%measures%first + i - 1) = force_size(self%pin_force(now, self%reported(i)))
     end do
-  end subroutine derivatives
+  end subroutine find_rates
 
   !> Rates of pressure and mass of the gas in all cylinders.
   pure subroutine set_charge_rates(self, now, y, dydt)
@@ -404,6 +417,7 @@ contains
     logical, intent(out) :: in_domain
     integer :: i
     evaluation%cylinder_pressure = 0
+    evaluation%guide%tangent%role = no_tangent
     call clear_chain(evaluation)
     do i = 1, self%n_joints
       call clear_loads(evaluation%joint(i))

@@ -5,6 +5,7 @@ submodule (scene_problem) scene_tangent
   use chain_loads, only: bearing_moment
   use load_element, only: n_motions, by_pin_speed, by_bearing_speed
   use clearance_joint, only: most_joint_states, n_joint_slopes
+  use face_film, only: tangent_found, tangent_acts
   use crank_rod_tangent, only: rod_slopes, acceleration_slopes, torque_slopes
   implicit none
 
@@ -31,7 +32,9 @@ contains
       if (has_closed_form) has_closed_form = .not. any(now%joint(:self%n_joints)%sticks)
     end if
     if (.not. has_closed_form) then
-      if (size(self%carried) > 1) then
+      if (has_skirt_film(self)) then
+        call difference_beside_film(self, t, y, a_p, a_v)
+      else if (size(self%carried) > 1) then
         call difference_by_parts(self, t, y, carried_parts(self, size(a_p, 2) + size(a_v, 1)), a_p, a_v)
       else
         call difference_jacobian(self, t, y, a_p, a_v)
@@ -80,6 +83,50 @@ contains
       a_v = slope(1 + skip:3 + n, 4 + skip:6 + n)
     end if
   end procedure jacobian
+
+  !> Whether the skirt has a film.
+  pure logical function has_skirt_film(self)
+    type(scene_t), intent(in) :: self
+    has_skirt_film = .false.
+    if (allocated(self%guide)) has_skirt_film = self%guide%has_film
+  end function has_skirt_film
+
+  !> The derivatives by differences of the rates, while the film of the skirt follows its tangent: that has closed form, and a film
+  !> costs more than everything else.
+  pure subroutine difference_beside_film(self, t, y, a_p, a_v)
+    type(scene_t), intent(in) :: self
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: a_p(:, :), a_v(:, :)
+    type(evaluation_t) :: now, next
+    real(dp) :: f(self%n), moved(self%n), state(self%n), step
+    logical :: in_domain
+    integer :: i, m, k, way
+    m = size(a_p, 2)
+    k = size(a_v, 1)
+    a_p = 0
+    a_v = 0
+    now%guide%tangent%role = tangent_found
+    call self%find_rates(t, y, now, f, in_domain)
+    if (.not. in_domain) return
+    next%guide%tangent = now%guide%tangent
+    next%guide%tangent%role = tangent_acts
+    do i = 1, m + k
+      do way = 1, -1, -2
+        step = way*sqrt(epsilon(1.0_dp))*max(abs(y(i)), 1e-5_dp)
+        state = y
+        state(i) = y(i) + step
+        call self%find_rates(t, state, next, moved, in_domain)
+        if (in_domain) exit
+      end do
+      if (.not. in_domain) cycle
+      moved(m + 1:m + k) = (moved(m + 1:m + k) - f(m + 1:m + k))/step
+      if (i <= m) then
+        a_p(:, i) = moved(m + 1:m + k)
+      else
+        a_v(:, i - m) = moved(m + 1:m + k)
+      end if
+    end do
+  end subroutine difference_beside_film
 
   !> Which states belong to which carried bearing: nothing else depends on them.
   pure function carried_parts(scene, n) result(part)
