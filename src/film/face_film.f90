@@ -21,7 +21,7 @@ module face_film
   use face_balance, only: guess_full, balance
   implicit none
   private
-  public :: face_film_t, face_motion_t, face_loads_t, face_tangent_t, no_loads, &
+  public :: face_film_t, face_motion_t, face_loads_t, face_tangent_t, faces_t, no_loads, &
     no_tangent, tangent_found, tangent_acts
 
   real(dp), parameter :: closer = 0.6_dp          !! how much closer the nodes at the ends are
@@ -60,6 +60,14 @@ module face_film
   contains
     procedure :: loads_at
   end type face_tangent_t
+
+  !> The films of both halves of a skirt, side +1 and then -1. Each face is symmetric to its thrust axis: half of it is given.
+  type :: faces_t
+    real(dp), allocatable :: angle(:)             !! of the cells from the thrust axis [rad]
+    real(dp), allocatable :: height(:)            !! of the nodes above the centre of mass, along the piston [m]
+    real(dp), allocatable :: gap(:, :, :)         !! (cell, node, side) [m]
+    real(dp), allocatable :: pressure(:, :, :)    !! (cell, node, side) [Pa]
+  end type faces_t
 
   type(face_loads_t), parameter :: no_loads = face_loads_t(0.0_dp, 0.0_dp, 0.0_dp, 0.0_dp, huge(1.0_dp), 0.0_dp)
 
@@ -203,18 +211,24 @@ contains
     loads%pressure = max(loads%pressure, maxval(p))
   end subroutine find_loads
 
-  !> Gap [m] and pressure [Pa] of the film on the nodes of half a face, (cell, node), on one side.
-  pure subroutine field(self, side, motion, gaps, pressures)
+  !> Gaps and pressures of both films at a motion.
+  subroutine field(self, motion, faces)
     class(face_film_t), intent(in) :: self
-    integer, intent(in) :: side
     type(face_motion_t), intent(in) :: motion
-    real(dp), intent(out) :: gaps(self%around, 0:self%along), pressures(self%around, 0:self%along)
+    type(faces_t), intent(out) :: faces
     real(dp) :: at(self%around, 0:self%along + 1, n_seen), p(0:self%around + 1, 0:self%along)
     logical :: full(self%around, self%along - 1)
-    call see_gaps(self, side, motion, at)
-    call find_pressures(self, side, motion, at, full, p)
-    gaps = at(:, :self%along, gap)
-    pressures = max(p(1:self%around, :), 0.0_dp)
+    integer :: k
+    allocate (faces%angle(self%around), faces%height(self%along + 1))
+    allocate (faces%gap(self%around, self%along + 1, 2), faces%pressure(self%around, self%along + 1, 2))
+    faces%angle = acos(self%cosine(:, 1))
+    faces%height = self%z
+    do k = 1, 2
+      call see_gaps(self, 3 - 2*k, motion, at)
+      call find_pressures(self, 3 - 2*k, motion, at, full, p)
+      faces%gap(:, :, k) = at(:, :self%along, gap)
+      faces%pressure(:, :, k) = max(p(1:self%around, :), 0.0_dp)
+    end do
   end subroutine field
 
   !> Gaps of nodes, of the middles of the intervals below them and of the outer edges of their cells; 0 beyond the ends.

@@ -207,13 +207,15 @@ contains
     integer :: place
     if (c%output%film_times == '') return
     has_film = .false.
+    if (allocated(c%guide)) has_film = c%guide%is_lubricated()
     do place = 1, n_places
       if (allocated(c%joints(place)%film)) has_film = has_film .or. c%joints(place)%film%gives_pressure() .or. &
         allocated(c%joints(place)%history%march)
     end do
     call values%forbid(.not. allocated(c%output%snapshot_times), 'output', 'film_times', &
       'must be times >= 0 in rising order with commas, or from:to:count')
-    call values%forbid(.not. has_film, 'output', 'film_times', 'needs a film with a pressure: pinkus_sternlicht or finite_bearing')
+    call values%forbid(.not. has_film, 'output', 'film_times', 'needs a film with a pressure: '// &
+      'pinkus_sternlicht, finite_bearing or that of a lubricated skirt')
     if (.not. allocated(c%output%snapshot_times)) return
     if (maxval(c%output%snapshot_times) > known_end(c)*(1 + rounding)) call values%forbid(.true., 'output', 'film_times', &
       'must not be after the end of the run at '//short_text(known_end(c))//' s')

@@ -8,13 +8,14 @@
 !> that a case names is replaced only if it is a table of a film, of any parameters.
 module film_files
   use kinds, only: dp
+  use constants, only: degree
   use error_handling, only: error_t, fail, status_integration, status_case_file
   use bearing_size, only: bearing_t
   use checksums, only: checksum_t, checksum_of, checksum_length
   use joint_places, only: places, n_places, in_order, spot_name
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
-  use film_snapshots, only: film_field_t
+  use film_snapshots, only: film_field_t, skirt_field_t
   use film_law, only: film_law_t, table_watch_t
   use film_solution, only: solved_film
   use finite_film, only: film_answer_t, cavitation_reynolds
@@ -23,11 +24,11 @@ module film_files
   use number_text, only: real_text, short_text, quantity_text
   use run_progress, only: progress_t, clock, tell
   use result_file, only: write_text
-  use text_tools, only: path_beside, printable
+  use text_tools, only: integer_text, path_beside, printable
   use text_file, only: read_whole
   implicit none
   private
-  public :: provide_tables, tell_tables, write_film_file, progress_watch_t
+  public :: provide_tables, tell_tables, write_film_file, write_skirt_file, progress_watch_t
 
   character(len=*), parameter :: newline = achar(10), title = 'gudgeon film table'//newline
 
@@ -303,4 +304,29 @@ contains
     end do
     call write_text(path, file%text(:file%used), error)
   end subroutine write_film_file
+
+  !> Write one row for each node of both faces of a skirt: the side of the cylinder's axis (1 towards +y), the height above the pin,
+  !> the angle from the thrust axis; the pressures at the opposite angles are equal. Error: as above.
+  subroutine write_skirt_file(path, fields, error)
+    character(len=*), intent(in) :: path
+    type(skirt_field_t), intent(in) :: fields(:)
+    type(error_t), allocatable, intent(out) :: error
+    type(growing_text_t) :: file
+    integer :: i, j, k, side
+    call file%append('time[s],crank_angle[rad],side,height[m],angle[deg],gap[m],pressure[Pa]'//achar(10))
+    do i = 1, size(fields)
+      associate (field => fields(i), faces => fields(i)%faces)
+        do side = 1, 2
+          do k = 1, size(faces%height)
+            do j = 1, size(faces%angle)
+              call file%append(real_text(field%time)//','//real_text(field%crank_angle)//','//integer_text(3 - 2*side)//',')
+              call file%append(real_text(faces%height(k))//','//real_text(faces%angle(j)/degree)//',')
+              call file%append(real_text(faces%gap(j, k, side))//','//real_text(faces%pressure(j, k, side))//achar(10))
+            end do
+          end do
+        end do
+      end associate
+    end do
+    call write_text(path, file%text(:file%used), error)
+  end subroutine write_skirt_file
 end module film_files

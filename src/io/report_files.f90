@@ -2,7 +2,7 @@
 module report_files
   use error_handling, only: error_t
   use case_definition, only: case_t
-  use film_files, only: write_film_file
+  use film_files, only: write_film_file, write_skirt_file
   use history_files, only: write_histories
   use simulation, only: run_report_t
   use wear_file, only: write_wear_file
@@ -12,8 +12,8 @@ module report_files
 
   !> Suffixes of all files of results, the summaries first.
   character(len=*), parameter :: result_suffixes(*) = [character(len=32) :: '.summary.csv', '.ideal.summary.csv', '.csv', &
-    '.events.csv', '.film.csv', '.wear.csv', '.certificate.csv', '.ideal.csv', '.ideal.events.csv', '.film_history.csv', &
-    '.piston_pin.film_history.csv', '.crank_pin.film_history.csv']
+    '.events.csv', '.film.csv', '.skirt.csv', '.wear.csv', '.certificate.csv', '.ideal.csv', '.ideal.events.csv', &
+    '.film_history.csv', '.piston_pin.film_history.csv', '.crank_pin.film_history.csv']
 
   !> Suffixes of the results of studies, beside which a case has its own.
   character(len=*), parameter :: study_suffixes(3) = [character(len=32) :: '.runs.csv', '.cycles.csv', '.strobe.csv']
@@ -47,7 +47,11 @@ contains
     if (allocated(report%histories)) then
       call write_histories(base, case, report%histories, error)
     else if (allocated(report%films)) then
-      call write_film_file(base//'.film.csv', report%films, error)
+      if (size(report%films) > 0 .or. size(report%skirt) == 0) call write_film_file(base//'.film.csv', report%films, error)
+    end if
+    if (allocated(error)) return
+    if (allocated(report%skirt)) then
+      if (size(report%skirt) > 0) call write_skirt_file(base//'.skirt.csv', report%skirt, error)
     end if
     if (allocated(error) .or. .not. allocated(report%wear)) return
     if (size(report%wear) > 0) call write_wear_file(base//'.wear.csv', report%wear, case%output%digits, error)

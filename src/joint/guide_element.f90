@@ -12,7 +12,7 @@ module guide_element
   use piston_skirt, only: skirt_t, corner_t, n_corners
   use guide_case, only: guide_case_t
   use ring_case, only: most_piston_rings
-  use face_film, only: face_loads_t, face_tangent_t
+  use face_film, only: face_loads_t, face_motion_t, face_tangent_t, faces_t
   implicit none
   private
   public :: guide_element_t, guide_loads_t, ring_now_t, most_guide_states
@@ -60,6 +60,7 @@ module guide_element
     procedure(find_loads), deferred :: find_loads
     procedure :: admits => all_places
     procedure :: add_columns => no_columns
+    procedure :: see_faces => no_faces
     procedure, non_overridable :: normal_force
   end type guide_element_t
 
@@ -98,6 +99,13 @@ contains
     type(guide_loads_t), intent(in) :: now
     type(trace_row_t), intent(inout) :: row
   end subroutine no_columns
+
+  !> The films of the skirt at a motion of the piston, with heights above the pin: none.
+  subroutine no_faces(self, motion, faces)
+    class(guide_element_t), intent(in) :: self
+    type(face_motion_t), intent(in) :: motion
+    type(faces_t), intent(out) :: faces
+  end subroutine no_faces
 
   !> Normal force of corner i [N]; 0 without contact.
   pure real(dp) function normal_force(self, skirt, i, corner)

@@ -20,8 +20,8 @@ contains
     guide%skirt_t = wanted%skirt()
     call add(bore_friction_t())
     if (wanted%has_corners()) call add(skirt_corners_t())
-    guide%has_film = wanted%is_lubricated()
-    if (guide%has_film) call add(skirt_film_t())
+    if (wanted%is_lubricated()) call add(skirt_film_t())
+    if (wanted%is_lubricated()) guide%filmed = guide%n_elements
     if (allocated(wanted%rings%rings)) call add(ring_friction_t())
 
   contains

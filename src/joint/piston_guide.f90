@@ -27,7 +27,7 @@ module piston_guide
     type(slot_t) :: slots(most_elements)
     integer :: touching = 0               !! number of the element whose corners may touch the bore; 0: none
     integer :: n_states = 0               !! of the elements
-    logical :: has_film = .false.         !! of the skirt
+    integer :: filmed = 0                 !! number of the element with the film of the skirt; 0: none
     real(dp) :: start(2) = 0              !! offset [m] and tilt [rad] at t = 0
     real(dp) :: start_rate(2) = 0         !! [m/s], [rad/s]
   contains

@@ -6,7 +6,7 @@ module skirt_film
   use trace_row, only: trace_row_t, least, largest, largest_size, mean, of_cycle
   use chain_motion, only: motion_t, tilting_t
   use piston_skirt, only: skirt_t, n_corners, corner_names
-  use face_film, only: face_film_t, face_motion_t, no_loads, tangent_found, tangent_acts
+  use face_film, only: face_film_t, face_motion_t, faces_t, no_loads, tangent_found, tangent_acts
   use guide_case, only: guide_case_t
   use guide_element, only: guide_element_t, guide_loads_t
   implicit none
@@ -17,11 +17,13 @@ module skirt_film
 
   type, extends(guide_element_t) :: skirt_film_t
     type(face_film_t) :: film
+    real(dp) :: com_height = 0   !! of the centre of mass above the pin, along the piston [m]
   contains
     procedure :: prepare
     procedure :: find_loads
     procedure :: admits
     procedure :: add_columns
+    procedure :: see_faces
     procedure, private :: find_film_loads
   end type skirt_film_t
 
@@ -32,6 +34,7 @@ contains
     type(guide_case_t), intent(in) :: wanted
     type(skirt_t) :: skirt
     skirt = wanted%skirt()
+    self%com_height = wanted%piston_com(1)
     associate (film => self%film)
       film%radius = skirt%radius
       film%height = skirt%height
@@ -96,6 +99,14 @@ contains
       end do
     end if
   end subroutine find_film_loads
+
+  subroutine see_faces(self, motion, faces)
+    class(skirt_film_t), intent(in) :: self
+    type(face_motion_t), intent(in) :: motion
+    type(faces_t), intent(out) :: faces
+    call self%film%field(motion, faces)
+    faces%height = faces%height + self%com_height
+  end subroutine see_faces
 
   pure logical function admits(self, y, tilting)
     class(skirt_film_t), intent(in) :: self

@@ -434,7 +434,7 @@ contains
       'columns of the trace: ''standard'', names without units, or both, separated by commas', 'standard', many=.true.)
     call list%add('digits', self%digits, 'significant digits of the numbers in a trace; 17 keep every bit', '>= 9 and <= 17', '10')
     call list%text('film_times', self%film_times, &
-      'times [s] of pressure fields in NAME.film.csv: t1, t2, ... or from:to:count', '')
+      'times [s] of pressure fields in NAME.film.csv, of a skirt in NAME.skirt.csv: t1, t2, ... or from:to:count', '')
     call list%add('every_step', self%every_step, &
       'write rows at the steps of the integrator instead of those at equal times', '.false.')
     call list%add('answers', self%answers, 'extremes, losses and work of the last whole cycle in the summary', '.true.')

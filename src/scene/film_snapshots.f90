@@ -5,10 +5,11 @@ module film_snapshots
   use film_law, only: film_motion_t
   use ode_method, only: ode_method_t
   use scene_problem, only: scene_t, evaluation_t, phase_film
+  use face_film, only: face_motion_t, faces_t
   use inside_step, only: evaluate_inside
   implicit none
   private
-  public :: film_snapshots_t, film_field_t
+  public :: film_snapshots_t, film_field_t, skirt_field_t
 
   !> Pressure over one half of a bearing. The other half is its mirror image.
   type :: film_field_t
@@ -21,16 +22,25 @@ module film_snapshots
     real(dp), allocatable :: pressure(:, :)   !! [Pa]
   end type film_field_t
 
+  !> Pressure over both faces of a skirt.
+  type :: skirt_field_t
+    real(dp) :: time = 0, crank_angle = 0     !! [s], [rad]
+    type(faces_t) :: faces
+  end type skirt_field_t
+
   type :: film_snapshots_t
     real(dp), allocatable :: times(:)         !! requested times, increasing [s]
     integer :: next = 1                       !! index of the next of them
     integer, private :: n = 0                 !! number of snapshots stored
     real(dp), allocatable, private :: kept(:, :)  !! (quantity, snapshot): time, crank angle, joint, share, e, e', both angular
                                                   !! speeds
+    integer, private :: n_skirt = 0               !! number of motions of the skirt stored
+    real(dp), allocatable, private :: skirt(:, :) !! (quantity, snapshot): time, crank angle, motion
   contains
     procedure :: prepare
     procedure :: record
     procedure :: fields
+    procedure :: skirt_fields
   end type film_snapshots_t
 
 contains
@@ -42,6 +52,7 @@ contains
     type(scene_t), intent(in) :: scene
     self%times = times
     allocate (self%kept(10, size(self%times)*size(scene%joints)), source=0.0_dp)
+    allocate (self%skirt(7, size(self%times)), source=0.0_dp)
   end subroutine prepare
 
   !> Store the motions at the requested times in the last step of the method, up to t_to.
@@ -54,11 +65,20 @@ contains
     type(evaluation_t) :: now
     type(film_motion_t) :: seen
     real(dp) :: y(scene%n), rate(2), share, thickening
-    logical :: in_domain
+    logical :: in_domain, has_skirt
     integer :: i
+    has_skirt = .false.
+    if (allocated(scene%guide)) has_skirt = scene%guide%filmed > 0
     do while (self%next <= size(self%times))
       if (self%times(self%next) > t_to) exit
       call evaluate_inside(scene, method, self%times(self%next), y, now, in_domain, evaluations)
+      if (in_domain .and. has_skirt) then
+        self%n_skirt = self%n_skirt + 1
+        associate (it => now%motion%tilting)
+          self%skirt(:, self%n_skirt) = [self%times(self%next), now%motion%crank_angle, it%offset, it%tilt, it%offset_rate, &
+            it%tilt_rate, now%guide%speed]
+        end associate
+      end if
       if (in_domain) then
         do i = 1, size(scene%joints)
           if (scene%joints(i)%acting(phase_film) == 0) cycle
@@ -99,4 +119,21 @@ contains
       end associate
     end do
   end function fields
+
+  !> The films of the skirt at these times.
+  function skirt_fields(self, scene) result(all)
+    class(film_snapshots_t), intent(in) :: self
+    type(scene_t), intent(in) :: scene
+    type(skirt_field_t), allocatable :: all(:)
+    integer :: i
+    allocate (all(self%n_skirt))
+    do i = 1, self%n_skirt
+      associate (kept => self%skirt(:, i), field => all(i))
+        field%time = kept(1)
+        field%crank_angle = kept(2)
+        call scene%guide%slots(scene%guide%filmed)%element%see_faces( &
+          face_motion_t(kept(3), kept(4), kept(5), kept(6), kept(7)), field%faces)
+      end associate
+    end do
+  end function skirt_fields
 end module film_snapshots

@@ -88,7 +88,7 @@ contains
   pure logical function has_skirt_film(self)
     type(scene_t), intent(in) :: self
     has_skirt_film = .false.
-    if (allocated(self%guide)) has_skirt_film = self%guide%has_film
+    if (allocated(self%guide)) has_skirt_film = self%guide%filmed > 0
   end function has_skirt_film
 
   !> The derivatives by differences of the rates, while the film of the skirt follows its tangent: that has closed form, and a film

@@ -22,7 +22,7 @@ module simulation
   use run_recorder, only: recorder_t
   use run_start, only: find_start
   use run_figures, only: run_figures_t
-  use film_snapshots, only: film_field_t
+  use film_snapshots, only: film_field_t, skirt_field_t
   use history_record, only: history_record_t
   use joint_places, only: n_places, in_order, spot_prefix
   use wear_record, only: wear_profile_t
@@ -40,6 +40,7 @@ module simulation
     type(step_statistics_t) :: statistics
     type(run_figures_t) :: figures
     type(film_field_t), allocatable :: films(:)  !! pressure fields, if the case asks for them
+    type(skirt_field_t), allocatable :: skirt(:) !! those of the skirt
     type(history_record_t), allocatable :: histories(:)  !! films with memory, to be marched, if the case asks for them
     type(wear_profile_t), allocatable :: wear(:) !! worn surfaces, if the case asks for them
     real(dp), allocatable :: time_with(:, :)  !! method auto: time with Adams and with Radau, for each mode, (2, 0:highest mode) [s]
@@ -402,7 +403,10 @@ contains
       self%recorder%periods, self%recorder%extremes, report%kept)
     if (allocated(self%scene%chain%train)) report%train = self%recorder%extremes%train%results(self%scene, ended, revolutions)
     if (self%has_cycles) call move_alloc(self%recorder%cycles, cycles)
-    if (allocated(self%recorder%films)) report%films = self%recorder%films%fields(self%scene)
+    if (allocated(self%recorder%films)) then
+      report%films = self%recorder%films%fields(self%scene)
+      report%skirt = self%recorder%films%skirt_fields(self%scene)
+    end if
     if (allocated(self%recorder%histories)) report%histories = self%recorder%histories
     associate (case => self%case, scene => self%scene, t => self%integration%t, y => self%integration%y)
       report%status = 'done'
