@@ -19,6 +19,7 @@ WHAT = {
     "campbell": "critical speeds of a crankshaft: natural frequencies, orders, shapes",
     "branch": "periodic orbits of a case over a key: stability, flips, folds, ends",
     "film": "the pressure in a film at chosen times",
+    "skirt": "a piston in its bore: pressure on its skirt, gaps, friction of skirt and rings, Stribeck curves",
     "wear": "worn surfaces of pins and bores",
     "laws": "forces of contact and friction of runs over penetration and sliding speed",
     "study": "a parameter study: curves, maps or points",

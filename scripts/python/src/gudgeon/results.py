@@ -445,7 +445,7 @@ def located(word: str | Path, folder: Path | None = None, run_missing: bool = Tr
         results.make([name])
         return results, name
     if given.suffix == ".csv":
-        given = given.with_name(re.sub(r"(\.(events|summary|film|wear))?\.csv$", "", given.name))
+        given = given.with_name(re.sub(r"(\.(events|summary|film|skirt|wear))?\.csv$", "", given.name))
         path = (folder or given.parent) / given.name
     else:
         path = (folder or Path("results")) / given
