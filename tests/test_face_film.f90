@@ -19,6 +19,7 @@ contains
     call a_rectangle_is_squeezed(check)
     call a_plane_slides(check)
     call losses_are_positive(check)
+    call slopes_are_those_of_loads(check)
   end subroutine run_test_face_film
 
   !> One of the skirts of data/film/skirt_states.csv.
@@ -189,4 +190,57 @@ contains
     call check%that(least >= 0, 'skirt: no state gives power')
     call check%close_to(unlike, 0.0_dp, 1e-10_dp, 'skirt: mirror image')
   end subroutine losses_are_positive
+
+  !> Slopes of force, moment and friction against differences of the loads on both sides of each state of the other program: where the
+  !> part of a face that is full changes the loads have a kink, and the slopes are those of one side. Differences of loads with
+  !> these steps have errors of up to 4e-6 of the largest slope, by rounding and by curvature.
+  subroutine slopes_are_those_of_loads(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: motions(5) = [character(len=11) :: 'offset', 'tilt', 'offset rate', 'tilt rate', 'velocity']
+    real(dp), parameter :: step(5) = [1e-12_dp, 1e-10_dp, 1e-7_dp, 1e-5_dp, 1e-5_dp]
+    character(len=40), allocatable :: names(:)
+    real(dp), allocatable :: rows(:, :)
+    type(face_film_t) :: film
+    real(dp) :: slopes(3, 5), unused(3, 5), here(3), there(3), back(3), size_of(3, 5), worst(3, 5)
+    integer :: i, k
+    call load_table('film/skirt_states.csv', names, rows)
+    size_of = 0
+    worst = 0
+    do i = 1, size(rows, 2)
+      call make(nint(rows(1, i)), rows(2, i) > 0.5_dp, film)
+      slopes = 0
+      unused = 0
+      here = loads_at(rows(3:7, i), slopes)
+      do k = 1, 5
+        size_of(:, k) = max(size_of(:, k), abs(slopes(:, k)))
+        there = loads_at(moved(rows(3:7, i), k, step(k)), unused)
+        back = loads_at(moved(rows(3:7, i), k, -step(k)), unused)
+        worst(:, k) = max(worst(:, k), min(abs((there - here)/step(k) - slopes(:, k)), abs((here - back)/step(k) - slopes(:, k))))
+      end do
+    end do
+    do k = 1, 5
+      call check%close_to(maxval(worst(:, k)/size_of(:, k)), 0.0_dp, 1e-5_dp, 'skirt: slopes by the '//trim(motions(k)))
+    end do
+
+  contains
+
+    function loads_at(at, slopes_there) result(found)
+      real(dp), intent(in) :: at(5)
+      real(dp), intent(inout) :: slopes_there(3, 5)
+      real(dp) :: found(3)
+      type(face_loads_t) :: loads
+      loads = no_loads
+      call film%find_loads(1, face_motion_t(at(1), at(2), at(3), at(4), at(5)), loads, slopes_there)
+      call film%find_loads(-1, face_motion_t(at(1), at(2), at(3), at(4), at(5)), loads, slopes_there)
+      found = [loads%force, loads%moment, loads%friction]
+    end function loads_at
+
+    pure function moved(at, k, by)
+      real(dp), intent(in) :: at(5), by
+      integer, intent(in) :: k
+      real(dp) :: moved(5)
+      moved = at
+      moved(k) = at(k) + by
+    end function moved
+  end subroutine slopes_are_those_of_loads
 end module test_face_film

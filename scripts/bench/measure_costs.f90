@@ -26,7 +26,7 @@ program measure_costs
   implicit none
 
   integer, parameter :: n_states = 64, blocks = 31, calls = 6400, steps_in_block = 2000
-  integer, parameter :: name_length = 32, n_scenes = 43, n_quantities = 8
+  integer, parameter :: name_length = 32, n_scenes = 46, n_quantities = 8
   character(len=name_length), parameter :: scenes(n_scenes) = [character(len=name_length) :: 'ideal', 'ideal+gas', 'free', &
     'free+gas', 'contact_hertz', 'contact', 'contact_johnson', 'contact_conformal', 'contact_wear', &
     'contact_conformal_wear', 'contact+quadrature', 'contact+ambrosio', &
@@ -34,7 +34,7 @@ program measure_costs
     'closed_form', 'closed_form+quadrature', 'closed_form+gas', 'as_printed', 'half_film', 'oscillating', &
     'oscillating_as_printed', 'finite_short', 'finite_table', 'finite_mixed', 'closed_form+rod_0_1', 'closed_form+rod_0_4', &
     'closed_form+rod_2_4', 'closed_form+rod_4_8', 'closed_form+shaft', 'closed_form+rubbing_guide', 'closed_form+loose_piston', &
-    'closed_form+floating_pin', &
+    'closed_form+floating_pin', 'ideal+gas+lubricated_skirt', 'ideal+gas+ring', 'ideal+gas+ring_film', &
     'finite_table+heat', 'ideal+carried_short', 'ideal+carried_table', 'ideal+carried_table+heat', 'finite_table+gas', &
     'finite_table+gas+9_stations', 'finite_table+gas+6_cylinders', 'finite_table+gas+6_on_9_stations']
   character(len=name_length), parameter :: quantities(n_quantities) = [character(len=name_length) :: 'rhs', &
@@ -144,6 +144,13 @@ contains
     if (index(name, '+loose_piston') > 0) settings(:7) = [character(len=40) :: 'guide.kind=clearance', &
       'guide.bore_clearance=1e-4', 'guide.skirt_top=0.03', 'guide.skirt_bottom=0.03', 'guide.piston_radius=0.035', &
       'guide.piston_inertia=1e-3', 'guide.stiffness=1e8']
+    if (index(name, '+lubricated_skirt') > 0) settings(:9) = [character(len=40) :: 'guide.kind=lubricated', &
+      'guide.bore_clearance=35e-6', 'guide.skirt_top=0.012', 'guide.skirt_bottom=0.033', 'guide.piston_radius=0.035', &
+      'guide.piston_inertia=4.5e-4', 'guide.barrel=30e-6', 'guide.lubrication.viscosity=0.008', &
+      'guide.asperities.roughness=1e-6']
+    if (index(name, '+ring') > 0) settings(:5) = [character(len=40) :: 'ring_1.height=1.2e-3', 'ring_1.crown=6e-6', &
+      'ring_1.tension=8.0', 'rings.lubrication.viscosity=0.008', 'rings.asperities.roughness=0.4e-6']
+    if (index(name, '+ring_film') > 0) settings(6) = 'ring_1.model=film'
     if (index(name, '+floating_pin') > 0) settings(:7) = [character(len=40) :: 'pin.kind=floating', 'pin.mass=0.1', &
       'pin.inertia=6e-6', 'small_end.joint.kind=clearance', 'small_end.joint.clearance=20e-6', &
       'small_end.joint.bearing_radius=0.01', 'small_end.joint.bearing_length=0.015']

@@ -6,7 +6,7 @@ module case_remarks
   use number_text, only: short_text
   use text_tools, only: replaced
   use unit_hints, only: likely_unit
-  use value_reader, only: n_values, read_bounds
+  use value_reader, only: n_values, read_bounds, is_default
   implicit none
   private
   public :: remarks_t
@@ -80,6 +80,7 @@ contains
       call read_bounds(trim(key%usual), least, most)
       do element = 1, n_values(key, value)
         if (.not. abs(value%reals(element)) > 0) cycle
+        if (is_default(key, value, element)) cycle   ! as in a resolved case
         if (abs(value%reals(element)) < least .or. abs(value%reals(element)) > most) return
       end do
       element = 0
