@@ -191,7 +191,7 @@ contains
     call check%close_to(unlike, 0.0_dp, 1e-10_dp, 'skirt: mirror image')
   end subroutine losses_are_positive
 
-  !> Slopes of force, moment and friction against differences of the loads on both sides of each state of the other program: where the
+  !> Slopes of force, moment and friction against differences of the loads on both sides of each state of another program; where the
   !> part of a face that is full changes the loads have a kink, and the slopes are those of one side. Differences of loads with
   !> these steps have errors of up to 4e-6 of the largest slope, by rounding and by curvature.
   subroutine slopes_are_those_of_loads(check)
