@@ -503,6 +503,21 @@ SKIRT_FACTS = (("cycle_min_skirt_film_thickness", 1.1452507e-05, 1e-3), ("cycle_
                ("cycle_skirt_fmep", 9749.1014, 2e-4), ("cycle_max_slap_speed", 0.046442549, 2e-3), ("cycle_max_slap_energy", 0.00087061018, 2e-3))
 
 
+def check_faces(program: Path, work: Path, case: Path) -> None:
+    """The pressures of both faces in NAME.skirt.csv, summed over their grid with its mirror image, are the force in the row of this time."""
+    _, rows = run(program, work, case, "output.film_times='0.06, 0.07'", "integrator.end_time=0.07")
+    at = {round(row["time"]*1e6): row for row in rows}
+    with (work / "skirt.skirt.csv").open() as file:
+        nodes = [{name.split("[")[0]: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+    heights, angles = sorted({node["height"] for node in nodes}), sorted({node["angle"] for node in nodes})
+    check(len(nodes) == 2*2*25*6 and abs(heights[0] + 0.033) + abs(heights[-1] - 0.012) < 1e-12 and abs(angles[0] - 3.75) < 1e-9, "nodes of both faces at two times")
+    wide = {z: (heights[min(k + 1, 24)] - heights[max(k - 1, 0)])/2 for k, z in enumerate(heights)}
+    for time in (60000, 70000):
+        force = -sum(node["side"]*node["pressure"]*math.cos(math.radians(node["angle"]))*2*0.0424*math.radians(7.5)*wide[node["height"]]
+                     for node in nodes if round(node["time"]*1e6) == time)
+        check(abs(force - at[time]["skirt_force"]) < 1e-4*abs(force) + 1e-2, "pressures of both faces against the force", f"{force}, {at[time]['skirt_force']}")
+
+
 def test_skirt(program: Path, work: Path) -> None:
     """The film of the skirt against an independent program; what it must equal; what is refused."""
     case = ROOT / "cases/joints/skirt.nml"
@@ -517,6 +532,7 @@ def test_skirt(program: Path, work: Path) -> None:
         check(row["skirt_power"] >= 0, "skirt: it takes power", str(row["skirt_power"]))
         z = 0.006   # the top from the centre of mass; 35 + 30 um: clearance and relief there
         check(abs(row["guide_1_gap"] + row["piston_offset"] + z*row["piston_tilt"] - 65e-6) < 1e-12, "skirt: gap at the top")
+    check_faces(program, work, case)
     draft = "guide.lubrication.around=4", "guide.lubrication.along=16", "integrator.relative_tolerance=1e-5"
     plain, _ = run(program, work, case, *draft)
     mirrored, _ = run(program, work, case, *draft, "initial.crank_speed=-314.1592653589793", "initial.crank_angle_deg=180", "guide.piston_com=0.006,-0.0005")

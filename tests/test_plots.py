@@ -38,6 +38,7 @@ from gudgeon import cli, language, names, study
 from gudgeon.plots import bearing as bearing_pictures
 from gudgeon.plots import columns, compare, figures, film_pressure, laws, ringing, short, style
 from gudgeon.plots import film as film_pictures
+from gudgeon.plots import skirt as skirt_pictures
 from gudgeon.plots.figure_map import read_figures
 from gudgeon.plots.quantities import QUANTITIES, once_a_cycle
 from gudgeon.program import release_program
@@ -613,6 +614,28 @@ class FilmPressure(unittest.TestCase):
         np.testing.assert_allclose(lines[0].get_xdata(), [1, 90, 180, 600, 719], atol=1e-9)
         np.testing.assert_allclose(lines[0].get_ydata(), [1.5e6, 1.75e6, 2e6, 1e6, 1.25e6])
         self.assertEqual([len(axis.get_lines()) for axis in drawing.axes], [2, 2, 1, 2])
+
+    def test_skirt_and_rings(self) -> None:
+        """Half of each face is mirrored, one scale for all times; friction over load of a ring by its tension and the gas behind it."""
+        turn = np.radians(np.arange(0.0, 721.0, 90.0))
+        columns = {"time": turn, "crank_angle": turn, "piston_velocity": np.full(9, -2.0), "cylinder_pressure": np.full(9, 3e5), "ring_1_friction_force": np.full(9, 5.0),
+                   "ring_1_film_thickness": np.ones(9), "skirt_friction_force": np.full(9, 7.0), "skirt_force": np.ones(9)} | {f"guide_{k}_gap": np.full(9, k * 1e-6) for k in range(1, 5)}
+        case = {"combustion": {"bore": 0.1, "crankcase_pressure": 1e5, "cycle": "four_stroke"}, "rings.lubrication": {"viscosity": 0.01},
+                "ring_1": {"tension": 5.0, "height": 1e-3, "gas_behind": 0.5}}
+        made = Run("made", pd.DataFrame(columns), {}, pd.DataFrame(), {}, case)
+        rows = [(time, time, side, height, angle, 1e-5, 1e6 * (time + side + height + angle)) for time in (3.0, 4.0) for side in (1, -1) for height in (0.0, 0.01) for angle in (10.0, 30.0)]
+        table = pd.DataFrame(rows, columns=["time", "crank_angle", "side", "height", "angle", "gap", "pressure"])
+        drawing = skirt_pictures.draw(made, table)
+        faces = [axis for axis in drawing.axes if axis.collections and axis.get_title(loc="left")]
+        self.assertEqual([axis.get_title(loc="left") for axis in faces], ["−y, 32 MPa", "+y, 34 MPa", "−y, 33 MPa", "+y, 35 MPa"])
+        np.testing.assert_allclose(faces[0].collections[0].get_array().reshape(2, 4)[0], [32, 12, 12, 32])
+        self.assertEqual({axis.collections[0].get_clim() for axis in faces}, {(0, 35.01)})
+        gaps, friction, stribeck = (axis for axis in drawing.axes if axis.get_lines())
+        self.assertEqual([line.get_ydata()[0] for line in gaps.get_lines()], [1, 2, 3, 4])
+        self.assertEqual([line.get_ydata()[0] for line in friction.get_lines()], [7, 5])
+        load = 2 * 5 / 0.1 + 1e-3 * 0.5 * 2e5
+        np.testing.assert_allclose(stribeck.get_lines()[0].get_ydata(), 5 / (np.pi * 0.1 * load))
+        np.testing.assert_allclose(stribeck.get_lines()[0].get_xdata(), 0.01 * 2 / load)
 
     def test_gap_of_a_bearing_with_a_shape(self) -> None:
         """The gap of a centred pin in the middle and at both ends, from a table, a barrel and a tilt."""

@@ -8,9 +8,11 @@ and rings, and the Stribeck curves of the rings.
 
 import argparse
 import subprocess
+import tempfile
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from gudgeon.commands import Refused, add_output, add_results, save
 from gudgeon.plots import skirt as pictures
@@ -27,26 +29,34 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     given = Path(options.source)
     results, name = located(given.with_name(given.name.replace(".skirt.csv", ".csv")), options.results, not options.no_run)
-    shown, path = results[name], results.directory / f"{name}.skirt.csv"
+    shown = results[name]
     if "skirt_force" not in shown and "ring_friction_force" not in shown:
         raise Refused(f"{name}: neither a skirt with a film (&guide kind = 'lubricated') nor rings (&ring)")
-    if "skirt_force" in shown and not path.exists() and given.suffix == ".nml" and not options.no_run:
-        shown = filmed(given, results.directory, shown)
-    table = None
-    if path.exists():
-        table = read_table(path, "time", "crank_angle", "side", "height", "angle", "gap", "pressure")[0]
-        demand_numbers(path, table, list(table.columns))
+    table = pressures(results.directory / f"{name}.skirt.csv")
+    if table is None and "skirt_force" in shown and given.suffix == ".nml" and not options.no_run:
+        shown, table = filmed(given, shown)
     save(pictures.draw(shown, table), options, results.directory, f"{name}_skirt")
     return 0
 
 
-def filmed(case: Path, folder: Path, shown: Run) -> Run:
-    """The run again, with six pressures of its last cycle."""
+def pressures(path: Path) -> pd.DataFrame | None:
+    """The rows of a NAME.skirt.csv; None if it is not there."""
+    if not path.exists():
+        return None
+    table = read_table(path, "time", "crank_angle", "side", "height", "angle", "gap", "pressure")[0]
+    demand_numbers(path, table, list(table.columns))
+    return table
+
+
+def filmed(case: Path, shown: Run) -> tuple[Run, pd.DataFrame | None]:
+    """The run again, with six pressures of its last cycle, in a folder of its own."""
     begin, length = (float(shown.summary.get(f"cycle_{name}", ("nan", ""))[0]) for name in ("start", "duration"))
     if not np.isfinite(begin + length):
         raise MissingResult(f"{shown.name}: the run has no whole cycle")
     times = ", ".join(repr(begin + length * (k + 0.5) / 6) for k in range(6))
-    outcome = subprocess.run([release_program(), "-q", "-o", folder, "-s", f"output.film_times='{times}'", case], capture_output=True, text=True, check=False)
-    if outcome.returncode != 0:
-        raise MissingResult(outcome.stderr.strip())
-    return load_run(folder / f"{shown.name}.csv")
+    with tempfile.TemporaryDirectory() as folder:
+        words = [release_program(), "-q", "-o", folder, "-s", f"output.film_times='{times}'", case]
+        outcome = subprocess.run(words, capture_output=True, text=True, check=False)
+        if outcome.returncode != 0:
+            raise MissingResult(outcome.stderr.strip())
+        return load_run(Path(folder) / f"{shown.name}.csv"), pressures(Path(folder) / f"{shown.name}.skirt.csv")

@@ -4,14 +4,16 @@ curves of the rings."""
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
-from gudgeon.plots.columns import COLOURS, crank_angles, rows_of_cycle
-from gudgeon.plots.style import BLACK, WIDTH
+from gudgeon.plots.columns import crank_angles, rows_of_cycle
+from gudgeon.plots.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, WIDTH
 from gudgeon.results import Run
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import MultipleLocator
 
+COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY)
 IN_A_ROW = 3   # pairs of faces
+ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 0.98)}   # place of a legend
 ENDS = ("+y, top", "+y, bottom", "−y, top", "−y, bottom")
 
 
@@ -46,13 +48,11 @@ def draw_faces(drawing: Drawing, axes: list[list[Axes]], fields: list[pd.DataFra
             axis.grid(False)
             axis.xaxis.set_major_locator(MultipleLocator(30))
             axis.set_title(f"{'−y' if side < 0 else '+y'}, {pressures.max():.2g} MPa", loc="left")
+            axis.set_xlabel(f"at {np.degrees(field['crank_angle'].iloc[0]) % 720:.0f}°" if side < 0 else "face [°]")
             if k % IN_A_ROW or side > 0:
                 axis.tick_params(labelleft=False)
             else:
                 axis.set_ylabel("above the pin [mm]")
-        crank = np.degrees(field["crank_angle"].iloc[0]) % 720
-        pair[0].set_xlabel(f"crank at {crank:.0f}°")
-        pair[1].set_xlabel("face [°]")
     drawing.colorbar(mesh, ax=[axis for pair in axes for axis in pair], label="pressure [MPa]", pad=0.01)
 
 
@@ -70,7 +70,7 @@ def draw_gaps(axis: Axes, run: Run, rows: slice) -> None:
         over_cycle(axis, run, rows, f"guide_{number}_gap", 1e6, colour, label)
     axis.set_ylabel("gap at an end [µm]")
     axis.set_ylim(bottom=0)
-    axis.legend(ncols=4)
+    axis.legend(ncols=4, **ABOVE)
 
 
 def draw_friction(axis: Axes, run: Run, rows: slice) -> None:
@@ -81,7 +81,7 @@ def draw_friction(axis: Axes, run: Run, rows: slice) -> None:
         if f"ring_{number}_friction_force" in run:
             over_cycle(axis, run, rows, f"ring_{number}_friction_force", 1.0, colour, f"ring {number}")
     axis.set_ylabel("friction [N]")
-    axis.legend(ncols=7)
+    axis.legend(ncols=7, **ABOVE)
 
 
 def draw_stribeck(axis: Axes, run: Run, rows: slice) -> None:
@@ -105,4 +105,4 @@ def draw_stribeck(axis: Axes, run: Run, rows: slice) -> None:
     axis.set_xlabel("viscosity × speed / load per length" if viscosity else "speed / load per length [m²/(N s)]")
     axis.set_ylabel("friction / load")
     axis.set_ylim(bottom=0)
-    axis.legend(ncols=6)
+    axis.legend(ncols=6, **ABOVE)
