@@ -9,7 +9,6 @@ program gudgeon
   use study_runner, only: run_study_file
   use study_definition, only: study_schema_of
   use case_schema, only: key_table_t, case_schema_of
-  use bearing_definition, only: bearing_schema_of
   use case_text, only: template_text
   use json_schema, only: json_schema_text
   use shell_pages, only: completion_text, manual_text
@@ -75,9 +74,6 @@ contains
     else
       if (options%reference == 'study') then
         call study_schema_of(table)
-        call say(keys_reference(table, ''), status)
-      else if (options%reference == 'bearing') then
-        call bearing_schema_of(table)
         call say(keys_reference(table, ''), status)
       else
         call case_schema_of(table)

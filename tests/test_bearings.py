@@ -291,6 +291,7 @@ REFUSED = (
     ("flores2006", ("drive.kind=free",), "constant_speed"), ("flores2006", ("guide.kind=friction",), "is for a mechanism"),
     ("flores2006", ("joint.kind=ideal",), "quasi_static"), ("flores2006", ("bearing_load.journal=rod",), "crank_to_rod"),
     ("flores2006", ("bearing_load.period_deg=700",), "multiple of 360"), ("flores2006", ("bearing_load.table=none.csv",), "none.csv"),
+    ("flores2006", ("bearing_load.table=",), "without load"), ("flores2006", ("bearing_load.load=1,0",), "cannot be combined with table"),
     ("flores2006", ("bearing_load.frame=pin",), "frame"), ("flores2006", ("bearing_load.period_deg=360",), "more than its period"),
     ("flores2006", ("run.period_revolutions=1",), "period_revolutions"), ("flores2006", ("bearing_load.factor=0",), "factor"),
     ("flores2006", ("bearing_load.crank_to_rod=1.5",), "crank_to_rod"))

@@ -131,10 +131,10 @@ contains
       'wear'//hint)
     call refused(check, [character(len=16) :: 'sweep', '--template=dry'], 'gudgeon sweep --template has no kinds'//hint)
     call refused(check, ['--reference=joints'], &
-      '--reference joints: must be case, bearing, study, oils, results, schema or a group of cases'//groups// &
+      '--reference joints: must be case, study, oils, results, schema or a group of cases'//groups// &
       '; did you mean joint?'//hint)
     call refused(check, ['--reference=injector'], &
-      '--reference injector: must be case, bearing, study, oils, results, schema or a group of cases'//groups//hint)
+      '--reference injector: must be case, study, oils, results, schema or a group of cases'//groups//hint)
     call refused(check, ['--name=a/b'], '--name a/b: must be a name without folder; --out gives the folder'//hint)
     call refused(check, [character(len=16) :: '--name=a', 'b.nml', 'c.nml'], '--name is for one case'//hint)
     call refused(check, [character(len=16) :: 'sweep', '--name=a', 'b.nml'], '--name is for one case'//hint)

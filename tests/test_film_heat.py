@@ -477,27 +477,14 @@ IMPOSSIBLE = """
 &lubrication law='finite_bearing', variant='short', viscosity=9 mPa.s, elastic_film=.true., pressure_viscosity=1.8e-8 /
 &integrator revolutions=1, max_evaluations=7500, method='adams' /
 """
-CRUSHED = """
-&joint clearance=10 um, bearing_radius=12 mm, bearing_length=6 mm /
-&lubrication viscosity=0.1 /
-&film_history table='crushed.csv', drive='orbit', around=48, along=2, most_cycles=2, substeps=1 /
-"""
 
 
 def impossible(runs: Runs) -> None:
-    """A pin whose film would need 1e10 N: no row has a value that is not finite. A pin that is driven into its film at 100 m/s: the
-    pressure, of the order of 6 mu v R^2/c^2 L^2/(4 R^2) = 5e12 Pa and more, is noted in the summary of the bearing."""
+    """A pin whose film would need 1e10 N: no row has a value that is not finite."""
     outcome = runs.start(IMPOSSIBLE, "impossible")
     text = (runs.folder / "impossible.csv").read_text()
     check(outcome.returncode == 4, "a film without bounds ends the run", str(outcome.returncode))
     check(not {"inf", "nan", "infinity"} & set(text.lower().replace("\n", ",").split(",")), "only finite numbers in rows", text[-300:])
-    (runs.folder / "crushed.csv").write_text(
-        "time[s],pin_speed[rad/s],eccentricity_x[m],eccentricity_y[m]\n0,100,0,0\n1e-7,100,5e-6,0\n3e-7,100,-5e-6,0\n4e-7,100,0,0\n")
-    outcome = runs.start(CRUSHED, "crushed")
-    found = runs.summary("crushed")
-    check(found["film_history_max_film_pressure"] > 5e9, "the film is crushed", str(found["film_history_max_film_pressure"]))
-    check(any("larger than 5 GPa" in str(value) for key, value in found.items() if key.startswith("note_")), "said in its summary",
-          outcome.stderr)
 
 
 def main() -> int:

@@ -247,7 +247,7 @@ def check_locale() -> None:
 
 def check_keys(program: Path) -> None:
     """The groups that pages name, and the keys of the table of typical values, are there."""
-    said = "".join(subprocess.run([program, "--reference", subject], capture_output=True, text=True).stdout for subject in ("case", "bearing", "study"))
+    said = "".join(subprocess.run([program, "--reference", subject], capture_output=True, text=True).stdout for subject in ("case", "study"))
     groups, keys = set(re.findall(r"^## &(\w+)", said, re.MULTILINE)) | {"so_far", "name"}, set(re.findall(r"^\| `(\w+)` \|", said, re.MULTILINE))
     for page in (ROOT / "data/manual").glob("*.md"):
         named = set(re.findall(r"`&(\w+)", page.read_text(encoding="utf-8")))

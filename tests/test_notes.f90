@@ -4,12 +4,13 @@ module test_notes
   use kinds, only: dp
   use error_handling, only: error_t
   use model_parameters, only: real_kind
+  use bearing_size, only: bearing_t
   use chain_motion, only: piston_pin
   use case_definition, only: case_t
   use case_file, only: read_case
   use case_schema, only: key_table_t, case_schema_of
   use simulation, only: run_report_t
-  use film_history, only: film_history_t
+  use film_history, only: film_history_t, film_duty_t
   use result_notes, only: notes_on_results, history_remarks
   use run_line, only: lines_for_user
   use text_tools, only: next_line
@@ -115,15 +116,28 @@ contains
     call units_of_errors(check)
     call implausible_results(check)
     call films_that_have_not_settled(check)
-    call march_that_was_not_begun(check)
+    call marches(check)
   end subroutine run_test_notes
 
-  !> A film with memory is not marched if its run does not reach its end: there is nothing to say of it.
-  subroutine march_that_was_not_begun(check)
+  !> A film with memory is not marched if its run does not reach its end: there is nothing to say of it. A pin that is driven into
+  !> its film at 100 m/s: the pressure is of the order of 6 mu v R^2/c^2 L^2/(4 R^2) = 5e12 Pa and more.
+  subroutine marches(check)
     class(checks_t), intent(inout) :: check
     type(film_history_t) :: history
-    call check%that(history_remarks(history, .true.) == '', 'a march that was not begun has no remarks')
-  end subroutine march_that_was_not_begun
+    type(film_duty_t) :: duty
+    type(error_t), allocatable :: error
+    call check%that(history_remarks(history) == '', 'a march that was not begun has no remarks')
+    history%bearing = bearing_t(radius=12e-3_dp, length=6e-3_dp, clearance=10e-6_dp)
+    history%viscosity = 0.1_dp
+    history%around = 48
+    history%along = 2
+    history%most_cycles = 2
+    duty%time = [0.0_dp, 1e-7_dp, 3e-7_dp, 4e-7_dp]
+    duty%pin_speed = spread(100.0_dp, 1, 4)
+    duty%eccentricity = reshape([0.0_dp, 0.0_dp, 5e-6_dp, 0.0_dp, -5e-6_dp, 0.0_dp, 0.0_dp, 0.0_dp], [2, 4])
+    call history%march(duty, error)
+    call check%that(index(history_remarks(history), 'larger than 5 GPa') > 0, 'a film that is crushed is noted')
+  end subroutine marches
 
   !> A shipped case with changes.
   subroutine read_changed(file, changes, case, error)

@@ -21,7 +21,7 @@ clean() {   # clean ARGUMENTS...: the program succeeds and the sanitizer finds n
   fi
 }
 
-for case in $(grep -rlE '^&(mechanism|bearing_load|film_history)' cases --include='*.nml'); do clean "$case"; done
+for case in $(grep -rlE '^&(mechanism|bearing_load)' cases --include='*.nml'); do clean "$case"; done
 clean sweep --rows 1:2 cases/studies/map_I.nml
 clean sweep --rows 1:2 -s integrator.method=auto cases/studies/map_IV.nml
 echo "$passed passed, $failed failed"

@@ -51,6 +51,7 @@ module film_history
     type(film_row_t), allocatable :: rows(:)       !! result: the ends of the intervals of the last cycle
     type(film_field_t), allocatable :: fields(:)   !! result
     type(film_summary_t) :: summary                !! result
+    logical :: is_steady = .false.                 !! result: the duty had one row
     type(step_solver_t), private :: solver
     type(film_conditions_t), private :: conditions
     type(film_state_t), private :: state
@@ -59,7 +60,6 @@ module film_history
     real(dp), private :: load_before(2) = 0 !! of the last step, as in `conditions`; 0 for a steady state
     real(dp), private :: turned = 0         !! angle of the pin since the first row [rad]
     real(dp), private :: time = 0           !! end of the present step [s]
-    logical, private :: is_steady = .false. !! the duty has one row
   contains
     procedure :: march
     procedure, private :: begin

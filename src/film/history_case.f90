@@ -15,7 +15,7 @@ module history_case
   integer, parameter, public :: most_positions = 8   !! largest number of grooves or holes
 
   type, extends(has_parameters_t) :: march_case_t
-    character(len=:), allocatable :: drive, table
+    character(len=:), allocatable :: drive
     integer :: cycle_deg = 0, around = 0, along = 0, substeps = 0, most_cycles = 0
     real(dp) :: cycle_tolerance = 0
   contains
@@ -112,10 +112,9 @@ contains
     class(march_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
     call list%word('drive', self%drive, 'load, orbit', 'load', &
-      'load: the film carries the load of the run or table; orbit: the eccentricity is that of the run or table')
-    call list%text('table', self%table, &
-      'case without &mechanism: CSV file of the cycle, path relative to the case file; one row: a steady state', '', is_path=.true.)
-    call list%add('cycle_deg', self%cycle_deg, 'after a run: crank angle of the cycle, its last part [degrees]', &
+      'load: the film carries the load of the run; orbit: the eccentricity is that of the run')
+    call list%add('cycle_deg', self%cycle_deg, &
+      'crank angle of the cycle, the last part of the run; with &bearing_load its period_deg by default [degrees]', &
       '>= 360 and <= 5760', '720')
     call list%add('around', self%around, 'cells round the bearing', '>= 24 and <= 1024', '96')
     call list%add('along', self%along, 'cells along half of it', '>= 2 and <= 128', '8')
@@ -130,10 +129,9 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call list%word('kind', self%kind, 'grooves, holes, circumferential_groove', 'grooves', &
       'axial grooves or holes in the middle of the bearing, or a groove all round')
-    call list%add('pressure', self%pressure, 'pressure above ambient; a column supply_pressure[Pa] of the table has priority', &
-      'Pa', '>= 0 and <= 1e8', default='0.0', usual='1e3 to 1e7')
+    call list%add('pressure', self%pressure, 'pressure above ambient', 'Pa', '>= 0 and <= 1e8', default='0.0', usual='1e3 to 1e7')
     call self%feed%parameters(list, 'pressure_table', &
-      'after a run: CSV file with columns crank_angle[deg],pressure[Pa] over cycle_deg, above ambient; instead of pressure', &
+      'CSV file with columns crank_angle[deg],pressure[Pa] over cycle_deg, above ambient; instead of pressure', &
       default='')
     call list%text('position_deg', self%position_deg, &
       'grooves, holes: 1 to 8 angles of the middles, from x towards y of the bearing [degrees]', '', many=.true., &

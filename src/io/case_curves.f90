@@ -19,7 +19,7 @@ module case_curves
     place_angle, deviation
   implicit none
   private
-  public :: provide_curves, provide_history, period_fault
+  public :: provide_curves, period_fault
 
   integer, parameter :: largest_file = 100   !! MB
   real(dp), parameter :: widest_gap = 30     !! largest interval between two points of a pressure curve [degrees]
@@ -39,12 +39,11 @@ contains
     if (into%drive%table%is_wanted()) call provide(values, into%file, 'drive', 'torque_table', turning_speed, torque, &
       into%drive%table)
     do i = 1, n_places
-      call provide_history(values, into%file, into%joints(i)%history, values%law_group('supply', i), &
-        values%law_group('bore', i), values%law_group('shape', i), trim(places(i)%name))
+      call provide_history(values, into%file, i, into%joints(i)%history)
     end do
     if (allocated(into%load)) then
-      if (mod(into%load%period_deg, 360) == 0) call provide(values, into%file, 'bearing_load', 'table', crank_angle, load, &
-        into%load%curve, into%load%period_deg)   ! else refused by the rules
+      if (into%load%curve%is_wanted() .and. mod(into%load%period_deg, 360) == 0) call provide(values, into%file, 'bearing_load', &
+        'table', crank_angle, load, into%load%curve, into%load%period_deg)   ! another period is refused by the rules
     end if
     if (allocated(into%guide)) then
       if (into%guide%profile%is_wanted()) call provide(values, into%file, 'guide', 'profile_table', height, relief, &
@@ -60,22 +59,22 @@ contains
 
   !> Read the tables of a film with memory: the pressure of its supply over the crank angle, the compliances and the shape of its
   !> bore, which may be that of a file of wear.
-  subroutine provide_history(values, case_file, history, supply_group, bore_group, shape_group, joint)
+  subroutine provide_history(values, case_file, place, history)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: case_file
+    integer, intent(in) :: place   !! index in `places`
     type(history_case_t), intent(inout) :: history
-    character(len=*), intent(in) :: supply_group, bore_group, shape_group
-    character(len=*), intent(in) :: joint   !! name of the bearing in a file of wear
     if (allocated(history%supply)) then
-      if (history%supply%feed%is_wanted()) call provide(values, case_file, supply_group, 'pressure_table', crank_angle, pressure, &
-        history%supply%feed)
+      if (history%supply%feed%is_wanted()) call provide(values, case_file, values%law_group('supply', place), &
+        'pressure_table', crank_angle, pressure, history%supply%feed)
     end if
     if (allocated(history%shape)) then
-      if (history%shape%table%is_wanted()) call provide(values, case_file, shape_group, 'table', place_angle, deviation, &
-        history%shape%table, joint=joint)
+      if (history%shape%table%is_wanted()) call provide(values, case_file, values%law_group('shape', place), 'table', &
+        place_angle, deviation, history%shape%table, joint=trim(places(place)%name))
     end if
     if (.not. allocated(history%bore)) return
-    if (history%bore%table%is_wanted()) call provide_compliances(values, case_file, bore_group, history%bore)
+    if (history%bore%table%is_wanted()) call provide_compliances(values, case_file, values%law_group('bore', place), &
+      history%bore)
   end subroutine provide_history
 
   subroutine provide_compliances(values, case_file, group, bore)

@@ -128,15 +128,16 @@ contains
     text = text//' degrees'
   end function firing_text
 
-  !> The table of a bearing by itself, and what turns.
+  !> The load of a bearing by itself, and what turns.
   function load_text(case) result(text)
     type(case_t), intent(in) :: case
     character(len=:), allocatable :: text
     associate (load => case%load)
-      text = integer_text(size(load%curve%x))//' rows of up to '// &
+      text = quantity_text(load%factor*norm2(load%load), 'N', digits)
+      if (load%curve%is_wanted()) text = integer_text(size(load%curve%x))//' rows of up to '// &
         quantity_text(load%factor*maxval(hypot(load%curve%y, load%curve%z)), 'N', digits)//', '//load%interpolation// &
-        ', repeated every '//integer_text(load%period_deg)//' degrees; frame '//load%frame//', journal '//load%journal// &
-        ', bearing '//load%bearing
+        ', repeated every '//integer_text(load%period_deg)//' degrees'
+      text = text//'; frame '//load%frame//', journal '//load%journal//', bearing '//load%bearing
     end associate
   end function load_text
 

@@ -12,7 +12,6 @@ module case_file
   use case_rules, only: check_rules
   use case_notes, only: note_case
   use case_text, only: template_text, resolved_text
-  use bearing_definition, only: bearing_schema_of
   use namelist_reader, only: namelist_t, read_namelist
   use oil_values, only: replace_oils
   use own_groups, only: enter_group
@@ -50,44 +49,31 @@ contains
   end subroutine parse_case
 
   !> Read the values of a case file and of the overrides, without checking them against each other. What is wrong is noted in the
-  !> values. With `is_bearing` the file may also be a bearing case, which has the group film_history and no mechanism. Error: the
-  !> file cannot be read.
-  subroutine read_case_values(path, overrides, values, error, is_bearing)
+  !> values. Error: the file cannot be read.
+  subroutine read_case_values(path, overrides, values, error)
     character(len=*), intent(in) :: path, overrides(:)
     type(case_values_t), intent(out) :: values
     type(error_t), allocatable, intent(out) :: error
-    logical, intent(out), optional :: is_bearing
     character(len=:), allocatable :: text
-    if (present(is_bearing)) is_bearing = .false.
     call read_text_file(path, largest_file, 'case file', text, error)
-    if (.not. allocated(error)) call parse_values(text, path, overrides, values, is_bearing)
+    if (.not. allocated(error)) call parse_values(text, path, overrides, values)
   end subroutine read_case_values
 
   !> The values of a case file's text and of overrides; see `read_case_values`. `path` gives its name in messages. Groups that may
   !> be repeated have more than one number only if the case has such a group, or `all_groups` is present and true.
-  subroutine parse_values(text, path, overrides, values, is_bearing, all_groups)
+  subroutine parse_values(text, path, overrides, values, all_groups)
     character(len=*), intent(in) :: text, path, overrides(:)
     type(case_values_t), intent(out) :: values
-    logical, intent(out), optional :: is_bearing
     logical, intent(in), optional :: all_groups
     type(namelist_t) :: list
     type(error_t), allocatable :: syntax, error
-    logical :: without_mechanism, repeats
+    logical :: repeats
     integer :: i
     call read_namelist(text, path, list, syntax)
-    without_mechanism = .false.
-    if (present(is_bearing)) then
-      is_bearing = has_group(list, 'film_history') .and. .not. (has_group(list, 'mechanism') .or. allocated(syntax))
-      without_mechanism = is_bearing
-    end if
     repeats = .false.
     if (present(all_groups)) repeats = all_groups
-    if (without_mechanism) then
-      call bearing_schema_of(values%key_table_t)
-    else
-      call case_schema_of(values%key_table_t, repeats)
-      if (.not. repeats .and. repeats_groups(values%key_table_t, list, overrides)) call case_schema_of(values%key_table_t)
-    end if
+    call case_schema_of(values%key_table_t, repeats)
+    if (.not. repeats .and. repeats_groups(values%key_table_t, list, overrides)) call case_schema_of(values%key_table_t)
     call values%set_defaults(path)
     call set_from_file(values, list, syntax)
     do i = 1, size(overrides)
@@ -170,6 +156,14 @@ contains
     if (size(list%groups) == 0 .and. .not. allocated(syntax)) then
       call fail(syntax, values%file//': the file contains no group; gudgeon --template prints a case', status_case_file)
       values%problems%is_incomplete = .true.
+    end if
+    if (has_group(list, 'film_history') .and. .not. (has_group(list, 'mechanism') .or. has_group(list, 'bearing_load') .or. &
+      allocated(syntax))) then
+      call values%problems%add(values%file//': a bearing by itself is a case with &bearing_load now: table or load, &initial '// &
+        'crank_speed, &joint kind = ''quasi_static''; &film_history table is gone (manual: A bearing by itself)', '', behind_file)
+      values%problems%is_incomplete = .true.
+      values%problems%is_structural = .true.
+      return
     end if
     allocate (is_known(size(list%groups)), source=.false.)
     do i = 1, size(list%groups)

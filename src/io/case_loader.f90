@@ -8,7 +8,7 @@ module case_loader
   use value_reader, only: set_to_default, read_times
   use case_values, only: case_values_t
   use history_rules, only: read_positions
-  use joint_places, only: n_places
+  use joint_places, only: n_places, in_order
   use train_case, only: number_throws, most_cylinders
   use case_curves, only: provide_curves
   use state_file, only: provide_state
@@ -53,7 +53,7 @@ contains
     call visit_case(into, loader)
     call provide_bodies(values, into)
     call provide_film_moments(values, into)
-    if (allocated(into%load)) call hold_speed(values, into)
+    if (allocated(into%load)) call complete_load(values, into)
     call read_times(into%output%film_times, into%output%snapshot_times)
     do i = 1, n_places
       call read_positions(into%joints(i)%history)
@@ -94,16 +94,25 @@ contains
     end do
   end subroutine provide_bodies
 
-  !> The crank of a bearing by itself has a prescribed speed, which the case need not say.
-  subroutine hold_speed(values, into)
+  !> The crank of a bearing by itself has a prescribed speed, and its film with memory a cycle of the period of the load, which the
+  !> case need not say.
+  subroutine complete_load(values, into)
     type(case_values_t), intent(inout) :: values
     type(case_t), intent(inout) :: into
     integer :: place
     place = values%place_of('drive', 'kind')
-    if (values%values(place)%given(1)) return
-    into%drive%kind = 'constant_speed'
-    values%values(place)%text = into%drive%kind
-  end subroutine hold_speed
+    if (.not. values%values(place)%given(1)) then
+      into%drive%kind = 'constant_speed'
+      values%values(place)%text = into%drive%kind
+    end if
+    associate (history => into%joints(in_order(1))%history)
+      if (.not. allocated(history%march) .or. mod(into%load%period_deg, 360) /= 0) return   ! the latter is refused by the rules
+      place = values%place_of(values%law_group('film_history', in_order(1)), 'cycle_deg')
+      if (values%values(place)%given(1)) return
+      history%march%cycle_deg = into%load%period_deg
+      values%values(place)%whole = history%march%cycle_deg
+    end associate
+  end subroutine complete_load
 
   !> Set the parameters of one model, which are the keys of one group.
   subroutine load_model(values, group, model)

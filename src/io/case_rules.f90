@@ -141,6 +141,10 @@ contains
       call values%forbid(values%is_said(values%place_of('initial', trim(of_initial(k)))), 'initial', trim(of_initial(k)), only)
     end do
     call values%forbid(.not. c%joints(in_order(1))%is_carried(), 'joint', 'kind', 'must be quasi_static with &bearing_load')
+    call values%forbid(.not. (c%load%curve%is_wanted() .or. any(abs(c%load%load) > 0)), 'bearing_load', 'table', &
+      'required without load')
+    call values%forbid(c%load%curve%is_wanted() .and. any(abs(c%load%load) > 0), 'bearing_load', 'load', &
+      'cannot be combined with table: the load is constant or has a table')
     call values%forbid(mod(c%load%period_deg, 360) /= 0, 'bearing_load', 'period_deg', 'must be a multiple of 360')
     call values%demand(c%load%crank_to_rod > 0 .or. .not. c%load%needs_rod(), 'bearing_load', 'crank_to_rod', &
       'where frame, journal or bearing is rod')

@@ -228,6 +228,9 @@ contains
     end if
     wall_time = clock() - self%began
     self%line = lines_for_user(case, self%report, wall_time, self%base, remark)
+    if (allocated(self%certificate)) then
+      if (allocated(self%certificate%left_out)) self%line = self%line//newline//'  note: '//self%certificate%left_out
+    end if
     call self%summary%append(summary_table(case, self%report, wall_time, self%is_twin))
     if (allocated(self%certificate)) call self%summary%append(certificate_summary(self%certificate))
   end subroutine write_summary

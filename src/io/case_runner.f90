@@ -18,13 +18,12 @@ module case_runner
   use run_start, only: try_start
   use case_run, only: case_run_t, name_file
   use state_file, only: state_suffix
-  use bearing_run, only: bearing_run_t
   use result_file, only: fail_with_file
   use posix_files, only: absolute_path, make_directory, interrupted
   use run_progress, only: tell, say, clock, progress_wanted
   use measured_curve, only: measured_curve_t
   use process_pool, only: tasks_t, note_t, share, available_processors
-  use text_tools, only: case_name, printable, integer_text, path_beside, replaced
+  use text_tools, only: printable, integer_text, path_beside, replaced
   implicit none
   private
   public :: run_cases, tell_notes
@@ -35,7 +34,6 @@ module case_runner
     type(case_run_t) :: run, twin
     character(len=:), allocatable :: path             !! path of the case file
     logical :: has_twin = .false.                     !! the ideal twin is run too
-    type(bearing_run_t), allocatable :: bearing       !! instead of `run`: the case has no mechanism
   end type case_job_t
 
   !> All cases of a command.
@@ -71,8 +69,7 @@ contains
     end do
     if (.not. options%check) then
       do i = 1, size(cases%job)   ! uses all processors
-        if (.not. (allocated(cases%job(i)%error) .or. allocated(cases%job(i)%bearing))) &
-          call provide_films(cases%job(i), options%quiet, shows_progress)
+        if (.not. allocated(cases%job(i)%error)) call provide_films(cases%job(i), options%quiet, shows_progress)
       end do
       jobs = options%jobs
       if (jobs == 0) jobs = available_processors()
@@ -93,23 +90,13 @@ contains
     type(case_t) :: case
     type(column_list_t) :: list, ideal_list
     character(len=:), allocatable :: base, text, tables
-    logical :: is_bearing
 
     job%path = path
     if (interrupted()) then
       call not_begun(path, '', job%error)
       return
     end if
-    call read_case_values(path, settings_of(options), values, job%error, is_bearing)
-    if (is_bearing) then
-      allocate (job%bearing)
-      base = options%out//'/'//options%name
-      if (options%name == '') base = base//case_name(path)
-      if (.not. allocated(job%error)) call job%bearing%prepare(values, path, base, job%error)
-      if (options%resolved .and. .not. allocated(job%error)) &
-        job%bearing%line = job%bearing%resolved(:len(job%bearing%resolved) - 1)
-      return
-    end if
+    call read_case_values(path, settings_of(options), values, job%error)
     if (.not. allocated(job%error)) call complete_case(values, path, case, job%error)
     if (allocated(job%error)) return
     if (options%name /= '') case%name = options%name
@@ -220,9 +207,7 @@ contains
       if (.not. allocated(job%error)) then
         if (interrupted()) call not_begun(job%path, '', job%error)
       end if
-      if (allocated(job%bearing)) then
-        if (.not. allocated(job%error)) call job%bearing%go(job%error)
-      else if (.not. allocated(job%error)) then
+      if (.not. allocated(job%error)) then
         call job%run%go()
         if (job%has_twin) then
           is_interrupted = interrupted()
@@ -263,10 +248,6 @@ contains
     call keep_first(job%error, error)
     call keep_first(job%run%error, error)
     call keep_first(job%twin%error, error)
-    if (allocated(job%bearing) .and. .not. options%quiet) then
-      if (.not. allocated(error)) call say(job%bearing%line, status)
-      if (job%bearing%notice /= '') call tell(job%bearing%notice)
-    end if
     if (allocated(job%run%line) .and. .not. options%quiet) call say(job%run%line, status)
     if (.not. allocated(error)) return
     call tell(error%message)

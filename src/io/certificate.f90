@@ -39,6 +39,7 @@ module certificate
 
   type :: certificate_t
     character(len=:), allocatable :: reason      !! reason for which no certificate could be made; else unallocated
+    character(len=:), allocatable :: left_out    !! results that are not certified; else unallocated
     real(dp) :: until = 0                        !! end of the certified part [s]
     logical :: is_whole = .false.                !! the whole run is certified
     real(dp) :: digits = 0                       !! correct digits of the states in the certified part, median over time
@@ -73,6 +74,8 @@ contains
       certificate%reason = 'not certified: no tolerance ten times smaller is possible'
       return
     end if
+    if (allocated(report%histories)) certificate%left_out = 'not certified: film_history; its error is that of cells and steps '// &
+      '(compare along, around, substeps twice as fine)'
     call prepare(case, report, plain)
     call choose_columns(plain, .false., certificate%list, error)
     do i = 1, size(runs)
@@ -249,6 +252,7 @@ contains
       'state_error,'//real_text(self%state_error)//',1'//newline//'certified_with_other_method,'// &
       trim(merge('yes', 'no ', self%has_other_method))//','//newline
     if (allocated(self%differences)) text = text//self%differences
+    if (allocated(self%left_out)) text = text//'certificate_note,'//quoted(self%left_out, '"')//','//newline
     if (allocated(self%reason)) text = 'certificate,'//quoted(self%reason, '"')//','//newline
   end function certificate_summary
 

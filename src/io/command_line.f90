@@ -52,7 +52,7 @@ module command_line
     option_t('reference', '', .true.), option_t('from', '', .true.), option_t('completion', '', .true.), &
     option_t('man', '', .false.)]
 
-  character(len=*), parameter :: subjects = 'case, bearing, study, oils, results, schema'   !! of --reference, beside groups
+  character(len=*), parameter :: subjects = 'case, study, oils, results, schema'   !! of --reference, beside groups
   character(len=*), parameter :: shells = 'bash, zsh, fish'                   !! of --completion
   character(len=*), parameter :: progress_words = 'auto, always, never'       !! of --progress
   character(len=*), parameter :: chunks = '.chunks'   !! ending of the folder in which a study collects results
@@ -388,8 +388,8 @@ contains
       '      --resolved            print the cases with all defaults, as in CASE.resolved.nml, without running them'//n// &
       '      --template            print a complete, commented case file (sweep: study file) with every key'//n// &
       '      --template=KIND       print a short case that runs; KIND is one of '//template_kinds//n// &
-      '      --reference SUBJECT   print a reference page in Markdown; SUBJECT is case, bearing, study,'//n// &
-      '                            oils, results, a group of cases, or schema: a JSON Schema of cases'//n// &
+      '      --reference SUBJECT   print a reference page in Markdown; SUBJECT is case, study, oils,'//n// &
+      '                            results, a group of cases, or schema: a JSON Schema of cases'//n// &
       '      --completion SHELL    print what completes this command line in bash, zsh or fish'//n// &
       '      --man                 print the manual page'//n// &
       '      --progress WHEN       show progress on standard error: auto (on a terminal), always or never'//n// &

@@ -1,16 +1,12 @@
-!> Rules that the groups of a film in a joint must obey together: its oil, its heat, its memory, elastic walls.
+!> Rules that the groups of a film in a joint must obey together: its oil, its heat, elastic walls.
 module film_rules
-  use kinds, only: dp
   use joint_case, only: joint_case_t
   use oil_viscosity, only: oil_t
   use case_values, only: case_values_t
-  use history_rules, only: check_history, check_shape
   use number_text, only: short_text
   implicit none
   private
-  public :: check_oil, check_heat, check_film_history, check_thinning, check_transition, check_elastic_film
-
-  real(dp), parameter :: rounding = 1e-12_dp   !! relative difference of two times that counts as none
+  public :: check_oil, check_heat, check_thinning, check_transition, check_elastic_film
 
 contains
 
@@ -65,56 +61,6 @@ contains
         own, 'vogel_temperature', 'must be 10 K or more below inlet_temperature and housing_temperature')
     end associate
   end subroutine check_heat
-
-  !> Check the groups of a film with memory.
-  subroutine check_film_history(joint, group, place, values)
-    type(joint_case_t), intent(in) :: joint
-    character(len=*), intent(in) :: group   !! of the joint
-    integer, intent(in) :: place            !! index in `places`
-    type(case_values_t), intent(inout) :: values
-    character(len=:), allocatable :: own, oil, supply, bore, shape, cavitation
-    integer :: key
-    own = values%law_group('film_history', place)
-    oil = values%law_group('lubrication', place)
-    supply = values%law_group('supply', place)
-    bore = values%law_group('bore', place)
-    shape = values%law_group('shape', place)
-    cavitation = ''
-    key = values%place_of(oil, 'cavitation')
-    if (allocated(joint%film)) then
-      if (values%is_used(key)) cavitation = values%values(key)%text
-    end if
-    associate (history => joint%history)
-      if (.not. allocated(history%march)) then
-        call values%forbid(allocated(history%supply), supply, 'kind', 'needs the group film_history, whose film it feeds')
-        call values%forbid(allocated(history%bore), bore, 'outer_radius', 'needs the group film_history, whose film deforms it')
-        call values%forbid(allocated(history%shape), shape, 'table', 'needs the group film_history, whose film has this shape')
-        call values%forbid(joint%ambient_over_cavitation > 0, oil, 'ambient_over_cavitation', 'needs the group film_history')
-        call values%forbid(cavitation == 'mass_conserving', oil, 'cavitation', &
-          'needs the group film_history, whose film conserves its oil')
-        return
-      end if
-      call values%forbid(.not. allocated(joint%film), own, 'drive', 'needs the group lubrication: the film of that joint')
-      call values%forbid(history%march%table /= '', own, 'table', 'must not be given with &mechanism: the run gives the load')
-      call values%forbid(mod(history%march%cycle_deg, 360) /= 0, own, 'cycle_deg', 'must be a multiple of 360')
-      call values%forbid(cavitation == 'gumbel' .or. cavitation == 'none', oil, 'cavitation', &
-        'must be mass_conserving with film_history, or reynolds for a film without memory, for comparison')
-      call values%forbid(cavitation == 'reynolds' .and. .not. values%is_given(oil, 'cavitation'), oil, 'cavitation', &
-        'must be given with film_history: mass_conserving, or reynolds for a film without memory')
-      if (values%problems%concerns(group)) return
-      call check_history(values, history, joint%bearing_radius, joint%bearing_length, joint%elastic%pressure_viscosity, &
-        joint%ambient_over_cavitation, supply, bore)
-      if (allocated(history%shape)) call check_shape(values, history, joint%clearance, joint%bearing_radius, &
-        joint%bearing_length, shape)
-      if (.not. allocated(history%supply)) return
-      associate (feed => history%supply%feed)
-        if (.not. (feed%is_wanted() .and. allocated(feed%x))) return
-        call values%forbid(any(feed%y < 0), supply, 'pressure_table', 'must have pressures >= 0, above ambient')
-        call values%forbid(feed%x(size(feed%x)) - feed%x(1) > history%march%cycle_deg*(1 + rounding), supply, 'pressure_table', &
-          'must not span more than cycle_deg')
-      end associate
-    end associate
-  end subroutine check_film_history
 
   !> Check that a film that thins with the shear is one of a quasi-static law between rigid walls.
   subroutine check_thinning(joint, own, values)

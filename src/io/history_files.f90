@@ -19,7 +19,7 @@ module history_files
   use constants, only: degree
   implicit none
   private
-  public :: march_histories, write_histories, write_history, add_history, add_histories
+  public :: march_histories, write_histories, add_histories
 
   character(len=*), parameter :: newline = achar(10)
   character(len=*), parameter :: field_columns = 'angle[rad],film_thickness[m],place[m],pressure[Pa],film_fraction[-]'
@@ -65,13 +65,13 @@ contains
       if (size(histories) > 1) path = base//'.'//spot_name(histories(i)%spot)
       associate (of => histories(i))
         if (.not. allocated(of%history%rows)) cycle
-        call write_rows(path, of%history, case%output%digits, error, of)
+        call write_rows(path, of, case%output%digits, error)
         if (allocated(error)) return
         if (.not. allocated(of%history%fields)) cycle
         do k = 1, size(of%history%fields)
           associate (field => of%history%fields(k))
             call append_field(fields, field, real_text(field%time, case%output%digits)//','//real_text(of%angle( &
-              minloc(abs(of%duty%time(2:) - field%time), 1)), case%output%digits)//','//spot_name(of%spot), &
+              max(1, minloc(abs(of%history%rows%time - field%time), 1))), case%output%digits)//','//spot_name(of%spot), &
               case%output%digits)
           end associate
         end do
@@ -80,51 +80,30 @@ contains
     if (case%output%film_times /= '') call write_text(base//'.film.csv', fields%text(:fields%used), error)
   end subroutine write_histories
 
-  !> Write the files of the film of a bearing case. Error: a file cannot be written (status_output).
-  subroutine write_history(base, history, digits, error)
+  !> Write the rows of one film, beside them those of the film of the run.
+  subroutine write_rows(base, of, digits, error)
     character(len=*), intent(in) :: base
-    type(film_history_t), intent(in) :: history
+    type(history_record_t), intent(in) :: of
     integer, intent(in) :: digits
     type(error_t), allocatable, intent(out) :: error
-    type(growing_text_t) :: fields
-    integer :: k
-    call write_rows(base, history, digits, error)
-    if (allocated(error) .or. .not. allocated(history%fields)) return
-    if (size(history%fields) == 0) return
-    call fields%append('time[s],'//field_columns//newline)
-    do k = 1, size(history%fields)
-      call append_field(fields, history%fields(k), real_text(history%fields(k)%time, digits), digits)
-    end do
-    call write_text(base//'.film.csv', fields%text(:fields%used), error)
-  end subroutine write_history
-
-  !> Write the rows of one film. `of` has what stands beside them after a run.
-  subroutine write_rows(base, history, digits, error, of)
-    character(len=*), intent(in) :: base
-    type(film_history_t), intent(in) :: history
-    integer, intent(in) :: digits
-    type(error_t), allocatable, intent(out) :: error
-    type(history_record_t), intent(in), optional :: of
     type(growing_text_t) :: file
     real(dp), allocatable :: numbers(:)
     integer :: i
     logical :: has_bore
-    has_bore = history%bore%shapes() > 0
+    has_bore = of%history%bore%shapes() > 0
     call file%append('time[s],eccentricity_x[m],eccentricity_y[m],film_force_x[N],film_force_y[N],min_film_thickness[m],'// &
       'max_film_pressure[Pa],film_fill[-],supply_flow[m3/s],side_flow[m3/s],film_moment[N.m]')
     if (has_bore) call file%append(',bore_deflection[m]')
-    if (history%shape%is_tilted()) call file%append(',film_tilting_moment_x[N.m],film_tilting_moment_y[N.m]')
-    if (present(of)) call file%append(',crank_angle[rad],quick_film_thickness[m],quick_film_pressure[Pa]')
-    call file%append(newline)
-    do i = 1, size(history%rows)
-      associate (row => history%rows(i))
+    if (of%history%shape%is_tilted()) call file%append(',film_tilting_moment_x[N.m],film_tilting_moment_y[N.m]')
+    call file%append(',crank_angle[rad],quick_film_thickness[m],quick_film_pressure[Pa]'//newline)
+    do i = 1, size(of%history%rows)
+      associate (row => of%history%rows(i))
         numbers = [row%time, row%eccentricity, row%force, row%min_thickness, row%max_pressure, row%fill, row%supply_flow, &
           row%side_flow, row%moment]
         if (has_bore) numbers = [numbers, row%bore_deflection]
-        if (history%shape%is_tilted()) numbers = [numbers, row%tilting_moment]
+        if (of%history%shape%is_tilted()) numbers = [numbers, row%tilting_moment]
       end associate
-      if (present(of)) numbers = [numbers, of%angle(i), of%quick_thickness(i), of%quick_pressure(i)]
-      call append_numbers(file, numbers, digits)
+      call append_numbers(file, [numbers, of%angle(i), of%quick_thickness(i), of%quick_pressure(i)], digits)
     end do
     call write_text(base//'.film_history.csv', file%text(:file%used), error)
   end subroutine write_rows
@@ -161,46 +140,40 @@ contains
   subroutine add_histories(table, histories)
     type(result_table_t), intent(inout) :: table
     type(history_record_t), intent(in) :: histories(:)
-    character(len=:), allocatable :: prefix
-    integer :: i, k
+    integer :: i
     do i = 1, size(histories)
-      if (.not. allocated(histories(i)%history%rows)) cycle
-      prefix = name_prefix(histories(i)%spot)
-      associate (record => histories(i))
-        call add_history(table, record%history, record%duty, prefix)
-        if (size(record%history%rows) == 0) cycle
-        k = minloc(record%history%rows%min_thickness, 1)
-        call table%add('film_history_min_film_thickness_angle', modulo(record%angle(k), record%cycle)/degree, prefix)
-        call table%add('film_history_quick_min_film_thickness', minval(record%quick_thickness), prefix)
-        call table%add('film_history_quick_max_film_pressure', maxval(record%quick_pressure), prefix)
-        if (.not. all(record%quick_thickness > 0)) cycle   ! the surfaces touch in the run
-        k = maxloc(abs(log(record%history%rows%min_thickness/record%quick_thickness(:size(record%history%rows)))), 1)
-        call table%add('film_history_thickness_ratio', record%history%rows(k)%min_thickness/record%quick_thickness(k), prefix)
-        call table%add('film_history_thickness_ratio_time', record%history%rows(k)%time, prefix)
-      end associate
+      if (allocated(histories(i)%history%rows)) call add_history(table, histories(i), name_prefix(histories(i)%spot))
     end do
   end subroutine add_histories
 
-  !> Rows of the summary for one film with memory.
-  subroutine add_history(table, history, duty, prefix)
+  !> Rows of the summary for one film with memory, and for that of the run beside it.
+  subroutine add_history(table, of, prefix)
     type(result_table_t), intent(inout) :: table
-    type(film_history_t), intent(in) :: history
-    type(film_duty_t), intent(in) :: duty
+    type(history_record_t), intent(in) :: of
     character(len=*), intent(in) :: prefix
-    associate (found => history%summary)
+    integer :: k
+    associate (found => of%history%summary, rows => of%history%rows, shape => of%history%shape)
       call table%add('film_history_cycles', found%cycles, prefix)
-      if (size(history%rows) == 0) return
+      if (size(rows) == 0) return
       call table%add('film_history_cycle_change', found%content_change, prefix)
       call table%add('film_history_min_film_thickness', found%min_thickness, prefix)
       call table%add('film_history_max_film_pressure', found%max_pressure, prefix)
       call table%add('film_history_mean_supply_flow', found%mean_supply_flow, prefix)
       call table%add('film_history_mean_side_flow', found%mean_side_flow, prefix)
       call table%add('film_history_least_fill', found%least_fill, prefix)
-      call table%add('film_history_mean_power_loss', mean_loss(history, duty), prefix)
+      call table%add('film_history_mean_power_loss', mean_loss(of%history, of%duty), prefix)
       call table%add('film_history_mass_residual', found%mass_residual, prefix)
       call table%add('film_history_cells_per_gap', found%cells_per_gap, prefix)
-      if (history%shape%is_tilted()) call table%add('film_history_max_tilting_moment', found%max_tilting_moment, prefix)
-      if (history%shape%is_there()) call table%add('film_history_shape_depth', history%shape%depth(), prefix)
+      if (shape%is_tilted()) call table%add('film_history_max_tilting_moment', found%max_tilting_moment, prefix)
+      if (shape%is_there()) call table%add('film_history_shape_depth', shape%depth(), prefix)
+      k = minloc(rows%min_thickness, 1)
+      call table%add('film_history_min_film_thickness_angle', modulo(of%angle(k), of%cycle)/degree, prefix)
+      call table%add('film_history_quick_min_film_thickness', minval(of%quick_thickness), prefix)
+      call table%add('film_history_quick_max_film_pressure', maxval(of%quick_pressure), prefix)
+      if (.not. all(of%quick_thickness > 0)) return   ! the surfaces touch in the run
+      k = maxloc(abs(log(rows%min_thickness/of%quick_thickness(:size(rows)))), 1)
+      call table%add('film_history_thickness_ratio', rows(k)%min_thickness/of%quick_thickness(k), prefix)
+      call table%add('film_history_thickness_ratio_time', rows(k)%time, prefix)
     end associate
   end subroutine add_history
 

@@ -13,7 +13,8 @@ module joint_rules
   use case_schema, only: find_group
   use case_values, only: case_values_t
   use problem_list, only: behind_file
-  use film_rules, only: check_oil, check_heat, check_film_history, check_thinning, check_transition, check_elastic_film
+  use film_rules, only: check_oil, check_heat, check_thinning, check_transition, check_elastic_film
+  use history_rules, only: check_film_history
   use number_text, only: short_text
   implicit none
   private

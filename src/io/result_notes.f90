@@ -45,8 +45,9 @@ contains
     end do
     if (allocated(report%histories)) then
       do i = 1, size(report%histories)
-        if (history_remarks(report%histories(i)%history, .true.) == '') cycle
-        call add_line(history_remarks(report%histories(i)%history, .true.))
+        associate (film => report%histories(i)%history)
+          if (history_remarks(film) /= '') call add_line(history_remarks(film))
+        end associate
       end do
     end if
     if (report%energy_is_poor) call add_line(energy_warning(case, report))
@@ -247,9 +248,8 @@ contains
 
   !> What a user should know of a march: no bearing carries its pressure, no oil its thickness, its film is not settled, or its grid
   !> is too coarse; one line each, else empty.
-  pure function history_remarks(history, is_cycle) result(text)
+  pure function history_remarks(history) result(text)
     type(film_history_t), intent(in) :: history
-    logical, intent(in) :: is_cycle   !! the duty is a cycle, not a steady state
     character(len=:), allocatable :: text
     text = ''
     if (.not. allocated(history%rows)) return   ! it was not marched: the run did not come to its end
@@ -260,7 +260,7 @@ contains
         if (found%min_thickness < thinnest_film) call add_line('film_history: a film of '// &
           quantity_text(found%min_thickness, 'm')//' is thinner than 10 nm, where oil is not a continuous fluid')
       end if
-      if (found%cycles == history%most_cycles .and. is_cycle .and. found%content_change >= history%cycle_tolerance) &
+      if (found%cycles == history%most_cycles .and. .not. history%is_steady .and. found%content_change >= history%cycle_tolerance) &
         call add_line('film_history: the oil still changes by '//short_text(found%content_change)// &
           ' from cycle to cycle: raise &film_history most_cycles')
       if (found%cycles > 0 .and. found%cells_per_gap < least_cells_per_gap) &

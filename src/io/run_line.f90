@@ -51,7 +51,7 @@ contains
       if (case%has_skirt_corners()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
         ' contacts, force up to '//quantity_text(maxval(f%corner%max_force), 'N')
       text = text//skirt_text(report)
-      if (allocated(report%histories)) text = text//histories_text(report%histories)
+      if (allocated(report%histories)) text = text//histories_text(report%histories, allocated(case%load))
       if (report%exponent%is_known) text = text//'; Lyapunov exponent '//short_text(report%exponent%mean, digits)//' per revolution'
       if (remark /= '') text = text//'; '//remark
       text = text//newline//'  '//printable(path, 1000)//'.csv; '//integer_text(s%accepted)//' steps, '// &
@@ -115,8 +115,9 @@ contains
   end function turn_text
 
   !> Text about the films with memory, each beside the film of the run.
-  function histories_text(histories) result(text)
+  function histories_text(histories, is_alone) result(text)
     type(history_record_t), intent(in) :: histories(:)
+    logical, intent(in) :: is_alone   !! the only bearing, without a mechanism
     character(len=:), allocatable :: text
     integer :: i
     text = ''
@@ -124,9 +125,11 @@ contains
       associate (found => histories(i)%history)
         if (.not. allocated(found%rows)) cycle
         if (size(found%rows) == 0) cycle
-        text = text//'; film with memory at the '//spot_title(histories(i)%spot)//': thinnest '// &
-          quantity_text(found%summary%min_thickness, 'm')//' ('//quantity_text(minval(histories(i)%quick_thickness), 'm')// &
-          ' in the run), pressure up to '//quantity_text(found%summary%max_pressure, 'Pa')
+        text = text//'; film with memory'
+        if (.not. is_alone) text = text//' at the '//spot_title(histories(i)%spot)
+        text = text//': thinnest '//quantity_text(found%summary%min_thickness, 'm')//' ('// &
+          quantity_text(minval(histories(i)%quick_thickness), 'm')//' in the run), pressure up to '// &
+          quantity_text(found%summary%max_pressure, 'Pa')
       end associate
     end do
   end function histories_text

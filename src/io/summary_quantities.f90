@@ -156,6 +156,7 @@ module summary_quantities
 
   type(quantity_t), parameter :: of_certificates(*) = [ &
     quantity_t('certificate', '', 'why there is no certificate (`--certify`)'), &
+    quantity_t('certificate_note', '', 'results that are not certified'), &
     quantity_t('certified_until', 's', 'up to here no coordinate or speed is off by more than 1e-3 of its range'), &
     quantity_t('certified_digits', '1', 'correct digits of the state up to there, median over time'), &
     quantity_t('state_error', '1', 'largest error of the state up to there, over the range of each component'), &

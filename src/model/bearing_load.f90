@@ -1,5 +1,5 @@
-!> The load of a bearing without a mechanism: a table over the crank angle, and the bodies with which the load, the journal and the
-!> bearing turn.
+!> The load of a bearing without a mechanism: constant, or a table over the crank angle, and the bodies with which the load, the
+!> journal and the bearing turn.
 !>
 !> The rod has the angle A from the axis of the cylinder, sin A = crank_to_rod sin q. The axes of the load are fixed (x along the
 !> cylinder, towards the crank angle 0), turn with the crank (x from its axis to its pin), or with the rod (x from the crank pin to
@@ -18,6 +18,7 @@ module bearing_load
 
   type, extends(has_parameters_t) :: bearing_load_t
     type(measured_curve_t) :: curve          !! crank angle [degrees] and load [N], or its two components, within one period
+    real(dp) :: load(2) = 0                  !! constant, instead of the table [N]
     integer :: period_deg = 0
     real(dp) :: offset_deg = 0               !! crank angle at angle 0 of the table
     real(dp) :: direction_deg = 0            !! of the axis x of the table from that of the frame, towards y
@@ -35,6 +36,7 @@ module bearing_load
   contains
     procedure :: parameters
     procedure :: revolutions
+    procedure :: is_steady
     procedure :: needs_rod
     procedure :: prepare
     procedure :: start
@@ -51,7 +53,9 @@ contains
     class(parameter_list_t), intent(inout) :: list
     call self%curve%parameters(list, 'table', &
       'CSV file with columns crank_angle[deg],load[N] or crank_angle[deg],load_x[N],load_y[N], path relative to the case file', &
-      '', example='load.csv')
+      default='', example='load.csv')
+    call list%add('load', self%load, 'constant load along x and y of the frame, instead of table', 'N', default='0.0', &
+      usual='0.1 to 1e7')
     call list%add('period_deg', self%period_deg, 'period of the table, a multiple of 360 degrees', '>= 360 and <= 5760', '720')
     call list%add('offset_deg', self%offset_deg, 'crank angle of the simulation at angle 0 of the table', 'degrees', &
       '>= -5760 and <= 5760', '0.0', usual='0 to 5760')
@@ -75,17 +79,28 @@ contains
     revolutions = self%period_deg/360
   end function revolutions
 
+  !> Whether a film in a bearing that does not turn, whose pin turns evenly with an even crank, always has the same load.
+  pure logical function is_steady(self)
+    class(bearing_load_t), intent(in) :: self
+    is_steady = .not. self%curve%is_wanted() .and. self%frame == 'fixed' .and. self%journal == 'crank' .and. self%bearing == 'fixed'
+  end function is_steady
+
   !> Whether one of the bodies is the rod.
   pure logical function needs_rod(self)
     class(bearing_load_t), intent(in) :: self
     needs_rod = self%frame == 'rod' .or. self%journal == 'rod' .or. self%bearing == 'rod'
   end function needs_rod
 
-  !> Prepare for the table that has been read.
+  !> Prepare for the table that has been read, or for the constant load.
   subroutine prepare(self)
     class(bearing_load_t), intent(inout) :: self
     real(dp) :: turned(2, 2), direction
     integer :: i, n
+    if (.not. self%curve%is_wanted()) then   ! one row
+      self%curve%x = [0.0_dp]
+      self%curve%y = self%load(:1)
+      self%curve%z = self%load(2:)
+    end if
     n = size(self%curve%x)
     direction = self%direction_deg*degree
     turned = self%factor*reshape([cos(direction), sin(direction), -sin(direction), cos(direction)], [2, 2])
@@ -97,7 +112,7 @@ contains
     end do
     self%angle(n) = self%angle(0) + self%period
     self%force(:, n) = self%force(:, 0)
-    if (self%interpolation /= 'cubic') return
+    if (self%interpolation /= 'cubic' .or. n == 1) return
     allocate (self%cubic(2))
     do i = 1, 2
       self%cubic(i) = new_periodic_cubic(self%angle(:n - 1), self%force(i, :n - 1), self%period)
@@ -139,10 +154,10 @@ contains
     end if
   end subroutine step
 
-  !> Number of event functions: the load of a linear table has a kink at each row.
+  !> Number of event functions: the load of a linear table has a kink at each row, a constant one has none.
   pure integer function n_events(self)
     class(bearing_load_t), intent(in) :: self
-    n_events = merge(0, 1, allocated(self%cubic))
+    n_events = merge(0, 1, allocated(self%cubic) .or. size(self%angle) == 2)
   end function n_events
 
   !> The passage of the next row in the sense of the crank speed [rad], and its rate.

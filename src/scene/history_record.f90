@@ -27,6 +27,7 @@ module history_record
     real(dp), allocatable :: angle(:)          !! result: crank angles of its rows, those of the duty but the first [rad]
     real(dp), allocatable :: quick_thickness(:), quick_pressure(:)   !! result: of the film of the run there [m], [Pa]
     logical, private :: has_load = .true.
+    logical, private :: is_steady = .false.    !! nothing changes that the film is given
     real(dp) :: cycle = 0                      !! crank angle of the cycle [rad]
     type(measured_curve_t), private :: feed    !! supply pressure over the crank angle
     real(dp), allocatable, private :: kept(:, :)   !! (quantity, row)
@@ -52,6 +53,8 @@ contains
       self%cycle = joint%history%march%cycle_deg*degree
       if (allocated(joint%history%supply)) self%feed = joint%history%supply%feed
     end associate
+    if (allocated(case%load)) self%is_steady = self%has_load .and. case%load%is_steady() .and. .not. (case%drive%ramp_time > 0 &
+      .or. self%feed%is_wanted() .or. self%history%supply%fixed_to_pin)
     allocate (self%kept(n_values, 1024))
   end subroutine prepare
 
@@ -106,8 +109,9 @@ contains
     end do
   end function first_row
 
-  !> March the film over the last cycle, with the mean over its rows of the viscosity of the run's film, which follows its
-  !> temperature and, if it thins, its mean shear rate in each row. `watch` receives its progress and may stop it.
+  !> March the film over the last cycle, or find its steady state with what it is given at the end of the run. It has the mean over
+  !> its rows of the viscosity of the run's film, which follows its temperature and, if it thins, its mean shear rate in each row.
+  !> `watch` receives its progress and may stop it.
   !> Errors (status_integration): the run has no whole cycle; the film cannot be marched; `watch` stopped it.
   subroutine march(self, watch, error)
     class(history_record_t), intent(inout) :: self
@@ -119,20 +123,21 @@ contains
     first = first_row(self)
     turned = 0
     if (self%n > 1) turned = abs(self%kept(of_angle, self%n) - self%kept(of_angle, first))
-    if (turned < 0.999_dp*self%cycle) then
+    if (self%is_steady) first = self%n
+    if (turned < 0.999_dp*self%cycle .and. .not. (self%is_steady .and. self%n > 0)) then
       call fail(error, 'film_history: the rows of the run have no whole cycle of cycle_deg', status_integration)
       return
     end if
-    associate (kept => self%kept(:, first:self%n))
+    associate (kept => self%kept(:, first:self%n), ends => self%kept(:, min(first + 1, self%n):self%n))
       self%duty%time = kept(of_time, :)
       self%duty%pin_speed = kept(of_speed, :)
       self%duty%eccentricity = kept(of_x:of_y, :)
       if (self%has_load) self%duty%load = kept(of_load_x:of_load_y, :)
       if (self%feed%is_wanted()) self%duty%supply_pressure = fed_pressure(self, kept(of_angle, :)/degree)
-      self%angle = kept(of_angle, 2:)
-      self%quick_thickness = kept(of_thickness, 2:)
-      self%quick_pressure = kept(of_pressure, 2:)
-      self%history%viscosity = self%history%viscosity*sum(kept(of_viscosity, 2:))/size(self%angle)   ! that of the run
+      self%angle = ends(of_angle, :)
+      self%quick_thickness = ends(of_thickness, :)
+      self%quick_pressure = ends(of_pressure, :)
+      self%history%viscosity = self%history%viscosity*sum(ends(of_viscosity, :))/size(self%angle)   ! that of the run
     end associate
     call self%history%march(self%duty, error, watch)
     if (allocated(error)) error%message = 'film_history: '//error%message

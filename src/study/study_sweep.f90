@@ -129,7 +129,9 @@ contains
       associate (case => sweep%base%case)
         if (allocated(case%drive%table%path)) call refuse('&drive torque_table', case%drive%table%path)
         if (allocated(case%measured)) call refuse('&cylinder_pressure table', case%measured%curve%path)
-        if (allocated(case%load)) call refuse('&bearing_load table', case%load%curve%path)
+        if (allocated(case%load)) then
+          if (allocated(case%load%curve%path)) call refuse('&bearing_load table', case%load%curve%path)
+        end if
         if (allocated(case%guide)) then
           if (allocated(case%guide%profile%path)) call refuse('&guide profile_table', case%guide%profile%path)
         end if

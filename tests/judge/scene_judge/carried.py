@@ -86,11 +86,13 @@ def rod_speeds(run: Run, turn: list[float]) -> list[float]:
 
 
 def loads_of_table(run: Run) -> list[Vector]:
-    """The load on the journal in every row, by the table of the case."""
-    with (run.folder / run.text("bearing_load.table")).open(newline="") as file:
-        lines = [line for line in csv.reader(file) if line and not line[0].startswith("#")]
-    units = [UNITS[name[name.index("[") + 1:-1]] for name in lines[0][1:]]
-    rows = sorted((float(line[0]), *(float(cell) * unit for cell, unit in zip(line[1:], units))) for line in lines[1:])
+    """The load on the journal in every row, by the table of the case or constant."""
+    rows = [(0.0, *run.pair("bearing_load.load"))]
+    if run.text("bearing_load.table"):
+        with (run.folder / run.text("bearing_load.table")).open(newline="") as file:
+            lines = [line for line in csv.reader(file) if line and not line[0].startswith("#")]
+        units = [UNITS[name[name.index("[") + 1:-1]] for name in lines[0][1:]]
+        rows = sorted((float(line[0]), *(float(cell) * unit for cell, unit in zip(line[1:], units))) for line in lines[1:])
     period, number = run.number("bearing_load.period_deg"), run.number
     if rows[-1][0] >= rows[0][0] + period * (1 - 1e-12):
         rows.pop()

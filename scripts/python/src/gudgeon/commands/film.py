@@ -42,9 +42,12 @@ def run(options: argparse.Namespace) -> int:
         if path.exists():
             table = read_table(path, "crank_angle", "quick_film_thickness", "min_film_thickness")[0]
             demand_numbers(path, table, list(table.columns))
-            run_of_film = load_run(path.with_name(f"{name}.csv"))
-            save(pictures.with_memory(run_of_film, table, name), options, path.parent, f"{name}_film_history")
-            if not path.with_name(f"{name}.film.csv").exists():
+            has_fields = path.with_name(f"{name}.film.csv").exists()
+            if len(table) > 1:
+                save(pictures.with_memory(load_run(path.with_name(f"{name}.csv")), table, name), options, path.parent, f"{name}_film_history")
+            elif not has_fields:
+                raise Refused(f"{path}: a steady state has no picture over the crank angle; &output film_times gives its pressures")
+            if not has_fields:
                 return 0
     path = pressures_of(options)
     name = path.name.removesuffix(".film.csv")
