@@ -103,16 +103,16 @@ def check_services(program: Path, folder: Path) -> None:
     check(done.returncode == 0 and "note: not certified: film_history" in done.stdout and "film_history" in summary["certificate_note"] and
           float(summary["certified_digits"]) > 3 and (folder / "once" / "load_groove.certificate.csv").exists(), "a certificate", done.stdout + done.stderr)
     (folder / "study.nml").write_text(
-        f"&study case='{case}' /\n&parameter key='joint.clearance', values=3e-5, 3.2e-5, 3.4e-5 /\n")
+        f"&study case='{case}', statistics='film_history_min_film_thickness' /\n&parameter key='joint.clearance', values=3e-5, 3.2e-5, 3.4e-5 /\n")
     command = [program, "sweep", folder / "study.nml", "--out", folder, "-j", "2", *(word for setting in COARSE for word in ("--set", setting))]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     check(done.returncode == 0, "a study of the clearance", done.stderr)
     with (folder / "study.runs.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
-    thinnest = [float(row["min_film_thickness[m]"]) for row in rows]
+    thinnest = [float(row["film_history_min_film_thickness[m]"]) for row in rows]
     check(len(rows) == 3 and len(set(thinnest)) == 3, "three runs of the study", str(rows))
     once = run(program, case, folder / "one", *COARSE)
-    check(abs(float(summary_of(folder / "one" / "load_groove.summary.csv")["min_film_thickness"]) / thinnest[0] - 1) < 1e-9, "the same film in a study", once.stderr)
+    check(abs(float(summary_of(folder / "one" / "load_groove.summary.csv")["film_history_min_film_thickness"]) / thinnest[0] - 1) < 1e-9, "the same film in a study", once.stderr)
     least = []
     for start in ("", folder / "one" / "load_groove.state.nml"):
         done = run(program, case, folder / "two", *quick, "integrator.revolutions=2", f"initial.from={start}")

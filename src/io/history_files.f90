@@ -16,10 +16,11 @@ module history_files
   use result_file, only: write_text
   use result_table, only: result_table_t
   use simulation, only: run_report_t
+  use summary_rows, only: summary_row_t, read_rows
   use constants, only: degree
   implicit none
   private
-  public :: march_histories, write_histories, add_histories
+  public :: march_histories, write_histories, add_histories, history_value
 
   character(len=*), parameter :: newline = achar(10)
   character(len=*), parameter :: field_columns = 'angle[rad],film_thickness[m],place[m],pressure[Pa],film_fraction[-]'
@@ -145,6 +146,26 @@ contains
       if (allocated(histories(i)%history%rows)) call add_history(table, histories(i), name_prefix(histories(i)%spot))
     end do
   end subroutine add_histories
+
+  !> The value of one of these rows; `is_known` is false if there is none.
+  subroutine history_value(histories, name, value, is_known)
+    type(history_record_t), intent(in) :: histories(:)
+    character(len=*), intent(in) :: name   !! with the prefix of its place
+    real(dp), intent(inout) :: value
+    logical, intent(out) :: is_known
+    type(result_table_t) :: table
+    type(summary_row_t), allocatable :: rows(:)
+    integer :: i
+    call table%clear()
+    call add_histories(table, histories)
+    call read_rows(table%text(:table%used), rows)
+    is_known = .false.
+    do i = 1, size(rows)
+      if (rows(i)%name /= name) cycle
+      value = rows(i)%value
+      is_known = .true.
+    end do
+  end subroutine history_value
 
   !> Rows of the summary for one film with memory, and for that of the run beside it.
   subroutine add_history(table, of, prefix)

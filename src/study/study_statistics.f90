@@ -8,10 +8,12 @@ module study_statistics
   use trace_row, only: column_list_t, kept_t, least, largest, largest_size, spread, mean, root_mean_square, of_run, of_cycle
   use trace_columns, only: all_columns, unit_in
   use cycle_answers, only: quantity_t, cycle_quantities
+  use history_files, only: history_value
+  use summary_quantities, only: quantities_of_runs
   use simulation, only: run_report_t
   implicit none
   private
-  public :: statistic_t, read_statistics, keep_statistics
+  public :: statistic_t, read_statistics, keep_statistics, of_history
 
   character(len=7), parameter :: words(6) = [character(len=7) :: 'min', 'max', 'max abs', 'range', 'mean', 'rms']
   integer, parameter :: of_words(6) = [least, largest, largest_size, spread, mean, root_mean_square]
@@ -125,11 +127,19 @@ contains
     logical, intent(out) :: is_known
     if (self%what == 0) then
       call report%value_of(trim(self%of), value, is_known)
+      if (of_history(self%of) .and. allocated(report%histories)) &
+        call history_value(report%histories, trim(self%of), value, is_known)
     else
       call report%value_of('cycle_statistic_'//integer_text(i), value, is_known)
       if (.not. is_known) call report%value_of('statistic_'//integer_text(i), value, is_known)
     end if
   end subroutine value_in
+
+  !> Whether a number is one of a film with memory, which is marched for it.
+  elemental logical function of_history(name)
+    character(len=*), intent(in) :: name
+    of_history = index(name, 'film_history_') > 0
+  end function of_history
 
   !> The name of a column without its unit.
   elemental function bare(name)
@@ -151,7 +161,8 @@ contains
     squeezed = trim(squeezed)
   end function squeezed
 
-  !> The numbers of summaries that runs of a case may have: those that are kept of its columns, and the answers of a cycle.
+  !> The numbers of summaries that runs of a case may have: those that are kept of its columns, the answers of a cycle, and
+  !> those of films with memory.
   subroutine find_numbers(case, list, known)
     type(case_t), intent(in) :: case
     type(column_list_t), intent(in) :: list
@@ -174,6 +185,17 @@ contains
         spots = case%spots(place)
         do k = 1, size(spots)
           call add(trim(spot_prefix(spots(k)))//cycle_quantities(i)%name, cycle_quantities(i)%unit)
+        end do
+      end do
+    end do
+    do place = 1, n_places
+      if (.not. allocated(case%joints(place)%history%march)) cycle
+      spots = case%spots(place)
+      do k = 1, size(spots)
+        do i = 1, size(quantities_of_runs)
+          associate (name => trim(spot_prefix(spots(k)))//trim(quantities_of_runs(i)%name))
+            if (of_history(name) .and. len(name) <= len(quantities_of_runs%name)) call add(name, quantities_of_runs(i)%unit)
+          end associate
         end do
       end do
     end do

@@ -6,8 +6,10 @@ module study_worker
   use constants, only: degree
   use trace_columns, only: column_list_t, all_columns, choose_columns
   use cycle_watch, only: cycle_watch_t
-  use study_statistics, only: statistic_t, keep_statistics
+  use study_statistics, only: statistic_t, keep_statistics, of_history
   use film_files, only: provide_tables
+  use history_files, only: march_histories
+  use posix_files, only: interrupted
   use simulation, only: run_t, run_report_t
   use whole_run, only: go_to_end
   use trace_sink, only: trace_sink_t
@@ -147,6 +149,10 @@ contains
     if (allocated(error)) return
     call go_to_end(run, self%was_interrupted)
     call run%finish(report, error, self%watch)
+    if (.not. allocated(error) .and. any(of_history(self%run_row%statistics%of))) then
+      call march_histories(self%base%case, .false., report, error)
+      if (allocated(error)) self%was_interrupted = interrupted()
+    end if
     if (.not. self%follows .or. allocated(error)) return
     if (.not. allocated(self%previous)) allocate (self%previous)
     call run%state(self%previous)
