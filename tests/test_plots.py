@@ -1353,6 +1353,9 @@ class Reading(unittest.TestCase):
             (there / "failed.runs.csv").write_text("run,joint.clearance,status,impacts[-]\n1,1e-5,too deep,\n2,2e-5,too long,\n3,3e-5,too deep,\n")
             (there / "x.wear.csv").write_text("joint,angle[deg],pin_depth[m],bore_depth[m]\npiston_pin,0,x,1\n")
             (there / "x.film.csv").write_text("time[s],joint,place,angle[deg],pressure[Pa],film_thickness[m]\n0,piston_pin,0,0,,1\n")
+            for name, text in (("alone.csv", "time[s],crank_angle[rad]\n0,0\n1,1\n"), ("alone.resolved.nml", "&bearing_load\n  load = 1.0, 0.0\n/\n"),
+                               ("alone.film_history.csv", "crank_angle[rad],quick_film_thickness[m],min_film_thickness[m]\n0,1,1\n")):
+                (there / name).write_text(text)
             for status, words, said in (
                 (1, ("study", there / "x.runs.csv", "--columns", "status"), "status: contains words, no numbers"),
                 (1, ("study", there / "failed.runs.csv", "--columns", "impacts"),
@@ -1361,6 +1364,8 @@ class Reading(unittest.TestCase):
                 (2, ("study", "--columns", "impacts"), "--columns is for studies"),
                 (1, ("wear", there / "x.wear.csv"), "column pin_depth: not a number in each row"),
                 (1, ("film", there / "x.film.csv"), "column pressure: not a number in each row"),
+                (2, ("report", there / "alone.csv"), "alone: a bearing by itself has no mechanism to draw"),
+                (2, ("film", there / "alone.csv"), "alone.film_history.csv: a steady state has no picture"),
                 (2, ("film", there / "x.film.csv", "--at", "0.01"), "--at and --set are for a case"),
                 (1, ("measure_elastic.py", "members", "--program", there / "nothing"), "measure_elastic.py: "),
             ):

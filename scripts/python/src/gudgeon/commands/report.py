@@ -16,7 +16,7 @@ import sys
 from pathlib import Path
 
 from gudgeon import language
-from gudgeon.commands import FORMATS, add_results
+from gudgeon.commands import FORMATS, Refused, add_results
 from gudgeon.plots import short, style
 from gudgeon.plots.film_pressure import fields_of
 from gudgeon.plots.wear import surfaces_of
@@ -43,6 +43,8 @@ def run(options: argparse.Namespace) -> int:
         out = options.out if options.out and options.out.suffix[1:] in FORMATS else (options.out or directory) / f"{name}_short.pdf"
         print(*style.save(short.draw(shown, name), out.parent, out.stem, [out.suffix[1:]]))
         return 0
+    if "bearing_load" in shown.case:
+        raise Refused(f"{name}: a bearing by itself has no mechanism to draw: --short, or gudgeon-plot bearing")
     twin = results[f"{name}.ideal"] if results.has(f"{name}.ideal") else None
     pressures, worn = directory / f"{name}.film.csv", directory / f"{name}.wear.csv"
     text = page(shown, twin, fields_of(pressures) if pressures.exists() else None, language.current, options.cycles,
