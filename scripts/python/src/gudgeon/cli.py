@@ -2,6 +2,7 @@
 
 import argparse
 import importlib
+import os
 import signal
 import sys
 
@@ -59,9 +60,7 @@ def main(words: list[str] | None = None) -> int:
 
 def run(name: str, what: str, words: list[str]) -> int:
     """Run the command `what`; what it needs is imported here."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
+    os.environ["MPLBACKEND"] = "Agg"
     from gudgeon import language
     from gudgeon.commands import Refused
     from gudgeon.program import MissingResult

@@ -7,14 +7,12 @@ one.
 import argparse
 import re
 import sys
-from collections.abc import Iterable
-
-from matplotlib.artist import Artist
-from matplotlib.figure import Figure as Drawing
-from matplotlib.text import Text
-from matplotlib.ticker import Formatter, NullFormatter
+from typing import TYPE_CHECKING
 
 from gudgeon.portuguese import TEXTS, UNTRANSLATED
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Drawing
 
 LANGUAGES = ("en", "pt")
 
@@ -77,52 +75,19 @@ class Language:
             self.unknown.add(text)
         return self.number(text)
 
-    def localise(self, drawing: Drawing) -> None:
+    def localise(self, drawing: "Drawing") -> None:
         """Translate every text of a drawing. Call it once for each drawing."""
         if self.is_english or getattr(drawing, "_gudgeon_language", "en") == self.name:
             return
-        drawing.canvas.draw()
-        ticks: set[Artist] = set()
-        for axes in drawing.axes:
-            for axis in axes._axis_map.values():
-                for get, put in (("get_major_formatter", "set_major_formatter"), ("get_minor_formatter", "set_minor_formatter")):
-                    inner = getattr(axis, get)()
-                    if not isinstance(inner, (NullFormatter, LocalFormatter)):
-                        getattr(axis, put)(LocalFormatter(inner, self))
-                ticks.update(label for tick in (*axis.majorTicks, *axis.minorTicks) for label in (tick.label1, tick.label2))
-                ticks.add(axis.offsetText)
-        for text in drawing.findobj(Text):
-            if text not in ticks and text.get_text().strip():
-                text.set_text(self.say(text.get_text()))
+        from gudgeon.plots.localised import localise
+
+        localise(drawing, self)
         drawing._gudgeon_language = self.name
 
     def warn(self, script: str) -> None:
         """Print a line on standard error if texts have no translation."""
         if self.unknown:
             print(f"{script}: no translation of: {'; '.join(sorted(self.unknown))}", file=sys.stderr)
-
-
-class LocalFormatter(Formatter):
-    """Formats numbers as another formatter does, but with decimal commas and translated words."""
-
-    def __init__(self, inner: Formatter, language: Language) -> None:
-        self.inner, self.language = inner, language
-
-    def set_axis(self, axis: object) -> None:
-        super().set_axis(axis)
-        self.inner.set_axis(axis)
-
-    def set_locs(self, locs: object) -> None:
-        self.inner.set_locs(locs)
-
-    def __call__(self, x: float, pos: int | None = None) -> str:
-        return self.language.say(self.inner(x, pos))
-
-    def format_ticks(self, values: Iterable[float]) -> list[str]:
-        return [self.language.say(text) for text in self.inner.format_ticks(values)]
-
-    def get_offset(self) -> str:
-        return self.language.number(self.inner.get_offset())
 
 
 #: The language of all pictures of a script.

@@ -8,7 +8,7 @@ import gzip
 import html
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,11 +16,8 @@ import pandas as pd
 from gudgeon.language import Language
 from gudgeon.names import PLACES, prefixed
 from gudgeon.plots import film_pressure
-from gudgeon.plots import wear as wear_pictures
 from gudgeon.report import answers
-from gudgeon.report import cycles as report_cycles
 from gudgeon.results import Run, numbered
-from plotly.offline import get_plotlyjs
 
 PAGE = Path(__file__).parent / "assets"
 
@@ -393,23 +390,25 @@ def engine_of(run: Run, columns: dict[str, np.ndarray]) -> dict | None:
     }
 
 
-def page(
+def scene_of(
     run: Run,
     ideal: Run | None = None,
     fields: list[pd.DataFrame] | None = None,
     language: Language | None = None,
-    cycle_columns: list[str] | None = None,
-    worn: list[tuple[str, pd.DataFrame]] | None = None,
-) -> str:
-    """The HTML text of the page. `fields`: the pressures of a NAME.film.csv; `cycle_columns`: columns whose cycles and orders are
-    shown; `worn`: the worn surfaces of a NAME.wear.csv."""
-    say = (language or Language()).say
+    most: int = MOST_ROWS,
+    shown: Callable[[dict], bool] = lambda plot: True,
+) -> tuple[dict, dict[str, bytes]]:
+    """What drawing.js draws of a run: a scene for JSON, and bytes by name: its columns one after the other as float32 (`trace`), and the
+    film's pressure and oil around the pin (`pressure`, `oil`; empty without them). `fields` as in `page`; `most`: rows that are kept;
+    `shown`: of each plot, whether it is wanted."""
+    language = language or Language()
+    say = language.say
     columns = with_sizes(run)
     if ideal is not None:
         for name, values in with_sizes(ideal).items():
             if name in columns and name != "time":
                 columns[f"ideal {name}"] = np.interp(run["time"], ideal["time"], values)
-    drawn = plots(columns, run)
+    drawn = [plot for plot in plots(columns, run) if shown(plot)]
     for plot in drawn:
         plot |= {part: say(plot[part]) for part in ("title", "x", "y")}
         for curve in plot["curves"]:
@@ -422,14 +421,13 @@ def page(
             used.append(plot["phase"])
     engine = engine_of(run, columns)
     used += [name for name in (engine or {}).get("twists", []) if name and name not in used]
-    rows = chosen_rows([columns[name] for name in used])
+    rows = chosen_rows([columns[name] for name in used], most)
     film = film_columns(run, rows, fields)
     oil = oil_of(run, rows, fields)
     if film:
         columns["film_peak"] = np.zeros(len(run["time"]))
         columns["film_peak"][rows] = film[1]
         used.append("film_peak")
-    data = b"".join(columns[name][rows].astype("<f4").tobytes() for name in used)
     touched = contacts(run)
     bore = bore_of(run) if "piston_tilt" in columns else None
     scene = {
@@ -438,8 +436,6 @@ def page(
         "plots": drawn,
         "contacts": touched,
         "line": time_line(columns, run) | {"title": say(time_line(columns, run)["title"])},
-        "words": {word: say(word) for word in script_words()},
-        "comma": bool(language and not language.is_english),
         "start": first_moment(columns, [field["time"].iloc[0] for field in fields or []], last_cycle(run, columns)),
         "angles": ANGLES if film else 0,
         "signed": bool(film and film[2]),
@@ -469,6 +465,43 @@ def page(
     }
     if "normal_force" in columns:
         scene["peak"]["normal_force"] = max(scene["peak"]["normal_force"], float(columns["normal_force"].max()))
+    data = {
+        "trace": b"".join(columns[name][rows].astype("<f4").tobytes() for name in used),
+        "pressure": film[0].tobytes() if film else b"",
+        "oil": b"" if oil is None else oil.tobytes(),
+    }
+    return scene, data
+
+
+def text_of(name: str, language: Language) -> str:
+    """A file of the pages, its texts in [[...]] translated."""
+    text = (PAGE / name).read_text(encoding="utf-8").replace("{{motion}}", (PAGE / "motion.html").read_text(encoding="utf-8"))
+    return re.sub(r"\[\[(.+?)\]\]", lambda found: html.escape(language.say(found[1])), text)
+
+
+def filled(text: str, parts: Mapping[str, str]) -> str:
+    """A text with {{fields}}, each filled once, so that inserted texts are not searched for fields."""
+    head, *fields = text.split("{{")
+    return head + "".join(parts[name] + rest for name, rest in (field.split("}}", 1) for field in fields))
+
+
+def page(
+    run: Run,
+    ideal: Run | None = None,
+    fields: list[pd.DataFrame] | None = None,
+    language: Language | None = None,
+    cycle_columns: list[str] | None = None,
+    worn: list[tuple[str, pd.DataFrame]] | None = None,
+) -> str:
+    """The HTML text of the page. `fields`: the pressures of a NAME.film.csv; `cycle_columns`: columns whose cycles and orders are
+    shown; `worn`: the worn surfaces of a NAME.wear.csv."""
+    from gudgeon.report import cycles as report_cycles
+    from plotly.offline import get_plotlyjs
+
+    language = language or Language()
+    say = language.say
+    scene, data = scene_of(run, ideal, fields, language)
+    scene |= spoken(language, "drawing", "page")
     said = [*(say(text) for text in warnings(run)), *notes(run)]
     case = "".join(
         rows_html([(key, shown(value)) for key, value in keys.items()], f"&{group}") for group, keys in run.case.items()
@@ -489,15 +522,16 @@ def page(
             f"{run.name}: "
             + say(
                 f"{len(run['time'])} samples over {run['time'][-1]:.6g} s"
-                + (f", of which {len(rows)} are kept here, peaks among them" if len(rows) < len(run["time"]) else "")
+                + (f", of which {scene['rows']} are kept here, peaks among them" if scene["rows"] < len(run["time"]) else "")
             )
         ),
-        "language": (language or Language()).name,
+        "language": language.name,
         "style": (PAGE / "page.css").read_text(encoding="utf-8"),
+        "drawing": (PAGE / "drawing.js").read_text(encoding="utf-8"),
         "script": (PAGE / "page.js").read_text(encoding="utf-8"),
         "warnings": "".join(f'<p class="warning">{html.escape(text)}</p>' for text in said)
         or f'<p class="fine">{html.escape(say("No warnings."))}</p>',
-        "wear": wear_section(worn, language or Language()) if worn else "",
+        "wear": wear_section(worn, language) if worn else "",
         "answers": answers.section(run, language),
         "cycles": report_cycles.section(run, cycle_columns, language),
         "summary": f"<table>{summary(False)}</table>",
@@ -510,19 +544,17 @@ def page(
             )
         ),
         "scene": json.dumps(scene, ensure_ascii=False).replace("</", "<\\/"),
-        "trace": packed(data),
-        "pressure": packed(film[0].tobytes()) if film else "",
-        "oil": packed(oil.tobytes()) if oil is not None else "",
+        **{name: packed(content) if content else "" for name, content in data.items()},
         "library": packed(get_plotlyjs().encode("utf-8")),
     }
-    text = (PAGE / "page.html").read_text(encoding="utf-8")
-    text = re.sub(r"\[\[(.+?)\]\]", lambda found: html.escape(say(found[1])), text)
-    head, *fields = text.split("{{")  # each field once, so that inserted texts are not searched for fields
-    return head + "".join(parts[name] + rest for name, rest in (field.split("}}", 1) for field in fields))
+    return filled(text_of("page.html", language), parts)
 
 
 def wear_section(worn: list[tuple[str, pd.DataFrame]], language: Language) -> str:
     """The section on worn surfaces as HTML."""
+    from gudgeon.plots import wear as wear_pictures
+    from gudgeon.report import cycles as report_cycles
+
     heading = language.say("Wear of pin and bore")
     drawing = wear_pictures.draw(worn, [PLACES[joint][1] for joint, _ in worn])
     said = "Depth around each surface, exaggerated, and over the angle on it"
@@ -553,9 +585,15 @@ def first_moment(columns: dict[str, np.ndarray], of_fields: Sequence[float] = ()
     return float(time[int(np.argmax(force))])
 
 
-def script_words() -> list[str]:
-    """The texts in the page's script: those in W(...)."""
-    return re.findall(r'\bW\("([^"]+)"\)', (PAGE / "page.js").read_text(encoding="utf-8"))
+def script_words(*scripts: str) -> list[str]:
+    """The texts in scripts of the pages: those in W(...)."""
+    found = {word for name in scripts for word in re.findall(r'\bW\("([^"]+)"\)', (PAGE / f"{name}.js").read_text(encoding="utf-8"))}
+    return sorted(found)
+
+
+def spoken(language: Language, *scripts: str) -> dict[str, object]:
+    """What drawing.js calls `spoken`: the words of these scripts in the page's language, and whether numbers have decimal commas."""
+    return {"words": {word: language.say(word) for word in script_words(*scripts)}, "comma": not language.is_english}
 
 
 def time_line(columns: dict[str, np.ndarray], run: Run) -> dict:
