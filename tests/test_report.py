@@ -39,7 +39,7 @@ TOP = Path(__file__).resolve().parents[1]
 #: pin, with ideal pins), an ideal joint, dry contact with an elastic rod, clearance at both pins, a crank pin whose film heats up, three bearings.
 CASES = ("sim_I", "sim_V_oscillating", "dry_0500um", "piston_slap", "slider_clearance", "ideal", "dry_friction", "both_pins", "heat", "car_diesel")
 
-LARGEST_PAGE = 6_000_000  # bytes
+LARGEST_PAGE = 2_000_000  # bytes
 
 BROWSER_OPTIONS = (
     "--headless",

@@ -1,6 +1,7 @@
 """The page of one run: everything in one HTML file that needs no network.
 
-The trace is stored as float32 columns, and plotly.js unchanged; both are compressed by gzip and unpacked by the browser.
+The trace is stored as float32 columns, and the part of plotly.js that draws lines unchanged (npm: plotly.js-basic-dist-min 4.1.1, gzip -9n);
+both are compressed by gzip and unpacked by the browser.
 """
 
 import base64
@@ -20,6 +21,7 @@ from gudgeon.report import answers
 from gudgeon.results import Run, numbered
 
 PAGE = Path(__file__).parent / "assets"
+LIBRARY = PAGE / "plotly-basic.min.js.gz"
 
 #: A trace with more rows is thinned out; peaks are kept.
 MOST_ROWS = 8000
@@ -496,7 +498,6 @@ def page(
     """The HTML text of the page. `fields`: the pressures of a NAME.film.csv; `cycle_columns`: columns whose cycles and orders are
     shown; `worn`: the worn surfaces of a NAME.wear.csv."""
     from gudgeon.report import cycles as report_cycles
-    from plotly.offline import get_plotlyjs
 
     language = language or Language()
     say = language.say
@@ -545,7 +546,7 @@ def page(
         ),
         "scene": json.dumps(scene, ensure_ascii=False).replace("</", "<\\/"),
         **{name: packed(content) if content else "" for name, content in data.items()},
-        "library": packed(get_plotlyjs().encode("utf-8")),
+        "library": base64.b64encode(LIBRARY.read_bytes()).decode("ascii"),
     }
     return filled(text_of("page.html", language), parts)
 
