@@ -10,8 +10,8 @@ case itself and `gudgeon --template`. Each scene is certified (`gudgeon --certif
 three runs. Ends with the cheapest scene whose quantities are within --within of those of the most complete scene, the case with all
 refinements and additions.
 
-Prints a table in Markdown, and writes models_NAME.csv, all figures, and models_NAME.png, cost against change. Exit status 1 where the
-case cannot be run.
+Prints a table in Markdown, and writes models_NAME.csv, all figures, and models_NAME.png, change and cost of each model. Exit status 1
+where the case cannot be run.
 """
 
 import argparse
@@ -61,8 +61,9 @@ def run(options: argparse.Namespace) -> int:
         laboratory.close()
     out = options.out or default_folder()
     out.mkdir(parents=True, exist_ok=True)
-    table.as_data(outcomes).to_csv(out / f"models_{name}.csv", index=False)
-    drawing = table.draw(name, outcomes, search, options.quantities, options.within)
+    data = table.as_data(outcomes)
+    data.to_csv(out / f"models_{name}.csv", index=False)
+    drawing = table.draw(name, data, options.quantities, options.within)
     style.adapt(drawing, options.title, options.label, options.size)
     print(*style.save(drawing, out, f"models_{name}", options.format or FORMATS[:1]), file=sys.stderr)
     print(table.as_markdown(str(options.case), outcomes, search, options.quantities, options.within))

@@ -192,12 +192,6 @@ def change(name: str, reference: Outcome, other: Outcome) -> tuple[float, float]
     return (value - was) / scale, (reference.uncertainty[name] + other.uncertainty[name]) / scale
 
 
-def largest_change(names: list[str], reference: Outcome, other: Outcome) -> float:
-    """Largest change of the quantities; infinite if the other scene does not have one of them."""
-    changes = [change(name, reference, other) for name in names if name in reference.values]
-    return max((abs(found[0]) if found else float("inf") for found in changes), default=0.0)
-
-
 def will_do(names: list[str], limit: float, reference: Outcome, other: Outcome) -> bool:
     """Whether a scene gives every quantity within the limit, or within the accuracy of both certificates."""
     for name in names:

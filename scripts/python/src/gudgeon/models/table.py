@@ -7,26 +7,15 @@ from gudgeon.models.effects import (
     Outcome,
     Search,
     change,
-    largest_change,
     percent,
     scale_of,
 )
-from gudgeon.plots.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    VERMILION,
-    WIDTH,
-    mark_decades,
-)
-from matplotlib.axes import Axes
+from gudgeon.plots.style import BLACK, BLUE, GREEN, GREY, ORANGE, VERMILION, WIDTH
 from matplotlib.figure import Figure as Drawing
+from matplotlib.patches import Patch
 
-COLOURS = {"taken out": VERMILION, "exchanged": BLUE, "refined": GREEN, "added": ORANGE, "fullest": PURPLE, "cheapest": PURPLE}
-LABELS: dict[str, str | None] = {"fullest": "F most complete, C cheapest", "cheapest": None}  # in the legend, where not the kind itself
-SMALLEST = 1e-3  # smallest change that the picture shows [%]
+COLOURS = {"taken out": VERMILION, "exchanged": BLUE, "refined": GREEN, "added": ORANGE}
+SMALLEST, LARGEST = 1e-2, 1e3  # changes that the picture shows [%]; larger ones are at its edge
 
 
 def as_data(outcomes: list[Outcome]) -> pd.DataFrame:
@@ -136,74 +125,39 @@ def cost(outcome: Outcome, given: Outcome) -> str:
     return f"{ratio(outcome.evaluations, given.evaluations)} times the evaluations and {ratio(outcome.seconds, given.seconds)} times the time"
 
 
-Point = tuple[str, str, float, float]  # number, kind, cost, change as a fraction
-
-
-def draw_points(axis: Axes, points: list[Point], limits: tuple[float, float], title: str, limit: float) -> None:
-    """Change against cost between two costs. Scenes that lie close together share a label; scenes without a change have none."""
-    for _, kind, cost, changed in points:
-        axis.plot(cost, max(SMALLEST, 100 * changed), "o", color=COLOURS.get(kind, GREY), markersize=3, label=LABELS.get(kind, kind))
-    axis.axhline(100 * limit, color=GREY, linestyle="--", linewidth=0.6)
-    axis.set_xscale("log")
-    axis.set_yscale("log")
-    axis.set_xlim(*limits)
-    mark_decades(axis.xaxis)
-    mark_decades(axis.yaxis)
-    axis.autoscale_view()
-    axis.set_title(title)
-    axis.set_ylabel("change [%]")
-    for numbers, cost, height in clusters(axis, points):
-        axis.annotate(", ".join(numbers), (cost, height), xytext=(2, 2), textcoords="offset points", fontsize=5)
-
-
-def clusters(axis: Axes, points: list[Point]) -> list[tuple[list[str], float, float]]:
-    """Numbers of the scenes whose points or labels would overlap, and the place of their common label: beside the rightmost point."""
-    shown = [(number, cost, 100 * change) for number, _, cost, change in points if 100 * change > SMALLEST]
-    scale = axis.transAxes.inverted()
-    placed = [(*scale.transform(axis.transData.transform(place)), number, *place) for number, *place in shown]
-    groups: list[list[tuple[float, float, str, float, float]]] = []
-    for point in sorted(placed):
-        for group in groups:
-            height = sum(other[1] for other in group) / len(group)
-            if point[0] - group[-1][0] < 0.03 + 0.03 * len(group) and abs(point[1] - height) < 0.035:
-                group.append(point)
-                break
-        else:
-            groups.append([point])
-    return [
-        (sorted((one[2] for one in group), key=lambda number: (len(number), number)), max(one[3] for one in group), group[-1][4])
-        for group in groups
-    ]
-
-
-def wider(costs: list[float]) -> tuple[float, float]:
-    """Limits of an axis that shows all costs, with room for the labels."""
-    room = (max(costs) / min(costs)) ** 0.06
-    return min(costs) / room, max(costs) * room
-
-
-def draw(name: str, outcomes: list[Outcome], search: Search, names: list[str], limit: float) -> Drawing:
-    """Cost against the change of each quantity; a scene has its number of the table."""
-    given = outcomes[0]
-    shown = [one for one in names if one in given.values]
-    drawing, axes = plt.subplots((len(shown) + 1) // 2, 2, figsize=(WIDTH, 0.7 + 2.2 * ((len(shown) + 1) // 2)), squeeze=False)
-    idle = idle_scenes(outcomes)
-    points = [(str(n), one.variant.kind, one) for n, one in enumerate(outcomes) if n and one.is_there and n not in idle]
-    points += [("F", "fullest", search.fullest), ("C", "cheapest", search.cheapest)]
-    seconds = [outcome.seconds / given.seconds for *_, outcome in points]
-    for axis, quantity in zip(axes.flat, shown):
-        changes = [(number, kind, outcome, change(quantity, given, outcome)) for number, kind, outcome in points]
-        found = [(number, kind, outcome.seconds / given.seconds, abs(one[0])) for number, kind, outcome, one in changes if one]
-        draw_points(axis, found, wider(seconds), QUANTITIES[quantity].label, limit)
-    for axis in list(axes.flat)[len(shown) :]:  # where no quantity is drawn
-        largest = [(number, kind, outcome.evaluations / given.evaluations, largest_change(shown, given, outcome)) for number, kind, outcome in points]
-        largest = [point for point in largest if point[3] < float("inf")]
-        draw_points(axis, largest, wider([cost for *_, cost, _ in largest]), "largest of these", limit)
-    for axis in axes.flat[: len(shown)]:
-        axis.set_xlabel("processor time over that of the case")
-    for axis in axes.flat[len(shown) :]:
-        axis.set_xlabel("evaluations over those of the case")
-    handles = {label: handle for axis in axes.flat for handle, label in zip(*axis.get_legend_handles_labels())}
-    drawing.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=5)
-    drawing.suptitle(f"{name}: what each model costs and changes (no change: at {SMALLEST:g} %, without a number)")
+def draw(name: str, data: pd.DataFrame, names: list[str], limit: float) -> Drawing:
+    """From the data of `as_data`: a row for each model, those that change most on top, with the change of each quantity and the processor
+    time over that of the case. Models without any effect, and quantities that none changes, are left out."""
+    rows = data[(data["number"] > 0) & data["evaluations"].notna()]
+    changes = 100 * rows[[f"{one}_change" for one in names if f"{one}_change" in rows]].astype(float).abs()
+    changes = changes.loc[:, changes.max() > SMALLEST]
+    order = changes.max(axis=1).sort_values().index
+    rows, changes = rows.loc[order], changes.loc[order]
+    rows, changes = rows[changes.max(axis=1) > SMALLEST], changes[changes.max(axis=1) > SMALLEST]
+    drawing, axes = plt.subplots(1, len(changes.columns) + 1, sharey=True, figsize=(WIDTH, 1.2 + 0.15 * len(rows)), squeeze=False)
+    heights, colours = range(len(rows)), [COLOURS[kind] for kind in rows["kind"]]
+    for axis, (column, values) in zip(axes.flat, changes.items()):
+        axis.axvspan(SMALLEST, 100 * limit, color=GREY, alpha=0.18, linewidth=0)
+        axis.scatter(values.where(values > SMALLEST).clip(upper=LARGEST), heights, c=colours, s=14, clip_on=False, zorder=3)
+        axis.set(xscale="log", xlim=(SMALLEST, LARGEST), title=QUANTITIES[str(column).removesuffix("_change")].label)
+        axis.set_xticks([0.01, 1, 100], ["0.01", "1", "100"])
+        axis.set_xticks([], minor=True)
+    axes[0, len(changes.columns) // 2].set_xlabel(f"change [%]; grey: below {100 * limit:g} %")
+    times = rows["processor_time[s]"] / data["processor_time[s]"].iloc[0]
+    cost = axes[0, -1]
+    cost.barh(heights, times - 1, left=1, color=colours, height=0.6)
+    cost.axvline(1, color=BLACK, linewidth=0.6)
+    low, high = min(0.5, 0.9 * times.min()), max(2.0, 1.1 * times.max())
+    cost.set(xscale="log", xlim=(low, high), title="time", xlabel="of the case")
+    marks = [mark for mark in ((0.5, 1, 2, 5) if high / low < 30 else (0.01, 0.1, 1, 10, 100, 1000)) if low <= mark <= high]
+    cost.set_xticks(marks, [f"{mark:g}" for mark in marks])
+    cost.set_xticks([], minor=True)
+    axes[0, 0].set_yticks(heights, rows["scene"])
+    axes[0, 0].set_ylim(-0.7, len(rows) - 0.3)
+    for axis in axes.flat:
+        axis.tick_params(axis="y", length=0)
+    kinds = [kind for kind in COLOURS if kind in set(rows["kind"])]
+    drawing.legend([Patch(color=COLOURS[kind]) for kind in kinds], kinds, loc="outside lower center", ncols=len(kinds))
+    many = int((changes.max(axis=1) > 100 * limit).sum())
+    drawing.suptitle(f"{name}: {many} of {len(rows)} models change a result by more than {100 * limit:g} %, most of all: {rows['scene'].iloc[-1]}")
     return drawing
