@@ -860,7 +860,7 @@ class Drawing(unittest.TestCase):
     def test_integrators_in_portuguese(self) -> None:
         portuguese = language.Language("pt")
         scenes = pd.read_csv(TOP / "data" / "measured" / "integrators.csv")["scene"].unique()
-        for text in (*scenes, "evaluations", "time / time of a right-hand side", "error", "SciPy DOP853", "CVODE BDF", "RADAU5", "adams"):
+        for text in (*scenes, "evaluations of the right-hand side", "an oil film (simulation I)", "error", "SciPy DOP853", "CVODE BDF", "RADAU5", "adams"):
             portuguese.say(text)
         self.assertEqual(portuguese.unknown, set())
         self.assertEqual(portuguese.say("simulation IV"), "simulação IV")

@@ -27,19 +27,16 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 from gudgeon import language
+from gudgeon.plots import style
 from scene_problem import FOLDER, Outcome, Scene, load_library
 from scipy import __version__ as scipy_version
 from scipy import integrate
 
 from measured import write_table
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 LOOSEST, TIGHTEST = -3, -12   # powers of ten of the tolerances
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10)
@@ -50,10 +47,8 @@ OWN = ("adams", "radau", "auto")
 SCIPY = {"SciPy DOP853": integrate.DOP853, "SciPy Radau": integrate.Radau, "SciPy LSODA": integrate.LSODA}
 DRIVERS = {"CVODE Adams": ("cvode_run", 1), "CVODE BDF": ("cvode_run", 2), "RADAU5": ("radau5_run", 0)}   # library, method
 SOURCES = {"cvode_run": "SUNDIALS CVODE of Debian (libsundials-dev)", "radau5_run": "Hairer's RADAU5 of Debian (r-cran-desolve)"}
-STYLE = {"adams": ("#0072B2", "o", "-"), "radau": ("#D55E00", "s", "-"), "auto": ("#000000", "x", "-"),   # Okabe-Ito
-         "SciPy DOP853": ("#56B4E9", "o", ":"), "SciPy Radau": ("#E69F00", "s", ":"), "SciPy LSODA": ("#999999", "^", ":"),
-         "CVODE Adams": ("#009E73", "o", "--"), "CVODE BDF": ("#CC79A7", "^", "--"),
-         "RADAU5": ("#8C564B", "s", "--")}
+OWN_STYLE = {"adams": (style.BLUE, "-", 1.6), "radau": (style.VERMILION, "-", 1.6), "auto": (style.BLACK, (0, (2, 2)), 1.2)}   # colour, line, width
+DRAWN = {"simulation I": "an oil film (simulation I)", "dry contact": "dry contact"}   # scenes of the picture
 
 
 @dataclass(frozen=True)
@@ -244,36 +239,33 @@ def report(data: pd.DataFrame, drivers: dict[str, ctypes.CDLL]) -> str:
 
 
 def draw(data: pd.DataFrame, path: Path) -> None:
-    """Draw the error over the evaluations (above) and over the time (below), with a column for each scene."""
+    """Draw the error over the evaluations in a scene with a film and in one with dry contact: the program's own methods in colour, each
+    curve with its name at its end. The other scenes and the times are in the page."""
     data = settled(data)
-    scenes = list(data["scene"].unique())
-    figure, axes = plt.subplots(2, len(scenes), figsize=(3.2 * len(scenes), 6.6), layout="constrained", squeeze=False, sharey=True)
-    for i, scene in enumerate(scenes):
-        for k, (quantity, label) in enumerate((("evaluations", "evaluations"), ("bare", "time / time of a right-hand side"))):
-            axis = axes[k][i]
-            for method, rows in data[data["scene"] == scene].groupby("method", sort=False):
-                done = rows.dropna(subset=["error", quantity])
-                done = done[done["error"] < 0.5]
-                if done.empty:
-                    continue
-                colour, marker, line = STYLE[method]
-                axis.loglog(done[quantity], done["error"].clip(lower=1e-14), color=colour, marker=marker, linestyle=line,
-                            markevery=max(1, len(done) // 20), markersize=3.5, linewidth=1, label=method)
-            low, high = axis.get_xlim()
-            axis.xaxis.set_minor_formatter(NullFormatter())
-            if high < 30 * low:   # hardly a decade: label values within it
-                axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-                axis.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.0f}"))
-            axis.set_xlabel(label)
-            axis.grid(True, which="major", linewidth=0.4, alpha=0.5)
-            if i == 0:
-                axis.set_ylabel("error")
-            if k == 0:
-                axis.set_title(scene, fontsize=10)
-    handles, labels = axes[0][0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=9)
-    language.current.localise(figure)
-    figure.savefig(path, dpi=110)
+    figure, axes = plt.subplots(1, len(DRAWN), figsize=(style.WIDTH * 1.15, 3.4), sharey=True)
+    for axis, (scene, title) in zip(axes, DRAWN.items()):
+        ends = []
+        for method, rows in data[data["scene"] == scene].groupby("method", sort=False):
+            done = rows[rows["error"] < 0.5].dropna(subset=["error", "evaluations"])
+            if done.empty:
+                continue
+            colour, line, wide = OWN_STYLE.get(method, (style.GREY, "-", 0.7))
+            axis.loglog(done["evaluations"], done["error"].clip(lower=1e-14), color=colour, linestyle=line, linewidth=wide, zorder=3 if method in OWN else 2)
+            ends.append((np.log10(max(done["error"].iloc[-1], 1e-14)), done["evaluations"].iloc[-1], method, colour))
+        low = axis.get_ylim()[0]
+        axis.margins(x=0.06)
+        last = np.inf
+        for height, evaluations, method, colour in sorted(ends, reverse=True):   # names do not cover each other
+            last = min(height, last - 0.65)
+            axis.annotate(method, (evaluations, 10.0**height), xytext=(1.04, (last - np.log10(low)) / (np.log10(axis.get_ylim()[1]) - np.log10(low))),
+                          textcoords="axes fraction", va="center", fontsize=7, color=colour, arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.4, "relpos": (0, 0.5), "shrinkA": 0, "shrinkB": 2})
+        axis.set(title=title, xlabel="evaluations of the right-hand side")
+        marks = [mark for mark in (2000, 10_000, 50_000, 200_000) if axis.get_xlim()[0] <= mark <= axis.get_xlim()[1]]
+        axis.set_xticks(marks, [f"{mark:,}".replace(",", " ") for mark in marks])
+        axis.set_xticks([], minor=True)
+    axes[0].set_ylabel("error")
+    figure.suptitle("In a film radau, in dry contact adams needs the fewest evaluations for an accuracy; auto finds out which")
+    style.save(figure, path.parent, path.stem, ["png"])
     language.current.warn("compare_integrators.py")
 
 
