@@ -10,10 +10,8 @@ from gudgeon.plots.style import (
     GREEN,
     GREY,
     ORANGE,
-    PURPLE,
     VERMILION,
     WIDTH,
-    add_legend,
 )
 from gudgeon.results import Run
 from matplotlib.figure import Figure as Drawing
@@ -28,32 +26,32 @@ RODS = (
 )
 WHOLE = 3  #: index of the rod that bends and stretches
 
+#: Where the names of the rods stand in the picture of the contact's force: parts of its time and of the largest force.
+NAMES_AT = ((0.26, 1.0), (0.29, 0.9), (0.53, 0.69), (0.7, 0.45), (0.75, 0.36))
+
 #: Begin and end [ms] and speeds [m/s] of the first two contacts with 24 cable elements (ANCF) along the rod.
 FINITE_ELEMENTS = ((0.2107, 1.972, 0.3394, -0.874), (0.6871, 1.074, 0.8728, -0.764))
 
 
 def draw_first_impacts(runs: list[Run]) -> Drawing:
-    """Film thickness, contact force, deflection and elongation of the rod, over time."""
-    drawing, axes = plt.subplots(3, 1, figsize=(WIDTH, 6.4), layout="constrained")
-    for (name, colour, line, _), run in zip(RODS, runs):
-        time = 1e3 * run["time"]
-        axes[0].plot(time, 1e6 * run["film_thickness"], color=colour, linestyle=line, label=name)
-        axes[1].plot(time, 1e-3 * run["normal_force"], color=colour, linestyle=line, label=name)
+    """Film thickness over time, and the force of the first contact, whose time is grey in the panel above."""
+    drawing, axes = plt.subplots(2, 1, figsize=(WIDTH, 4.8), layout="constrained")
+    first, largest = (0.19, 0.37), 1e-3 * max(float(run["normal_force"].max()) for run in runs)
+    for (name, colour, line, _), run, (share, height) in zip(RODS, runs, NAMES_AT):
+        time, film = 1e3 * run["time"], 1e6 * run["film_thickness"]
+        if name in ("rigid", "stretches (1 shape)", RODS[WHOLE][0]):
+            axes[0].plot(time, film, color=colour, linestyle=line)
+        force = 1e-3 * run["normal_force"]
+        axes[1].plot(time, force, color=colour, linestyle=line)
+        axes[1].annotate(name, (np.interp(share, [0, 1], first), height * largest), color=colour, fontsize=7)
     for begin, _, end, _ in FINITE_ELEMENTS:
-        axes[0].plot([begin, end], [0, 0], "x", color=GREY, markersize=5, label="finite elements: begin and end")
+        axes[0].plot([begin, end], [0, 0], "x", color=GREY, markersize=5)
+    axes[0].axvspan(*first, color=GREY, alpha=0.18, linewidth=0)
+    axes[0].annotate("x: contacts of finite elements", (0.99, 0.03), xycoords="axes fraction", ha="right", fontsize=7, color=GREY)
     axes[0].axhline(0, color=GREY, linewidth=0.6)
-    axes[0].set_ylabel("film thickness [µm]\n(below 0: penetration)")
-    axes[1].set_ylabel("contact force [kN]")
-    axes[1].set_xlim(0.19, 0.37)
-    elastic = runs[WHOLE]
-    time = 1e3 * elastic["time"]
-    axes[2].plot(time, 1e6 * elastic["rod_mid_deflection"], color=PURPLE, label="deflection half way")
-    axes[2].plot(time, 1e6 * elastic["rod_stretch"], color=BLUE, linestyle="--", label="stretch")
-    axes[2].set_ylabel("of the elastic rod [µm]")
-    axes[2].legend(loc="upper left")
-    for axis in axes:
-        axis.set_xlabel("time [ms]")
-    add_legend(drawing, axes[:2])
+    axes[0].set(ylabel="film thickness [µm]\n(below 0: penetration)", xlabel="time [ms]")
+    axes[1].set(ylabel="contact force [kN]", xlabel="time [ms], grey above", xlim=first, facecolor="#EFEFEF")
+    drawing.suptitle("A rod that stretches halves the force of the first impact, and the contact lasts longer")
     return drawing
 
 
@@ -147,15 +145,29 @@ def impacts(run: Run, joint: str) -> float:
 
 
 def draw_members(runs: list[Run]) -> Drawing:
-    """The force on the piston pin over the second and third revolution, a panel for each."""
-    drawing, axes = plt.subplots(len(runs), 1, figsize=(WIDTH, 1.35 * len(runs) + 0.4), sharex=True, sharey=True, layout="constrained")
-    for axis, (name, _), run, colour in zip(axes, MEMBERS, runs, (BLACK, GREEN, ORANGE, BLUE, VERMILION, PURPLE)):
+    """The force on the piston pin over the second and third revolution, a row for each, with its largest value at the right; the hardest
+    on top."""
+    rows = []
+    for (name, _), run in zip(MEMBERS, runs):
         turns, late = late_part(run)
-        axis.plot(turns[late], 1e-3 * np.hypot(run["pin_force_x"], run["pin_force_y"])[late], color=colour, linewidth=0.8)
-        axis.set_title(name, loc="left", fontsize="small")
-    drawing.supylabel("force on the piston pin [kN]", fontsize="medium")
+        force = 1e-3 * np.hypot(run["pin_force_x"], run["pin_force_y"])[late]
+        rows.append((float(force.max()), name, turns[late], force))
+    rows.sort(key=lambda row: -row[0])
+    drawing, axes = plt.subplots(len(rows), 1, figsize=(WIDTH, 0.62 * len(rows) + 0.6), sharex=True, sharey=True, layout="constrained")
+    for axis, (peak, name, turns, force) in zip(axes, rows):
+        axis.fill_between(turns, force, color=BLUE if name == MEMBERS[0][0] else GREY, linewidth=0)
+        axis.annotate(f"{peak:.1f} kN", (1.01, 0.5), xycoords="axes fraction", va="center")
+        axis.set_ylabel(name, rotation=0, ha="right", va="center")
+        axis.set_yticks([])
+        axis.spines["left"].set_visible(False)
+        if axis is not axes[-1]:
+            axis.tick_params(axis="x", length=0)
+            axis.spines["bottom"].set_color("#DDDDDD")
+    axes[0].set_title("force on the piston pin; at the right its largest value", loc="left")
     axes[-1].set_xlabel("revolutions of the crank")
     axes[-1].set_xlim(1, 3)
+    axes[-1].set_ylim(0, None)
+    drawing.suptitle("A second clearance adds impacts; an elastic rod or crankshaft softens them")
     return drawing
 
 
