@@ -4,7 +4,7 @@
 #   . scripts/setup.sh          from the top of the checkout; also puts fpm on the PATH of the calling shell
 #   scripts/setup.sh            the same for scripts and for later shells
 #   scripts/setup.sh --python   also makes, in .venv, gudgeon-plot and the Python package gudgeon of scripts/python, with what they need
-#   scripts/setup.sh --browser  as --python, and Chromium (Debian packages), which tests/test_report.py needs
+#   scripts/setup.sh --browser  as --python, and Chromium (Debian packages), which tests/test_report.py and test_explore.py need
 #   scripts/setup.sh --studies  also the packages of gudgeon-plot sensitivity, scripts/run_studies.sh and scripts/cluster
 #   scripts/setup.sh --manual   also MkDocs and FORD, which scripts/manual.sh needs
 #   scripts/setup.sh --lint     also the linters of Fortran and Python

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The shared library in the hands of others: a C program, the Python package, functional mock-up units, what shells and editors read.
+# The shared library in the hands of others: a C program, the Python package, the explorer, functional mock-up units, what shells and editors read.
 #
 #   tests/test_embedding.sh [--all]     --all: every shipped case, ten scenes of FMI, and the C program under valgrind
 #
@@ -43,6 +43,7 @@ add "examples" .venv/bin/python tests/test_examples.py "$@"
 add "Python package" .venv/bin/python tests/test_python.py "$program" "$@"
 add "periodic orbits" .venv/bin/python tests/test_orbits.py "$program" "$@"
 add "functional mock-up units" .venv/bin/python tests/test_fmu.py "$@"
+add "explorer in a browser" .venv/bin/python tests/test_explore.py --program "$program"
 add "shell and editor" .venv/bin/python tests/test_shell_pages.py "$program"
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]

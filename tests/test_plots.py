@@ -1686,10 +1686,10 @@ class Page(unittest.TestCase):
 
     def test_every_word_of_the_page_has_its_portuguese(self) -> None:
         portuguese = language.Language("pt")
-        for text in [*report_page.script_words("drawing", "page"), *(title for _, title, *_ in (*report_page.OVER_TIME, *report_page.FIRST_OF_BEARINGS))]:
+        for text in [*report_page.script_words("drawing", "page", "explore"), *(title for _, title, *_ in (*report_page.OVER_TIME, *report_page.FIRST_OF_BEARINGS))]:
             portuguese.say(text)
         self.assertEqual(portuguese.unknown, set())
-        self.assertGreater(len(report_page.script_words("drawing", "page")), 15)
+        self.assertGreater(len(report_page.script_words("drawing", "page", "explore")), 15)
 
     def test_packing_depends_on_the_data_only(self) -> None:
         self.assertEqual(report_page.packed(b"abc"), report_page.packed(b"abc"))

@@ -15,6 +15,7 @@ from .stepper import Stepper
 
 if TYPE_CHECKING:
     from ._groups import Groups
+    from .report.explorer import Session
 else:
     Groups = object
 
@@ -306,6 +307,12 @@ class Case(Groups):
     def begin(self, end: float | None = None, columns: str | Sequence[str] | None = None) -> Stepper:
         """A run that is advanced step by step, and whose inputs may change between steps."""
         return Stepper(self._with(None, columns), end)
+
+    def explore(self, port: int = 0) -> Session:
+        """A page whose sliders run the case: a notebook shows it, a browser opens its `address`. Only this machine can; `close` ends it."""
+        from .report.explorer import Session
+
+        return Session(self, port)
 
     def certify(self) -> Certificate:
         """How many digits of a run are right."""

@@ -13,6 +13,7 @@ WHAT = {
     "table": "answers of runs side by side in readable units, or the rows of a study (draws nothing)",
     "export": "the trace and the summary of runs for a spreadsheet, with decimal commas (draws nothing)",
     "report": "an HTML page about one run: animation, plots, case, summary, warnings",
+    "explore": "a page whose sliders run a case: mechanism, orbits, curves and answers at once",
     "figure": "figures of the dissertation",
     "orders": "settled cycles of a run: orders, means and scatter, work, loads on the bearings",
     "indicator": "pressure over volume, losses of valves, the heat that a pressure shows",

@@ -20,8 +20,8 @@ function angleInCycle(cycle, radians) {
 }
 
 // The drawing of a run on the canvases of the page: its scene, its columns by name, pressure and oil around the pin. `moved` is called
-// after it has moved.
-function drawingOf(scene, column, pressure, oil, moved = () => {}) {
+// after it has moved. With `others`, runs whose orbits are drawn behind in their `colour`, orbits are drawn whole; else up to the moment shown.
+function drawingOf(scene, column, pressure, oil, moved = () => {}, others = null) {
   const time = column.time, begin = time[0], end = time[scene.rows - 1];
   const joint = scene.clearance > 0;
   const bore = scene.bore, crankPin = scene.crank_pin, smallEnd = scene.small_end, mainBearing = scene.main_bearing;
@@ -291,7 +291,14 @@ function drawingOf(scene, column, pressure, oil, moved = () => {}) {
       g.globalAlpha = 1;
     };
     circle(g, cx, cy, unit, COLOUR.paper, null);
-    line(0, row, 0.3, 1);
+    for (const other of others || []) {
+      const there = of ? other.scene[of.slice(0, -1)] : other.scene, [up, across] = [ex, ey].map((name) => other.column[name]);
+      if (!there || !up) continue;
+      g.beginPath();
+      up.forEach((v, i) => g.lineTo(cx + unit * across[i] / there.clearance, cy - unit * v / there.clearance));
+      g.strokeStyle = COLOUR[other.colour]; g.lineWidth = 1; g.stroke();
+    }
+    line(0, others ? scene.rows - 1 : row, 0.3, 1);
     let from = row;
     while (from > 0 && column.crank_angle[row] - column.crank_angle[from] < 2 * Math.PI) from--;
     line(from, row, 1, 1.4);
@@ -421,7 +428,14 @@ function drawingOf(scene, column, pressure, oil, moved = () => {}) {
     const found = forward ? scene.contacts.find((c) => c.begin > now + 1e-9) : scene.contacts.filter((c) => c.begin < now - 2e-9).pop();
     return found ? found.begin + 1e-9 : null;
   };
-  return { scene, column, begin, end, seek, draw, at, magnification: shownMagnification, neighbour, contact, get now() { return now; } };
+  // The crank angle at a time [rad].
+  const angleAt = (t) => {
+    let i = time.findIndex((other) => other >= t);
+    if (i < 0) i = scene.rows - 1;
+    const from = Math.max(i - 1, 0), part = i > from ? (t - time[from]) / (time[i] - time[from]) : 0;
+    return column.crank_angle[from] + part * (column.crank_angle[i] - column.crank_angle[from]);
+  };
+  return { scene, column, begin, end, seek, draw, at, magnification: shownMagnification, neighbour, contact, angleAt, get now() { return now; } };
 }
 
 // Buttons, sliders and keys that move the drawing which `current()` returns. `stopped` is called when it stands still again.

@@ -44,13 +44,7 @@
     const [first, last] = shownRows();
     return Array.from(overAngle() ? column.crank_angle.subarray(first, last) : time.subarray(first, last), (v) => (overAngle() ? angleOf(v) : 1e3 * v));
   };
-  const abscissaAt = (t) => {
-    if (!overAngle()) return 1e3 * t;
-    let i = time.findIndex((other) => other >= t);
-    if (i < 0) i = scene.rows - 1;
-    const before = Math.max(i - 1, 0), part = i > before ? (t - time[before]) / (time[i] - time[before]) : 0;
-    return angleOf(column.crank_angle[before] + part * (column.crank_angle[i] - column.crank_angle[before]));
-  };
+  const abscissaAt = (t) => (overAngle() ? angleOf(drawing.angleAt(t)) : 1e3 * t);
 
   // Dead centres in the cycle shown, as thin lines, and ticks each quarter of a revolution.
   const inCycle = () => overAngle() && cycleAlone();
