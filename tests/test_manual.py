@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import json
 import os
 import re
 import shutil
@@ -279,6 +280,20 @@ def check_tutorials(program: Path) -> None:
         check(not wrong, f"{name} shows what its commands print", "\n".join(wrong))
         ours, theirs = ([body for _, body, _ in tutorial.blocks((ROOT / one).read_text(encoding="utf-8"))] for one in (name, other))
         check(len(ours) > 2 and ours == theirs, f"{other} has the same commands")
+
+
+def check_notebooks() -> None:
+    """A tutorial as a notebook has the files, commands and pictures of its page, in their order."""
+    for page in sorted((ROOT / "data/manual").glob("tutorial_*.md")):
+        text = page.read_text(encoding="utf-8")
+        cells = json.loads(tutorial.notebook(text))["cells"]
+        sources = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
+        check([source.partition("\n")[2] for source in sources if source.startswith("%%bash")] == tutorial.commands(text), f"{page.name}: a notebook has its commands")
+        files = {source.partition("\n")[0].split()[1]: source.partition("\n")[2] for source in sources if source.startswith("%%writefile")}
+        named = {match[1]: body.rstrip() for before, body, _ in tutorial.blocks(text) if not body.startswith("$ ") and (match := tutorial.FILE.search(before))}
+        check(files == named and named, f"{page.name}: and its files", str(set(files) ^ set(named)))
+        check(len([source for source in sources if "Image(" in source]) == text.count("](tutorials/"), f"{page.name}: and its pictures")
+        check(not any("](" in cell["source"] or "\n    $ " in cell["source"] for cell in cells if cell["cell_type"] == "markdown"), f"{page.name}: without links and blocks in its texts")
 
 
 def check_pictures_of_tutorials() -> None:
@@ -576,6 +591,7 @@ def main() -> int:
     check_commands(program)
     check_tutorials(program)
     check_pictures_of_tutorials()
+    check_notebooks()
     check_results_in_python(program)
     check_keys(program)
     check_reference(program)

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Prepares the pages of the manual for scripts/manual.sh.
 
-    scripts/manual/pages.py collect PROGRAM   into build/manual_pages: data/manual, the tables of data/measured, the pages of other folders
-                                              that they refer to, the program's reference pages, and every file with a link to it
+    scripts/manual/pages.py collect PROGRAM   into build/manual_pages: data/manual, its tutorials as notebooks too, the tables of
+                                              data/measured, the pages of other folders that they refer to, the program's reference
+                                              pages, and every file with a link to it
     scripts/manual/pages.py local             replaces what the pages of FORD load from a network by files in build/manual_pages/api
 """
 from __future__ import annotations
@@ -16,6 +17,7 @@ import sys
 from pathlib import Path
 
 import messages
+import tutorial
 
 TOP = Path(__file__).resolve().parents[2]
 SOURCE = TOP / "data/manual"
@@ -106,6 +108,10 @@ def collect(program: str) -> None:
                 text += reference(program, REFERENCE[path.stem])
             if path.stem.startswith("which_"):
                 text += rungs(path.stem.removeprefix("which_").capitalize(), page, wanted)
+            if path.stem.startswith("tutorial_"):
+                page.with_suffix(".ipynb").write_text(tutorial.notebook(path.read_text(encoding="utf-8")), encoding="utf-8")
+                said = "Esta página como notebook" if path.stem.endswith("_pt") else "This page as a notebook"
+                text = text.replace("\n\n", f"\n\n[{said}]({page.stem}.ipynb) (Jupyter)\n\n", 1)
             if path == SOURCE / "messages.md":
                 text += messages.page()
             if path == SOURCE / "measured.md":

@@ -3,6 +3,7 @@
 
     scripts/manual/tutorial.py PAGE [--program PROGRAM] [--write]     --write: puts what they print into the page, and the
                                                                        pictures that they make into data/manual/tutorials
+    scripts/manual/tutorial.py PAGE --notebook                         prints the page as a notebook for Jupyter
 
 A block after a line that ends with "`NAME`:" is a file. In a block that begins with "$ " each such line is a command, run in the folder of the files, and the lines behind it are its output; `...` stands for anything, and numbers may be off by
 2e-3 of their value, with ~ before them by a third. The widths of the columns of a table do not matter.
@@ -10,6 +11,7 @@ A block after a line that ends with "`NAME`:" is a file. In a block that begins 
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import re
 import shutil
@@ -20,15 +22,19 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
+BLOCK = re.compile(r"^(\S[^\n]*)\n\n((?:    [^\n]*\n|\n(?=    ))+)", re.MULTILINE)
+FILE = re.compile(r"`([\w.]+\.\w+)`[^`]*:$")
+COMMAND = re.compile(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", re.MULTILINE)
+PICTURE = re.compile(r"^!\[[^]]*\]\(tutorials/([^)]*)\)\n", re.MULTILINE)
 
 
 def blocks(text: str) -> list[tuple[str, str, str]]:
     """The indented blocks of a page, each with the line before it and its text as it stands."""
-    found = []
-    for block in re.finditer(r"^(\S[^\n]*)\n\n((?:    [^\n]*\n|\n(?=    ))+)", text, re.MULTILINE):
-        body = "".join(line[4:] if line.strip() else "\n" for line in block[2].splitlines(keepends=True))
-        found.append((block[1], body, block[2]))
-    return found
+    return [(block[1], unindented(block[2]), block[2]) for block in BLOCK.finditer(text)]
+
+
+def unindented(block: str) -> str:
+    return "".join(line[4:] if line.strip() else "\n" for line in block.splitlines(keepends=True))
 
 
 def commands(text: str) -> list[str]:
@@ -58,14 +64,14 @@ def run(page: Path, program: Path, write: bool = False) -> list[str]:
         (Path(folder) / "gudgeon").symlink_to(program)
         path = f"{folder}:{TOP / '.venv/bin'}:{os.environ['PATH']}"
         for before, body, block in blocks(text):
-            name = re.search(r"`([\w.]+\.\w+)`[^`]*:$", before)
+            name = FILE.search(before)
             if not body.startswith("$ "):
                 if name:
                     with (work / name[1]).open("w", encoding="utf-8") as file:
                         file.write(body)
                 continue
             now = ""
-            for command, shown in re.findall(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", body, re.MULTILINE):
+            for command, shown in COMMAND.findall(body):
                 done = subprocess.run(command, shell=True, cwd=work, capture_output=True, text=True, env={**os.environ, "PATH": path})
                 printed = re.sub(r"(\.csv; )\d+ steps, .*", r"\1...", done.stdout.rstrip("\n"))   # steps and times differ with compilers
                 lines = shown.rstrip("\n").splitlines()
@@ -84,12 +90,49 @@ def run(page: Path, program: Path, write: bool = False) -> list[str]:
     return wrong
 
 
+def notebook(text: str) -> str:
+    """A page as a notebook for Jupyter: its files and commands are cells that run, with the outputs of the page; pictures are shown where
+    the page has them."""
+    cells: list[dict[str, object]] = []
+
+    def code(source: str, output: str = "") -> None:
+        outputs = [{"output_type": "stream", "name": "stdout", "text": output}] if output.strip() else []
+        cells.append({"cell_type": "code", "execution_count": None, "metadata": {}, "source": source, "outputs": outputs})
+
+    def prose(part: str) -> None:
+        texts = PICTURE.split(part)   # texts and, between them, names of pictures
+        for i, one in enumerate(texts):
+            if i % 2:
+                code(f'from IPython.display import Image\n\nImage("results/{one}")')
+            elif plain := re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", one).strip():
+                cells.append({"cell_type": "markdown", "metadata": {}, "source": plain})
+
+    end = 0
+    for block in BLOCK.finditer(text):
+        prose(text[end : block.start(2)])
+        end, body, name = block.end(2), unindented(block[2]), FILE.search(block[1])
+        if body.startswith("$ "):
+            for command, output in COMMAND.findall(body):
+                code(f"%%bash\n{command}", output)
+        elif name:
+            code(f"%%writefile {name[1]}\n{body.rstrip()}")
+        else:
+            prose(f"```\n{body}```")
+    prose(text[end:])
+    metadata = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
+    return json.dumps({"cells": cells, "metadata": metadata, "nbformat": 4, "nbformat_minor": 4}, ensure_ascii=False, indent=1)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("page", type=Path)
     parser.add_argument("--program", type=Path)
     parser.add_argument("--write", action="store_true")
+    parser.add_argument("--notebook", action="store_true")
     options = parser.parse_args()
+    if options.notebook:
+        print(notebook(options.page.read_text(encoding="utf-8")))
+        return 0
     program = options.program or TOP / subprocess.run([TOP / "scripts/build.sh"], check=True, capture_output=True, text=True).stdout.strip()
     wrong = run(options.page, program.resolve(), options.write)
     print("\n".join(wrong))
