@@ -11,6 +11,7 @@ from gudgeon.plots.style import (
     BLACK,
     BLUE,
     GREEN,
+    GREY,
     ORANGE,
     PURPLE,
     SKY,
@@ -46,6 +47,8 @@ def plot_column(axis: Axes, runs: Sequence[Run], column: str, over: str = "crank
     values = [values_of(run, column) for run in runs]
     unit = runs[0].units.get(column, runs[0].units.get(f"{column}_x", ""))
     shown, factor = shown_unit(column, unit, np.concatenate(values))
+    if unit == "K":
+        shown, values = "°C", [one - 273.15 for one in values]
     for run, column_values, colour in zip(runs, values, COLOURS * len(runs)):
         rows = rows_of_cycle(run, cycle)
         x, order = 1e3 * run["time"][rows], slice(None)
@@ -54,9 +57,22 @@ def plot_column(axis: Axes, runs: Sequence[Run], column: str, over: str = "crank
         axis.plot(x, factor * column_values[rows][order], color=colour, label=run.name)
         if cycle is None and len(runs) == 1:
             shade_uncertified(axis, run, x)
+            mark_jumps(axis, run, column, x, factor * column_values)
         if cycle is not None and over != "time":
             axis.xaxis.set_major_locator(MultipleLocator(90))
     axis.set_ylabel(f"{column.replace('_', ' ')}\n[{shown}]" if shown else column.replace("_", " "))
+
+
+def mark_jumps(axis: Axes, run: Run, column: str, x: np.ndarray, values: np.ndarray) -> None:
+    """Number the jumps of a film's temperature to its settled value: they stand for many cycles that are left out. Those that cannot be
+    seen have no number."""
+    name = column.removesuffix("film_temperature")
+    jumps = int(float(run.summary.get(f"{name}temperature_jumps", ("0", ""))[0])) if name != column else 0
+    steps = np.abs(np.diff(values))
+    rows = sorted(row for row in np.argsort(-steps)[:jumps] if steps[row] > 0.005 * np.ptp(values))
+    for i, row in enumerate(rows):
+        axis.axvline(x[row], color=GREY, linestyle=":", linewidth=0.8)
+        axis.annotate(f"jump {i + 1}", (x[row], 0.06), xycoords=("data", "axes fraction"), xytext=(3, 0), textcoords="offset points", fontsize=7, color=GREY)
 
 
 def crank_angles(angle: np.ndarray, cycle: float | None) -> tuple[np.ndarray, np.ndarray | slice]:
@@ -81,6 +97,17 @@ def rows_of_cycle(run: Run, cycle: int | None) -> slice:
     return slice(found[0], found[-1] + 1) if found.size else slice(0, 0)
 
 
+def title_of(run: Run, columns: Sequence[str]) -> str:
+    """The title or the name of the case, with the temperature to which a film has settled by jumps."""
+    title = str(run.parameter("case", "title", "")) or run.name
+    for column in columns:
+        place = column.removesuffix("film_temperature")
+        if place != column and f"{place}temperature_jumps" in run.summary and f"{place}cycle_mean_film_temperature" in run.summary:
+            settled = float(run.summary[f"{place}cycle_mean_film_temperature"][0]) - 273.15
+            return f"{run.name}: the film settles at {settled:.1f} °C; each jump skips the cycles that warm it"
+    return title
+
+
 def draw(runs: Sequence[Run], columns: Sequence[str], over: str = "crank_angle", cycle: int | None = None) -> Drawing:
     """One axis for each column, with all runs."""
     drawing, axes = plt.subplots(len(columns), 1, figsize=(WIDTH, 0.6 + 1.6 * len(columns)), sharex=True, squeeze=False)
@@ -91,5 +118,5 @@ def draw(runs: Sequence[Run], columns: Sequence[str], over: str = "crank_angle",
     if len(runs) > 1:
         style.add_legend(drawing, axes.flat)
     else:
-        drawing.suptitle(str(runs[0].parameter("case", "title", "")) or runs[0].name)
+        drawing.suptitle(title_of(runs[0], columns))
     return drawing
