@@ -120,7 +120,7 @@ def check_pages(browser: Browser, checks: Assertions) -> None:
             checks.check(size < 400_000, f"{case.name}: a run has {size} bytes")
 
 
-def check_sliders(browser: Browser, checks: Assertions, program: Path, pictures: Path | None) -> None:
+def check_sliders(browser: Browser, checks: Assertions, program: Path) -> None:
     """What the hand does to a case of dry contact, and what leaves the page."""
     case = gudgeon.template("dry")
     with served(Explorer(case, "gudgeon.template('dry')")) as server:
@@ -213,8 +213,6 @@ def check_sliders(browser: Browser, checks: Assertions, program: Path, pictures:
         checks.check(page.moved("document.getElementById('certify').click()"), "certify runs")
         checks.check("Certified" in browser.run("return document.getElementById('notes').textContent"), "and tells digits")
         checks.check((width := browser.width_at(390)) == 390, f"on a phone it is {width} wide instead of 390")
-        if pictures:
-            browser.screenshot(pictures / "explore_phone.png")
         browser.width_at(0)
         browser.run("document.querySelector('#charts canvas').click()")
         checks.check(browser.wait("document.querySelector('#zoomed .main-svg')"), "a curve opens large")
@@ -412,7 +410,7 @@ def main() -> int:
         browser = Browser(chromium, driver, work)
         try:
             check_pages(browser, checks)
-            check_sliders(browser, checks, (options.program or release_program()).resolve(), options.screenshots)
+            check_sliders(browser, checks, (options.program or release_program()).resolve())
             check_drag(browser, checks, options.screenshots)
             check_films(browser, checks)
             check_frame_and_language(browser, checks)
