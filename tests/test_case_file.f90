@@ -31,7 +31,8 @@ module test_case_file
     'herbert_mcwhannell, zhiying_qishao, impact'
   character(len=*), parameter :: no_speeds = n//'x.nml: &friction v0: required with law = ''ambrosio'' (m/s)'//n// &
     'x.nml: &friction v1: required with law = ''ambrosio'' (m/s)'
-  character(len=*), parameter :: at_rest = n//'x.nml: &output interval: required with crank_speed = 0 (s)'
+  character(len=*), parameter :: at_rest = n//'x.nml: &output interval: required with crank_speed = 0: the time between rows, '// &
+    'such as interval = 1e-4 (s)'
   character(len=*), parameter :: joint_keys = ' (allowed: kind, clearance, bearing_radius, bearing_length, numbers, load_share)'
 
 contains
@@ -550,7 +551,7 @@ contains
     call refused_with(check, 'integrator.revolutions=-1', 'x.nml: &integrator revolutions = -1: must be > 0')
     call refused_with(check, still, 'x.nml: &integrator revolutions = 2: needs crank_speed other than 0; give end_time'// &
                       at_rest)
-    call refused_on(check, bodies, [still, ends], 'x.nml: &output interval: required with crank_speed = 0 (s)')
+    call refused_on(check, bodies, [still, ends], at_rest(len(n) + 1:))
     call accepted(check, bodies, 'a run from rest', [still, ends, 'output.interval=0.01    '])
     call refused_on(check, bodies, [character(len=24) :: ends, 'output.start_time=1'], &
                     'x.nml: &output start_time = 1: must be before the end of the run at 1 (s)')
@@ -630,7 +631,7 @@ contains
     character(len=40), parameter :: until = 'run.until=periodic', window = 'output.window=last_period'
     call accepted(check, bodies, 'a run without another end than a periodic motion', [character(len=40) :: until])
     call refused_on(check, whole, [character(len=40) :: until, 'initial.crank_speed=0'], &
-                    at_rest(len(n) + 1:)//n//'x.nml: &run until = periodic: needs crank_speed other than 0')
+                    'x.nml: &run until = periodic: needs crank_speed other than 0'//at_rest)
     call refused_on(check, whole, [character(len=40) :: window], &
                     'x.nml: &output window = last_period: is for &run until = ''periodic'' alone')
     call refused_on(check, whole, [character(len=40) :: until, window, 'run.most_revolutions=16'], &
@@ -811,9 +812,8 @@ contains
       'crank_pin_eccentricity_rate, main_bearing_eccentricity, pin_speed, piston_offset, '// &
       'piston_offset_rate, piston_tilt, '// &
       'piston_tilt_rate, from, goes_on)'//n//'x.nml:4: &friction coefficient = abc: must be a number'//n// &
-      'x.nml: &friction v1: required with law = ''ambrosio'' (m/s)'//n// &
       'x.nml: --set joint.clearance=twenty: &joint clearance = twenty: must be a number (m)'//n// &
-      'x.nml: &output digits = 99: must be >= 9 and <= 17')
+      'x.nml: &output digits = 99: must be >= 9 and <= 17'//n//'x.nml: &friction v1: required with law = ''ambrosio'' (m/s)')
     call refused_on(check, whole//'&friction coefficient=-1 v0=0 v1=1 /', &   ! values and rules
       [character(len=40) :: 'joint.clearance=20', 'mechanism.rod_length=0.05'], &
       'x.nml: &friction coefficient = -1: must be >= 0'//n// &

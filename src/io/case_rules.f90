@@ -417,7 +417,8 @@ contains
       else
         call values%forbid(abs(output%angle_origin_deg) > 0, 'output', 'angle_origin_deg', &
           'is for sampling = ''crank_angle'' alone')
-        call values%forbid(output%interval <= 0 .and. .not. turns(c), 'output', 'interval', 'required with crank_speed = 0')
+        call values%forbid(output%interval <= 0 .and. .not. turns(c), 'output', 'interval', &
+          'required with crank_speed = 0: the time between rows, such as interval = 1e-4')
       end if
       if (output%start_time >= known_end(c)) call values%forbid(.true., 'output', 'start_time', &
         'must be before the end of the run at '//short_text(known_end(c)))

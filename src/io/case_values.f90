@@ -9,7 +9,7 @@ module case_values
     real_kind, integer_kind, word_kind, text_kind
   use namelist_reader, only: entry_t, token_t, read_values
   use unit_hints, only: likely_unit
-  use problem_list, only: problem_list_t, behind_file
+  use problem_list, only: problem_list_t, behind_file, missing_key
   use number_text, only: short_text
   use value_reader, only: value_t, set_to_default, n_values, convert, find_decimal_comma, is_default, unit_of, has_unit, &
     most_reals, is_within, read_bounds
@@ -383,7 +383,7 @@ contains
         call self%refuse(trim(key%group), trim(key%name), 'required'//self%by_law(key))
       else if (.not. (self%groups(group)%is_model .or. self%problems%concerns(''))) then
         call self%problems%add(self%file//': '//shown_group(trim(key%group))//': this group is required', trim(key%group), &
-          behind_file)
+          missing_key)
       end if
     end associate
   end subroutine check_required
@@ -468,7 +468,7 @@ contains
       if (.not. self%values(place)%has_unit) &
         text = text//meant(self%keys(place), self%values(place)%reals(min(shown, most_reals)))
     end if
-    call self%problems%add(text, group, self%place_in_file(place))
+    call self%problems%add(text, group, merge(missing_key, self%place_in_file(place), index(wanted, 'required') == 1))
   end subroutine refuse
 
   !> Note that a group must not be given.

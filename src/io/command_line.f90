@@ -107,7 +107,11 @@ contains
     type(command_line_t), intent(in) :: line
     type(error_t), allocatable, intent(inout) :: error
     if (line%template .or. line%manual .or. line%reference//line%completion /= '') then
-      if (line%option_count > 1 .or. size(line%cases) > 0) then
+      if (line%template .and. line%kind == '' .and. line%option_count == 1 .and. size(line%cases) == 1 .and. &
+          all(index(line%cases, '.') == 0)) then
+        call refuse(error, '--template '//printable(trim(line%cases(1)), 60)// &
+          ': a kind stands behind =: --template=KIND, one of '//template_kinds)
+      else if (line%option_count > 1 .or. size(line%cases) > 0) then
         call refuse(error, '--template, --reference, --completion and --man are not combined with other options or with files')
       else if (line%sweep .and. line%kind /= '') then
         call refuse(error, 'gudgeon sweep --template has no kinds')
@@ -198,6 +202,8 @@ contains
     type(option_t), intent(in) :: option
     character(len=*), intent(in) :: shown
     if (.not. option%takes_value) then
+      call set_option(line, error, option%long, '')
+    else if (i == size(arguments) .and. option%long == 'reference') then   ! its subjects are told
       call set_option(line, error, option%long, '')
     else if (i == size(arguments)) then
       call refuse(error, shown//': a value is missing')

@@ -1,12 +1,14 @@
-!> The errors in a file of the user, collected so that all of them are reported, one line each, in the order of the file.
+!> The errors in a file of the user, collected so that all of them are reported, one line each, in the order of the file; keys that
+!> are missing come last.
 module problem_list
   use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: integer_text
   implicit none
   private
-  public :: problem_list_t, behind_file
+  public :: problem_list_t, behind_file, missing_key
 
   integer, parameter :: behind_file = 1000000000   !! line of a problem without a place in the file: a group that is missing
+  integer, parameter :: missing_key = 2*behind_file   !! line of a key that is missing: told behind what may be the cause
   integer, parameter :: most_reported = 20
 
   type :: problem_t
