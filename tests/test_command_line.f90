@@ -134,7 +134,7 @@ contains
       '--reference joints: must be case, study, oils, results, schema or a group of cases'//groups// &
       '; did you mean joint?'//hint)
     call refused(check, ['--reference'], &
-      '--reference : must be case, bearing, study, oils, results, schema or a group of cases'//groups//hint)
+      '--reference : must be case, study, oils, results, schema or a group of cases'//groups//hint)
     call refused(check, [character(len=16) :: '--template', 'engine'], &
       '--template engine: a kind stands behind =: --template=KIND, one of dry, film, engine, compressor, slap, elastic, wear'//hint)
     call refused(check, ['--reference=injector'], &
