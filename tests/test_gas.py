@@ -525,6 +525,16 @@ def ledger_and_notes(program: Path) -> None:
     for case in (engine, compressor):
         found = [abs(float(said_by(case, f"integrator.relative_tolerance={tolerance}")[2]["gas_residual_relative"])) for tolerance in ("1e-5", "1e-8", "1e-11")]
         check(found[1] < 0.1 * found[0] and found[2] < 1e-9, f"{case.stem}: the ledger of the gas closes with the tolerance", f"{found}")
+    # walls that conduct without a bound, at some tolerances: what is said follows the residual, 1e-3 or a hundred tolerances for a note
+    told = []
+    for coefficient in ("1e8", "1e9", "1e10"):
+        for tolerance in ("1e-5", "1e-6", "1e-7"):
+            status, text, answers = said_by(engine, "wall_heat.law=constant", f"wall_heat.heat_transfer_coefficient={coefficient}", "integrator.method=radau",
+                                            f"integrator.relative_tolerance={tolerance}")
+            residual = float(answers["gas_residual_relative"])
+            told.append((residual > min(1e-3, 100 * float(tolerance)), "the energy of the gas is kept only" in text or "energy of the gas not kept" in text))
+            check((status == 4) == ("energy of the gas not kept" in text), "a run that loses energy of the gas ends with a reason", f"{status}: {text}")
+    check(all(poor == said for poor, said in told) and 0 < sum(poor for poor, _ in told) < len(told), "a note on a poor ledger of the gas, and on no other", f"{told}")
     # a suction valve on a crankcase with less than half of its pressure, and a leak as large as the valve
     leak = ("combustion.crankcase_pressure=2e4", "working_gas.leak_area=20 cm2", "valve_1.area=0.1 cm2", "integrator.relative_tolerance=1e-6")
     status, text, answers = said_by(compressor, *leak)

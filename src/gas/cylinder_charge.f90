@@ -134,22 +134,26 @@ contains
     self%crankcase_pressure = crankcase_pressure
   end subroutine prepare
 
-  !> Claim pressures and masses of a number of cylinders, and the integrals. Those of the losses of valves, whose rates have kinks
-  !> where the pressures are equal, take part in the error control; the others have no influence on the steps.
+  !> Claim pressures and masses of a number of cylinders, and the integrals. The balance takes part in the error control, since the
+  !> heat to walls that conduct well is that of small differences, and so do the losses of valves, whose rates have kinks where the
+  !> pressures are equal; the others have no influence on the steps.
   subroutine claim(self, layout, cylinders)
     class(charge_t), intent(inout) :: self
     type(layout_t), intent(inout) :: layout
     integer, intent(in) :: cylinders
     type(slice_t) :: more
+    real(dp) :: work   !! natural size [J]
     call layout%claim_states(cylinders, self%chamber%closing_pressure, self%pressures)
     call layout%claim_states(cylinders, self%closed_mass, self%masses)
-    if (.not. allocated(self%valves)) then
-      call layout%claim_quadratures(n_closed_sums, 0.0_dp, self%sums)
-      return
+    work = self%chamber%closing_pressure*self%chamber%displacement
+    call layout%claim_quadratures(of_balance, work, self%sums)
+    if (allocated(self%valves)) then
+      call layout%claim_quadratures(suction_loss - of_balance - 1, 0.0_dp, more)
+      call layout%claim_quadratures(discharge_loss - suction_loss + 1, work, more)
+      call layout%claim_quadratures(n_charge_sums - discharge_loss, 0.0_dp, more)
+    else
+      call layout%claim_quadratures(n_closed_sums - of_balance, 0.0_dp, more)
     end if
-    call layout%claim_quadratures(suction_loss - 1, 0.0_dp, self%sums)
-    call layout%claim_quadratures(2, self%chamber%closing_pressure*self%chamber%displacement, more)
-    call layout%claim_quadratures(n_charge_sums - discharge_loss, 0.0_dp, more)
     self%sums%last = more%last
   end subroutine claim
 
