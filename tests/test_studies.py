@@ -31,6 +31,7 @@ from gudgeon import (
     sensitivity,
     study,
 )
+from gudgeon.commands import study as study_command
 from gudgeon.plots import contact_laws as contact_study
 from gudgeon.plots import studies as study_pictures
 from gudgeon.program import release_program
@@ -290,10 +291,11 @@ class Pictures(InDirectory):
         self.assertIn("  johnson, 0.5: 15 ± 5 kN", text)
         self.assertEqual(text.count("johnson, hertz: 81 kN"), 1)
         drawing = contact_study.draw_contact_laws(runs)
-        panels = [axis for axis in drawing.axes if axis.get_title()]
-        self.assertEqual([axis.get_title() for axis in panels], ["restitution 0.9 asked for", "restitution 0.5 asked for"])
+        panels = [axis for axis in drawing.axes if axis.get_title("left")]
+        self.assertEqual([axis.get_title("left") for axis in panels], ["restitution 0.9 asked for", "restitution 0.5 asked for"])
         points = [line.get_xydata() for line in panels[0].lines if line.get_label() == "johnson"]
-        np.testing.assert_allclose(points[0], [[0, 81.0], [1, 18.0], [2, 36.0]])
+        np.testing.assert_allclose(points[0], [[18.0, 0], [36.0, 1]])
+        self.assertIn("hertz: 45 to 81 kN, 50 to 50 % in contact, 0 J", [axis.get_title("right") for axis in drawing.axes])
         plt.close(drawing)
 
     def test_maps(self) -> None:
@@ -319,9 +321,9 @@ class AnyStudy(InDirectory):
 
     def grid_runs(self) -> Runs:
         """Film thicknesses over three decades, on a grid with logarithmic spacing; one run failed; no contact."""
-        clearance, speed = np.meshgrid(np.geomspace(1e-5, 1e-4, 6), np.geomspace(50, 1000, 5))
+        clearance, speed = np.meshgrid(np.geomspace(1e-5, 1e-4, 10), np.geomspace(50, 1000, 9))
         film = 1e-5 * (clearance.ravel() / 1e-5) ** -2 * (speed.ravel() / 50) ** -1
-        table = pd.DataFrame({"run": np.arange(1, 31), "joint.clearance": clearance.ravel(), "initial.crank_speed": speed.ravel()})
+        table = pd.DataFrame({"run": np.arange(1, 91), "joint.clearance": clearance.ravel(), "initial.crank_speed": speed.ravel()})
         table = table.assign(status="done", min_film_thickness=film, contact_time_fraction=0.0, max_pin_force=film * 1e8)
         table.loc[7, ["status", "min_film_thickness", "contact_time_fraction", "max_pin_force"]] = ["stopped", np.nan, np.nan, np.nan]
         return Runs(table, {"min_film_thickness": "m", "contact_time_fraction": "-", "max_pin_force": "N"})
@@ -331,13 +333,33 @@ class AnyStudy(InDirectory):
         drawing = study_pictures.draw_map(self.grid_runs(), "joint.clearance", "initial.crank_speed", columns, "films")
         panels = [axes for axes in drawing.axes if axes.get_xlabel() == "radial clearance [µm]"]
         self.assertEqual(len(panels), 2)  # a column that is equal in every run is in the title and has no panel
-        self.assertEqual(drawing._suptitle.get_text(), "films; 1 of 30 runs failed (×)\ntime in contact: 0 % in every run")
+        self.assertEqual(drawing._suptitle.get_text(), "films; 1 of 90 runs failed (×)\ntime in contact: 0 % in every run")
         for axes in panels:
             self.assertEqual((axes.get_xscale(), axes.get_yscale(), axes.get_ylabel()), ("log", "log", "crank speed [rad/s]"))
             self.assertIsInstance(axes.collections[0].norm, matplotlib.colors.LogNorm)
             self.assertEqual(len(axes.lines[0].get_xdata()), 1)  # the cross of the run that failed
         bars = {axes.get_xlabel() for axes in drawing.axes} - {"radial clearance [µm]"}
         self.assertEqual(bars, {"smallest film thickness [µm]", "largest pin force [kN]"})
+
+    def test_the_shipped_maps_share_their_scales(self) -> None:
+        runs = self.grid_runs()
+        for name in study_command.MAPS:
+            runs.table.rename(columns=lambda one: f"{one}[{runs.units.get(one, '')}]" if one in runs.units else one).to_csv(self.work / f"{name}.runs.csv", index=False)
+        with redirect_stderr(io.StringIO()):
+            drawing, lines = study_command.maps(self.work)
+        self.assertEqual((len(lines), len(drawing.axes)), (4, 6))
+        scales = [axes.collections[0].norm for axes in drawing.axes[:4]]
+        self.assertEqual([(one.vmin, one.vmax) for one in scales[:2]], [(one.vmin, one.vmax) for one in scales[2:]])
+
+    def test_small_maps_are_tables_with_numbers(self) -> None:
+        runs = self.grid_runs()
+        few = runs.table["joint.clearance"].isin(sorted(set(runs.table["joint.clearance"]))[:4]) & (runs.table["initial.crank_speed"] < 120)
+        small = Runs(runs.table[few].reset_index(drop=True), runs.units)
+        drawing = study_pictures.draw_map(small, "joint.clearance", "initial.crank_speed", ["min_film_thickness"], "films")
+        (axes,) = drawing.axes
+        shown = [text.get_text() for text in axes.texts]
+        self.assertEqual((len(shown), len(axes.get_xticks()), axes.get_title()), (len(small.table), 4, "smallest film thickness [µm]"))
+        self.assertEqual((shown[0], axes.get_xticklabels()[0].get_text()), ("10", "10"))
 
     def test_colours_say_what_lies_beyond_them(self) -> None:
         values = np.concatenate([np.linspace(1, 2, 400), [50.0]])
@@ -359,7 +381,7 @@ class AnyStudy(InDirectory):
 
     def test_samples_are_points_over_each_parameter(self) -> None:
         runs = self.grid_runs()
-        runs.table["joint.clearance"] = np.random.default_rng(1).permutation(np.linspace(1e-5, 2e-5, 30))
+        runs.table["joint.clearance"] = np.random.default_rng(1).permutation(np.linspace(1e-5, 2e-5, 90))
         self.assertFalse(study_pictures.is_grid(runs, "joint.clearance", "initial.crank_speed"))
         drawing = study_pictures.draw_scatter(runs, ["joint.clearance", "initial.crank_speed"], ["min_film_thickness"], "x")
         self.assertEqual(len(drawing.axes), 2)

@@ -49,8 +49,8 @@ def read(results: Path, name: str) -> Runs:
 
 
 def maps(results: Path) -> tuple[figures.Drawing, list[str]]:
-    studies = {name: read(results, name) for name in MAPS}
-    return studies.draw_maps(studies), studies.describe_maps(studies)
+    found = {name: read(results, name) for name in MAPS}
+    return studies.draw_maps(found), studies.describe_maps(found)
 
 
 def bifurcation(results: Path) -> tuple[figures.Drawing, list[str]]:

@@ -29,6 +29,12 @@ from scipy.optimize import brentq
 #: From this ratio of largest to smallest value on, a scale is logarithmic.
 WIDE_RATIO = 30.0
 
+#: A map of at most so many cells is drawn as a table.
+MOST_CELLS = 49
+
+#: Film thickness [µm] that is three times a usual roughness.
+THIN = 1.0
+
 #: The colours of a map cover these percentiles of its values if the percentiles cover less than this share of the whole range.
 OUTER_PERCENTILES, KEPT_RANGE = (1, 99), 0.75
 
@@ -105,13 +111,34 @@ def is_grid(runs: Runs, x: str, y: str) -> bool:
     return table[x].nunique() * table[y].nunique() == len(table)
 
 
-def map_panel(drawing: Drawing, axis: Axes, runs: Runs, x: str, y: str, column: str) -> None:
-    """A column of a study over its two parameters, with the colour bar below."""
+def table_panel(drawing: Drawing, axis: Axes, shown_x: Shown, shown_y: Shown, shown: Shown, xs: np.ndarray, ys: np.ndarray, values: np.ndarray) -> None:
+    """A column of a study over its two parameters as a table: equal cells with their numbers on light colours. Failed runs are ×."""
+    norm, _ = colour_scale(values)
+    axis.pcolormesh(values, norm=norm, cmap="Oranges", edgecolors="white", linewidth=1)
+    for (row, column), value in np.ndenumerate(values):
+        dark = np.isfinite(value) and norm(value) > 0.6
+        said = f"{value:.0f}" if abs(value) >= 100 or abs(value) < 1e-3 * norm.vmax and not isinstance(norm, LogNorm) else f"{value:.2g}"
+        axis.text(column + 0.5, row + 0.5, said if np.isfinite(value) else "×", ha="center", va="center", fontsize=7, color="white" if dark else BLACK)
+    axis.set_xticks(np.arange(len(xs)) + 0.5, [f"{shown_x.factor * one:.3g}" for one in xs])
+    axis.set_yticks(np.arange(len(ys)) + 0.5, [f"{shown_y.factor * one:.3g}" for one in ys])
+    axis.tick_params(length=0)
+    axis.set(xlabel=shown_x.label, ylabel=shown_y.label, title=shown.label)
+    axis.grid(visible=False)
+
+
+def map_panel(
+    drawing: Drawing, axis: Axes, runs: Runs, x: str, y: str, column: str, norm: Normalize | None = None, beside: Sequence[Axes] = (),
+) -> None:  # fmt: skip
+    """A column of a study over its two parameters, with the colour bar below it, or below all axes `beside`, whose colours `norm` has."""
     xs, ys, values = grid(runs, x, y, column)
     shown_x, shown_y = of_parameter(x, xs), of_parameter(y, ys)
     shown = of_column(column, runs.units[column], values)
     values = shown.factor * values
-    norm, extend = colour_scale(values)
+    if norm is None and values.size <= MOST_CELLS:
+        table_panel(drawing, axis, shown_x, shown_y, shown, xs, ys, values)
+        return
+    own, extend = colour_scale(values)
+    norm = norm or own
     colours = "viridis" if column.startswith("min_film") and shown.factor > 0 else "magma"
     image = axis.pcolormesh(shown_x.factor * xs, shown_y.factor * ys, values, norm=norm, cmap=colours, shading="nearest")
     if isinstance(norm, LogNorm) and colours == "viridis":
@@ -127,23 +154,31 @@ def map_panel(drawing: Drawing, axis: Axes, runs: Runs, x: str, y: str, column: 
     axis.set_xlabel(shown_x.label)
     axis.set_ylabel(shown_y.label)
     axis.grid(visible=False)
-    bar = drawing.colorbar(image, ax=axis, location="bottom", label=shown.label, extend=extend, aspect=30, pad=0.02)
-    if isinstance(norm, LogNorm):
-        mark_decades(bar.ax.xaxis)
+    if norm is own or beside:
+        bar = drawing.colorbar(image, ax=beside or axis, location="bottom", label=shown.label, extend="neither" if beside else extend, aspect=30, pad=0.02)
+        if isinstance(norm, LogNorm):
+            mark_decades(bar.ax.xaxis)
 
 
 def draw_maps(studies: dict[str, Runs]) -> Drawing:
-    """Both films of simulations I and IV over clearance and speed."""
-    drawing, axes = plt.subplots(2, 2, figsize=(WIDTH, 7.2))
+    """Both films of simulations I and IV over clearance and speed, with one scale for the thickness and one for the time in contact. A
+    bold line is the thickness that a film needs above a usual roughness."""
+    drawing, axes = plt.subplots(2, 2, figsize=(WIDTH, 7.0), sharex=True, sharey=True)
     x, y = "joint.clearance", "initial.crank_speed"
+    films = np.concatenate([1e6 * grid(studies[f"map_{number}"], x, y, "min_film_thickness")[2].ravel() for number in ("I", "IV")])
     for row, number in zip(axes, ("I", "IV")):
         carried, touching = studies[f"map_{number}"], studies[f"map_{number}_oscillating"]
-        map_panel(drawing, row[0], carried, x, y, "min_film_thickness")
+        last = row[0] is axes[-1][0]
+        map_panel(drawing, row[0], carried, x, y, "min_film_thickness", LogNorm(np.nanmin(films), np.nanmax(films)), list(axes[:, 0]) if last else ())
+        xs, ys, values = grid(carried, x, y, "min_film_thickness")
+        row[0].contour(1e6 * xs, ys, 1e6 * values, levels=[THIN], colors="white", linewidths=2.2)
         share = 100 * np.nanmax(carried["contact_time_fraction"].astype(float))
         row[0].set_title(f"{number}, Pinkus–Sternlicht film: in contact {share:.3g} %")
-        map_panel(drawing, row[1], touching, x, y, "contact_time_fraction")
+        map_panel(drawing, row[1], touching, x, y, "contact_time_fraction", Normalize(60, 100), list(axes[:, 1]) if last else ())
         row[1].set_title(f"{number}, oscillating film{failed_note(touching)}")
-    drawing.suptitle("When does the film carry the pin? Constant crank speed, after four revolutions")
+        for axis in row:
+            axis.set(xlabel=axis.get_xlabel() if last else "", ylabel=axis.get_ylabel() if axis is row[0] else "")
+    drawing.suptitle(f"Left of the bold line the film is thicker than {THIN:g} µm; with an oscillating film the pin touches everywhere")
     return drawing
 
 
