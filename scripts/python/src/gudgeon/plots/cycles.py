@@ -81,12 +81,19 @@ def draw_bearings(cycles: Cycles) -> Drawing:
         x, y = force.mean(axis=1)
         x, y = np.append(x, x[0]), np.append(y, y[0])
         axis.plot(np.arctan2(y, x), np.hypot(x, y) / 1e3, color=BLUE)
-        # two of the marks are close together where the gas is thin: their numbers go to different sides
-        for mark, (right, up) in zip(marks, ((2, 3), (-3, 3), (2, 3), (2, -8))):
-            axis.plot(np.arctan2(y[mark], x[mark]), np.hypot(x[mark], y[mark]) / 1e3, "o", color=VERMILION, markersize=2.5)
+        # numbers stand outwards; two of the marks are close together where the gas is thin: the later one is turned aside
+        turned: list[tuple[float, int]] = []
+        for mark in marks:
+            angle, size = np.arctan2(y[mark], x[mark]), np.hypot(x[mark], y[mark]) / 1e3
+            axis.plot(angle, size, "o", color=VERMILION, markersize=2.5)
+            aside = angle
+            near = [other for other, its in turned if np.hypot(x[its] - x[mark], y[its] - y[mark]) < 0.2 * np.hypot(x, y).max()]
+            while any(abs(np.angle(np.exp(1j * (aside - other)))) < 1.3 for other in near):
+                aside += 1.4
+            turned.append((aside, mark))
             axis.annotate(
-                f"{round(np.degrees(cycles.place[mark])) % round(np.degrees(cycles.length))}", (np.arctan2(y[mark], x[mark]), np.hypot(x[mark], y[mark]) / 1e3),
-                fontsize=6, xytext=(right, up), ha="left" if right > 0 else "right", textcoords="offset points", color=VERMILION,
+                f"{round(np.degrees(cycles.place[mark])) % round(np.degrees(cycles.length))}", (angle, size), fontsize=6, ha="center", va="center",
+                xytext=(9 * np.sin(aside), 9 * np.cos(aside)), textcoords="offset points", color=VERMILION,
             )
         axis.set_title(name.replace(", ", ",\n") + ("" if ", " in name else "\n") + " [kN]", pad=6)
         axis.set_theta_zero_location("N")   # x, or the outward axis of the rod, points upwards and y to the right, as in the other pictures
