@@ -355,6 +355,15 @@ def check_server(checks: Assertions) -> None:
         checks.check(head_of(asked(server, "/run", late)[1]).get("superseded"), "an older request is superseded")
 
 
+def check_shipped_cases(checks: Assertions) -> None:
+    """Films of a skirt and of three bearings, several cylinders, a floating pin, a worn bore: their runs can be drawn."""
+    for name in ("joints/skirt", "bearings/car_diesel", "cylinders/six_mwm", "pin/engine", "wear/worn_bore", "film/heat"):
+        path = TOP / "cases" / f"{name}.nml"
+        explorer = Explorer(gudgeon.read(path), timeout=2.0)
+        head = head_of(explorer.run("a", 1, {}, "live"))
+        checks.check(head["scene"]["rows"] > 100 and len(head["answers"]) > 1 and len(explorer.controls()) > 5, f"{name} is drawn", str(head.get("error")))
+
+
 def check_command(checks: Assertions) -> None:
     """The command: its address, Ctrl-C while a table is made, a port in use, wrong words."""
     def begun(*words: str) -> subprocess.Popen:
@@ -386,7 +395,8 @@ def check_command(checks: Assertions) -> None:
         said = process.stderr.read()
         checks.check(status == 0 and "Traceback" not in said, "Ctrl-C ends it", f"{status} {said}")
         checks.check("ssh -L" in said, "tells how to reach it from another machine")
-        for words, wanted in ((("nothing",), "no template nothing"), ((str(path), "--keys", "joint.x"), "no key joint.x"), ((str(path), "--set", "joint.clearance=-1"), "clearance")):
+        alone = TOP / "cases" / "bearings" / "main_bearing.nml"
+        for words, wanted in (((str(alone),), "has no mechanism"), (("nothing",), "no template nothing"), ((str(path), "--keys", "joint.x"), "no key joint.x"), ((str(path), "--set", "joint.clearance=-1"), "clearance")):
             process = begun(*words)
             said = process.communicate(timeout=30)[1]
             checks.check(process.returncode == 2 and wanted in said and "Traceback" not in said, f"{words[-1]} is refused", said)
@@ -405,6 +415,7 @@ def main() -> int:
         options.screenshots.mkdir(parents=True, exist_ok=True)
     checks = Assertions()
     check_server(checks)
+    check_shipped_cases(checks)
     check_command(checks)
     with tempfile.TemporaryDirectory() as work:
         browser = Browser(chromium, driver, work)

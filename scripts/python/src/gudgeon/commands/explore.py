@@ -59,6 +59,8 @@ def run(options: argparse.Namespace) -> int:
         server = Server(Explorer(case, source, words, options.keys, options.timeout, language.current), options.port)
     except OSError as problem:
         raise MissingResult(f"port {options.port}: {problem.strerror}") from None
+    except gudgeon.CaseError as problem:
+        raise Refused(f"{options.case}: {problem}") from None
     except OverflowError:
         raise Refused(f"port {options.port}: must be at most 65535") from None
     print(server.address, flush=True)

@@ -99,12 +99,14 @@ def of_cycle(run: Any) -> Any:
 
 class Explorer:
     """Runs of a case with other values. `source` makes the case in Python; `words` of the command line run it; `names`: the keys on
-    sliders instead of those that the case gives; `timeout` [s] of runs that follow a slider."""
+    sliders instead of those that the case gives; `timeout` [s] of runs that follow a slider. Raises CaseError for a bearing by itself."""
 
     def __init__(
         self, case: gudgeon.Case, source: str = "case", words: str = "CASE.nml", names: list[str] | None = None, timeout: float = 10.0,
         language: Language | None = None,
     ) -> None:  # fmt: skip
+        if "bearing_load" in case:
+            raise gudgeon.CaseError("a bearing by itself has no mechanism to draw: gudgeon-plot bearing")
         self.case, self.source, self.words, self.names, self.timeout = case, source, words, names, timeout
         self.language = language or Language()
         self.newest: dict[str, int] = {}  # of each page, its last request
@@ -156,7 +158,7 @@ class Explorer:
     def coarse(self, case: gudgeon.Case) -> gudgeon.Case | None:
         """The case with small tables of its films; None if it has no tables whose size is the program's own."""
         found: dict[str, int] = {}
-        for name in (name for name in gudgeon.groups() if name.endswith("lubrication") and name in case):
+        for name in (name for name in gudgeon.groups() if f"{name}.table_points" in gudgeon.keys and name in case):
             law = case[f"{name}.law"] in gudgeon.keys[f"{name}.table_points"].laws
             if law and case[f"{name}.variant"] == "table" and not case[f"{name}.table_points"]:
                 found |= {f"{name}.table_points": 33, f"{name}.film_points": 32}
