@@ -220,8 +220,8 @@ contains
     call check%close_to(trace%report%exponent%mean, log(1.31831949e-4_dp), 1e-4_dp, 'exponent of an orbit with a film')
   end subroutine exponents_of_orbits
 
-  !> States that approach an orbit of two revolutions with a multiplier of -0.95, and those of a true period of four, both with errors
-  !> of a tenth of the tolerance: whatever the errors, the period is told.
+  !> States that approach an orbit of two revolutions with a multiplier of -0.95, and those of a true period of four, both with
+  !> errors of a tenth of the tolerance: whatever the errors, the period is told.
   subroutine alternating_approach(check)
     class(checks_t), intent(inout) :: check
     integer, parameter :: periods(2) = [2, 4], seeds = 200

@@ -27,7 +27,7 @@ module period_watch
                                                 !! rest does not require infinite accuracy
   real(dp), parameter :: resolved = 10          !! of a bearing by itself: least difference that is told from an error of the
                                                 !! integration, over the tolerance of that
-  real(dp), parameter :: near = 5   !! differences over a divisor of a period that may come within the tolerance at any rate, over it
+  real(dp), parameter :: near = 5   !! differences over a divisor of a period that may come within the tolerance, over it
   real(dp), parameter :: approaching = 0.9_dp   !! larger differences over it that are so many times those of up to 32 revolutions
                                                 !! before approach 0: errors of the integration change them by less
   real(dp), parameter :: noise = 1e-2_dp            !! differences due to the integration, relative to the tolerance
