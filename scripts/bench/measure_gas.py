@@ -69,7 +69,7 @@ def main() -> int:
     options = parser.parse_args()
     program = options.program.resolve() if options.program else built_program()
     extremes = module_of(TOP / "tests" / "judge" / "extremes")
-    ends, ledgers, tight_ends, tight = collections.Counter(), [], collections.Counter(), []
+    ends, ledgers, tight_ends, tight, poor = collections.Counter(), [], collections.Counter(), [], []
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         scenes = extremes.scenes(options.scenes, options.seed, EVALUATIONS, Path(folder), charges=1.0)
 
@@ -81,7 +81,7 @@ def main() -> int:
             more = {"integrator.relative_tolerance": repr(TIGHT), "integrator.max_evaluations": str(5 * EVALUATIONS)}
             return first, outcome(extremes, program, base, settings | more)
 
-        for first, second in pool.map(both, scenes):
+        for i, (first, second) in enumerate(pool.map(both, scenes)):
             ends[first[0]] += 1
             if second is None:
                 continue
@@ -89,12 +89,13 @@ def main() -> int:
             tight_ends[second[0]] += 1
             if second[0] == "done":
                 tight.append(abs(second[1]))
-    beyond = sum(value > LIMIT for value in tight)
+                poor += [str(i)] if tight[-1] > LIMIT else []
     rows = [["at the tolerance of the scene, mostly 1e-6", str(len(ledgers)), *quantiles(ledgers)], [f"at {TIGHT:g}", str(len(tight)), *quantiles(tight)]]
     text = f"{options.scenes} random scenes: " + ", ".join(f"{number} {end}" for end, number in ends.most_common()) + ".\n\n"
     text += f"The residual of the gas's energy over its work, of the {len(ledgers)} that end well with pressure and mass as states:\n\n"
     text += table(("", "runs", *(f"{share} %" for share in SHARES)), rows) + "\n\n"
-    text += f"At {TIGHT:g} they end so: " + ", ".join(f"{number} {end}" for end, number in tight_ends.most_common()) + f"; {beyond} of those that are done keep it less well than to {LIMIT:g}."
+    text += f"At {TIGHT:g} they end so: " + ", ".join(f"{number} {end}" for end, number in tight_ends.most_common()) + f"; {len(poor)} of those that are done keep it less well than to {LIMIT:g}"
+    text += f": `tests/judge/extremes --scenes {options.scenes} --seed {options.seed} --charges 1 --evaluations {EVALUATIONS} --again N`, N = {', '.join(poor)}." if poor else "."
     print(write_table("gas", "Gas with a mass", f"scripts/bench/measure_gas.py --scenes {options.scenes} --seed {options.seed}", text))
     return 0
 
