@@ -4,7 +4,6 @@ module result_notes
   use constants, only: two_pi
   use film_history, only: film_history_t
   use simulation, only: run_report_t
-  use cycle_answers, only: cycle_quantities
   use run_figures, only: pin_figures_t
   use joint_places, only: n_places, in_order, piston_pin, small_end, spot_title
   use case_definition, only: case_t
@@ -92,7 +91,7 @@ contains
       if (.not. case%combustion%filling_pressure() > 0) return
       if (.not. machine_answer(report, 'cycle_volumetric_efficiency') > 0) call add_line('the compressor delivers no gas in '// &
         'the last cycle: its discharge valve stays closed')
-      open_valve = machine_text(report, 'cycle_open_valve')
+      open_valve = trim(report%text_of('cycle_open_valve'))
       if (open_valve /= '') call add_line('the '//open_valve//' valve is open through the whole cycle: more &valve area, or '// &
         'less leak_area')
     end subroutine note_gas
@@ -189,27 +188,9 @@ contains
   pure real(dp) function machine_answer(report, name) result(value)
     type(run_report_t), intent(in) :: report
     character(len=*), intent(in) :: name
-    integer :: i
-    value = 0
-    if (.not. allocated(report%answers)) return
-    do i = 1, size(report%answers)
-      if (report%answers(i)%place == 0 .and. cycle_quantities(report%answers(i)%quantity)%name == name) &
-        value = report%answers(i)%value
-    end do
+    logical :: is_known
+    call report%value_of(name, value, is_known)
   end function machine_answer
-
-  !> An answer of the machine that is a text; empty if the run has not given it.
-  pure function machine_text(report, name) result(text)
-    type(run_report_t), intent(in) :: report
-    character(len=*), intent(in) :: name
-    character(len=:), allocatable :: text
-    integer :: i
-    text = ''
-    if (.not. allocated(report%answers)) return
-    do i = 1, size(report%answers)
-      if (cycle_quantities(report%answers(i)%quantity)%name == name) text = trim(report%answers(i)%text)
-    end do
-  end function machine_text
 
   !> Whether a floating pin is between dry bearings whose friction has the same moment: while it slides in both of them the moments
   !> cancel at every speed of the pin.

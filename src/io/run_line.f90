@@ -6,7 +6,6 @@ module run_line
   use simulation, only: run_report_t
   use run_figures, only: pin_figures_t, floating_figures_t
   use period_watch, only: period_watch_t
-  use cycle_answers, only: cycle_quantities
   use joint_places, only: places, n_places, in_order, name_prefix, spot_title
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
@@ -66,20 +65,15 @@ contains
   !> Text about numbered bearings: the thinnest film of the last cycle, and the losses; empty without such a cycle or bearings.
   function bearings_text(report) result(text)
     type(run_report_t), intent(in) :: report
-    character(len=:), allocatable :: text
+    character(len=:), allocatable :: text, thinnest
     real(dp) :: thickness, power
     logical :: is_known
-    integer :: i
     text = ''
     call report%value_of('cycle_bearings_power', power, is_known)
     if (.not. is_known) return
-    do i = 1, size(report%answers)
-      associate (it => report%answers(i))
-        if (cycle_quantities(it%quantity)%name /= 'cycle_thinnest_bearing') cycle
-        call report%value_of(trim(it%text)//'_cycle_min_film_thickness', thickness, is_known)
-        text = '; thinnest film '//quantity_text(thickness, 'm')//' at '//replaced(trim(it%text), '_', ' ')
-      end associate
-    end do
+    thinnest = trim(report%text_of('cycle_thinnest_bearing'))
+    call report%value_of(thinnest//'_cycle_min_film_thickness', thickness, is_known)
+    text = '; thinnest film '//quantity_text(thickness, 'm')//' at '//replaced(thinnest, '_', ' ')
     text = text//', bearings '//quantity_text(power, 'W')
   end function bearings_text
 

@@ -27,9 +27,10 @@ module period_watch
                                                 !! rest does not require infinite accuracy
   real(dp), parameter :: resolved = 10          !! of a bearing by itself: least difference that is told from an error of the
                                                 !! integration, over the tolerance of that
-  real(dp), parameter :: near = 5   !! differences over a divisor of a period that may come within the tolerance, over it
-  real(dp), parameter :: approaching = 0.9_dp   !! larger differences over it that are so many times those of up to 32 revolutions
-                                                !! before approach 0: errors of the integration change them by less
+  real(dp), parameter :: near = 5               !! over the tolerance: smaller differences over a divisor are waited for while they
+                                                !! shrink at all
+  real(dp), parameter :: approaching = 0.9_dp   !! larger ones, while they have shrunk to less than this part in up to 32
+                                                !! revolutions: errors of the integration change them by less
   real(dp), parameter :: noise = 1e-2_dp            !! differences due to the integration, relative to the tolerance
 
   type :: period_watch_t

@@ -55,6 +55,7 @@ module simulation
     type(exponent_t) :: exponent                 !! Lyapunov exponent, if it is requested
   contains
     procedure :: value_of
+    procedure :: text_of
   end type run_report_t
 
   !> A run under way. Call `begin`, `advance` until `is_over` or as far as wanted, and `finish`. Copies continue independently of
@@ -116,6 +117,19 @@ contains
       end associate
     end do
   end subroutine value_of
+
+  !> An answer of the last cycle that is a text; empty if the run does not have it.
+  pure function text_of(self, name) result(text)
+    class(run_report_t), intent(in) :: self
+    character(len=*), intent(in) :: name   !! of an answer of the machine
+    character(len=len(self%answers%text)) :: text
+    integer :: i
+    text = ''
+    if (.not. allocated(self%answers)) return
+    do i = 1, size(self%answers)
+      if (cycle_quantities(self%answers(i)%quantity)%name == name) text = self%answers(i)%text
+    end do
+  end function text_of
 
   !> Run a case, or its ideal twin, from its start to its end. `cycles`, the count of the revolutions of the crank, is moved into
   !> the run and returned at the end; if it is present, the impulse and the loss of the joint are integrated too. Errors: the scene
