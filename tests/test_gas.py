@@ -461,6 +461,112 @@ def losses_of_valves(program: Path) -> None:
         check(made.returncode == 3 and says in made.stderr, f"refused: {says}", made.stderr[:300])
 
 
+REEDS = TOP / "data" / "gas" / "air_reeds.nml"
+BOTH = ("valve_1", "valve_2")
+
+
+def both(**keys: str) -> tuple[str, ...]:
+    """The same keys for both valves."""
+    return tuple(f"{group}.{key}={value}" for group in BOTH for key, value in keys.items())
+
+
+def state_of(text: str) -> dict[str, str]:
+    """The numbers of a file of a state."""
+    return dict(re.findall(r"^\s*(\w+) = ([^,!\n]+?)\s*(?:!.*)?$", text, re.M))
+
+
+def goes_on(program: Path, case: Path, until: str, *settings: str, first: str = "", edit: dict[str, str] | None = None) -> dict[str, str]:
+    """The state that a run reaches at a time; `first`: it stops at this time, and the numbers `edit` are set, before it goes on."""
+    with tempfile.TemporaryDirectory() as folder:
+        state = Path(folder) / f"{case.stem}.state.nml"
+        begin: tuple[str, ...] = ()
+        for end in filter(None, (first, until)):
+            words = [word for setting in (*settings, *begin, f"integrator.end_time={end}") for word in ("--set", setting)]
+            made = subprocess.run([program, "-q", "-o", folder, *words, case], capture_output=True, text=True, check=False)
+            check(made.returncode == 0, f"{case.stem} to {end} s", made.stderr)
+            text = state.read_text()
+            for key, value in (edit or {}).items():
+                text = re.sub(rf"^(\s*{key} = )\S+", rf"\g<1>{value}", text, flags=re.M)
+            (Path(folder) / "start.nml").write_text(text)
+            begin = (f"initial.from={folder}/start.nml", *(("initial.goes_on=F",) if edit else ()))
+        return state_of(state.read_text())
+
+
+def masses_of_valves(program: Path) -> None:
+    """Valves with a mass: against independent programs (data/gas), towards valves without it, and flights in closed form."""
+    facts = pd.read_csv(TOP / "data" / "gas" / "facts.csv").set_index(["case", "quantity"])["value"]
+    wanted = pd.read_csv(TOP / "data" / "gas" / "air_reeds.csv")
+    for method in ("adams", "radau", "auto"):
+        r = run(program, REEDS, f"integrator.method={method}", name=method)
+        rows = np.searchsorted(r.column("time[s]"), wanted["time[s]"].to_numpy() - 1e-9)
+        for column in wanted.columns[1:]:   # the programs agree to 2e-7; an impact shifts a lift
+            a, b = r.column(column)[rows], wanted[column].to_numpy()
+            allowed = 1e-6 if "lift" in column else 1e-7
+            check(worst(a - b) < allowed * worst(b), f"air_reeds, {method}: {column} is that of the reference", f"{worst(a - b) / worst(b):.2g}")
+        for quantity, fact in facts["air_reeds"].items():
+            value = float(r.answers[f"cycle_{quantity}"])
+            check(abs(value / fact - 1) < (1e-6 if "loss" in quantity or "leak" in quantity else 1e-7), f"air_reeds, {method}: {quantity}", f"{value!r} for {fact!r}")
+        check(abs(float(r.answers["gas_residual_relative"])) < 1e-8, f"air_reeds, {method}: the energy of the gas is kept", r.answers["gas_residual_relative"])
+        check(r.answers["cycle_max_suction_valve_lift"] == r.answers["cycle_max_discharge_valve_lift"] and
+              abs(float(r.answers["cycle_max_suction_valve_lift"]) - 1e-3) < 1e-14, f"air_reeds, {method}: both valves open fully")
+    # a mass of 1 g is felt, one towards 0 with 1/4 of the critical damping is not: the difference falls with the natural time
+    quick = ("integrator.relative_tolerance=1e-8", "working_gas.leak_area=0")
+    light = [run(program, REEDS, *quick, *both(mass=mass, damping=damping), name="light").answers for mass, damping in
+             (("0", "0"), ("1e-3", "0.5"), ("1e-5", "0.05"), ("1e-7", "0.005"))]
+    for key in ("cycle_mass_flow", "cycle_indicated_power", "cycle_discharge_temperature", "cycle_max_cylinder_pressure"):
+        off = [abs(float(one[key]) / float(light[0][key]) - 1) for one in light[1:]]
+        check(off[0] > 3e-3 and off[2] < 0.2 * off[1] and off[2] < 1e-3, f"valves without mass are those of a small one: {key}", f"{off}")
+    # pressures that are held (the crank all but stands, the valves let hardly any gas pass): a constant force f on a free mass reaches
+    # the stop after sqrt(2 M l/f); with a spring and a damper it is a damped oscillation
+    held = ("initial.crank_speed=1e-6", *both(area="1e-15"), "working_gas.leak_area=0", "integrator.relative_tolerance=1e-11")
+    start = {"first": "1e-9", "edit": {"gas_pressure": "9e4"}}
+    force = 1e4 * 2.5e-4 - 1
+    hits = float(np.sqrt(2 * 1e-3 * 1e-3 / force))
+    free = both(stiffness="0", damping="0")
+    for part, place in ((1 - 1e-7, "2"), (1 + 1e-7, "3")):
+        found = goes_on(program, REEDS, repr(hits * part), *held, *free, **start)
+        check(found["suction_valve_place"] == place and found["discharge_valve_place"] == "1", f"a free flight to the stop, {part}", f"{found}")
+    found = goes_on(program, REEDS, repr(hits * (1 - 1e-7)), *held, *free, **start)
+    check(abs(float(found["suction_valve_speed"]) / np.sqrt(2 * force * 1e-3 / 1e-3) - 1) < 3e-7, "the speed at which a free flight ends", found["suction_valve_speed"])
+    for time in (2e-4, 2e-3):
+        found = goes_on(program, REEDS, repr(time), *held, *both(stiffness="4000", damping="0.8"), **start)
+        decay, turn = 0.8 / 2e-3, np.sqrt(4000 / 1e-3 - (0.8 / 2e-3)**2)
+        lift = force / 4000 * (1 - np.exp(-decay * time) * (np.cos(turn * time) + decay / turn * np.sin(turn * time)))
+        check(abs(float(found["suction_valve_lift"]) / lift - 1) < 1e-8, f"a damped flight, {time} s", f"{found['suction_valve_lift']} for {lift!r}")
+    # a state inside a flight: the motion goes on from it
+    gas = ("gas_pressure", "gas_mass", *(f"{port}_valve_{what}" for port in ("suction", "discharge") for what in ("place", "lift", "speed")))
+    for end, port in (("0.02", "discharge"), ("0.035", "suction")):
+        there, next_to_it = goes_on(program, REEDS, end), goes_on(program, REEDS, repr(float(end) + 1e-12), first=end)
+        check(there[f"{port}_valve_place"] == "2", f"the {port} valve is in flight at {end} s")
+        for name in gas:
+            check(abs(float(next_to_it[name]) - float(there[name])) <= 1e-8 * max(abs(float(there[name])), 1e-3), f"{name} begins where the flight was at {end} s",
+                  f"{next_to_it[name]}, {there[name]}")
+        whole, rest = goes_on(program, REEDS, "0.06"), goes_on(program, REEDS, "0.06", first=end)
+        for name in gas:
+            check(abs(float(rest[name]) - float(whole[name])) <= 1e-7 * max(abs(float(whole[name])), 1e-3), f"{name} goes on from a flight at {end} s",
+                  f"{rest[name]}, {whole[name]}")
+    for settings, says in ((both(force_area="0"), "force_area = 0: must be > 0"), (both(stiffness="0", preload="0"), "needs stiffness or preload, which shut the valve"),
+                           (both(mass="0"), "needs mass: without it the valve follows")):
+        words = [word for setting in settings for word in ("--set", setting)]
+        made = subprocess.run([program, "--check", *words, REEDS], capture_output=True, text=True, check=False)
+        check(made.returncode == 3 and says in made.stderr, f"refused: {says}", made.stderr[:300])
+    check("natural frequency of only 2.01 times the turns" in said(program, REEDS, *both(mass="0.01")) and "natural" not in said(program, REEDS), "a note on a slow valve")
+
+
+def several_compressors(program: Path) -> None:
+    """Three cylinders on one crankshaft: whichever is that of the mechanism, the moment is the same."""
+    with tempfile.TemporaryDirectory() as folder:
+        case = Path(folder) / "three.nml"
+        text = REEDS.read_text().replace("&combustion", "".join(f"&cylinder phase_deg = {-120.0 * i} /\n" for i in range(3)) + "&combustion")
+        case.write_text(text.replace("end_time = 0.08", "end_time = 0.06"))
+        moments = []
+        for full, angle in ((1, 180), (2, 60), (3, -60)):
+            settings = [f"cylinder_{i}.full={'T' if i == full else 'F'}" for i in (1, 2, 3)]
+            moments.append(run(program, case, *settings, f"initial.crank_angle_deg={angle}", "integrator.relative_tolerance=1e-9", name="three").column("crank_moment[N.m]"))
+    for other in moments[1:]:
+        check(worst(other - moments[0]) < 1e-6 * worst(moments[0]), "valves of the other cylinders are those of the mechanism's", f"{worst(other - moments[0]):.2g} N m")
+
+
 def another_program(program: Path) -> None:
     """Recorded figures of PDSim (commit 54d593b, its balances, nozzle and integrator): argon from 10 to 40 kPa through check valves of 10 mm2,
     adiabatic, 377 rad/s, bore and stroke 20 mm, rod 40 mm, 300 K at suction, dead space 15 %. Its flow is 8.5e-5 from that of an own program
@@ -691,6 +797,8 @@ def main() -> int:
     pegging(program)
     charges(program)
     losses_of_valves(program)
+    masses_of_valves(program)
+    several_compressors(program)
     another_program(program)
     ideal_valves(program)
     ledger_and_notes(program)

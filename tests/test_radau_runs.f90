@@ -9,6 +9,7 @@ module test_radau_runs
   use ode_problem, only: difference_jacobian
   use scene_problem, only: scene_t, phase_contact
   use state_making, only: set_crank, set_pin
+  use valve_reeds, only: in_flight
   use scene_builder, only: build_scene
   use collecting_sink, only: trace_t, run_case, values_of
   implicit none
@@ -72,12 +73,15 @@ contains
     end do
   end subroutine jacobians_of_scenes
 
-  !> The same for gas with a mass: of an engine, open, compressed and burning, and of a compressor whose valves are shut or open.
+  !> The same for gas with a mass: of an engine, open, compressed and burning, and of a compressor whose valves are shut or open,
+  !> without a mass and with one, half open.
   subroutine jacobian_of_gas(check)
     class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: files(2) = [character(len=40) :: 'cases/gas/engine_walls.nml', 'cases/gas/compressor_valves.nml']
-    real(dp), parameter :: pressures(4, 2) = reshape([1.0e5_dp, 4.0e5_dp, 2.5e6_dp, 6.0e5_dp, &
-      0.7e5_dp, 2.0e5_dp, 5.3e5_dp, 7.0e5_dp], [4, 2])   ! [Pa]
+    character(len=*), parameter :: files(3) = [character(len=40) :: 'cases/gas/engine_walls.nml', &
+      'cases/gas/compressor_valves.nml', 'cases/gas/compressor_valves.nml']
+    character(len=*), parameter :: reeds(2) = [character(len=20) :: 'valve_1.mass=1e-3', 'valve_1.damping=0.5']
+    real(dp), parameter :: pressures(4, 3) = reshape([1.0e5_dp, 4.0e5_dp, 2.5e6_dp, 6.0e5_dp, &
+      0.7e5_dp, 2.0e5_dp, 5.3e5_dp, 7.0e5_dp, 0.7e5_dp, 2.0e5_dp, 5.3e5_dp, 7.0e5_dp], [4, 3])   ! [Pa]
     real(dp), parameter :: angles(4) = [0.5_dp, 4.0_dp, 6.2_dp, 7.0_dp]
     type(case_t) :: case
     type(error_t), allocatable :: error
@@ -85,11 +89,16 @@ contains
     real(dp), allocatable :: y(:), a_p(:, :), a_v(:, :), b_p(:, :), b_v(:, :), scale(:, :)
     integer :: i, k, m, trial
     do i = 1, size(files)
-      call read_case(trim(files(i)), [character(len=1) ::], case, error)
+      call read_case(trim(files(i)), reeds(:merge(2, 0, i == 3)), case, error)
       call build_scene(case, .false., scene, error)
       m = scene%n_positions
       k = m + 2
       y = scene%initial_state()
+      if (i == 3) then
+        scene%gas%charge%reeds%place = in_flight
+        y(scene%gas%charge%reeds%at%position) = [3e-4_dp, 6e-4_dp]
+        y(scene%gas%charge%reeds%at%rate) = [-0.3_dp, 0.2_dp]
+      end if
       allocate (a_p(k, m), a_v(k, k), b_p(k, m), b_v(k, k))
       do trial = 1, size(angles)
         call set_pin(scene, y, 0.55_dp*case%joints(piston_pin)%clearance*[cos(1.0_dp*trial), sin(1.0_dp*trial)], &

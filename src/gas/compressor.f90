@@ -84,7 +84,7 @@ contains
     cylinder = new_cylinder(self%bore, turning_forwards(linkage, sense), 1 + 1/self%dead_space)
     call charge%prepare(cylinder, chamber_t(bore=self%bore, stroke=linkage%stroke(), closing_pressure=self%suction_pressure, &
       closing_volume=cylinder%dead_volume + cylinder%displacement), self%crankcase_pressure)
-    charge%discharge_pressure = self%discharge_pressure
+    call charge%set_discharge(self%discharge_pressure)
     if (allocated(charge%valves)) deallocate (gas%valves)
   end subroutine fill
 

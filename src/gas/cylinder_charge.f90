@@ -15,6 +15,7 @@ module cylinder_charge
   use cylinder, only: cylinder_t
   use flow_valve, only: flow_valve_t, suction, discharge
   use wall_law, only: wall_law_t, chamber_t, hot_gas_t
+  use valve_reeds, only: reeds_t
   use nozzle_flow, only: orifice_flow
   implicit none
   private
@@ -47,6 +48,8 @@ module cylinder_charge
     real(dp) :: heat_flow                                    !! Q_w', to the walls [W]
     real(dp) :: leak_flow                                    !! m_l, out of the cylinder [kg/s]
     real(dp) :: valve_flow(2), valve_lift(2)                 !! m_s and m_d in their senses [kg/s]; lifts [m]
+    real(dp) :: valve_heat(2)                                !! these flows times their temperatures [kg K/s]
+    real(dp) :: valve_speed(2), valve_acceleration(2)        !! of valves with a mass [m/s], [m/s^2]
     real(dp) :: rates(n_charge_sums)                         !! of the integrals
   end type charge_motion_t
 
@@ -55,11 +58,13 @@ module cylinder_charge
     type(charge_case_t) :: given
     class(wall_law_t), allocatable :: walls     !! not allocated: no heat to the walls
     type(flow_valve_t), allocatable :: valves(:)   !! of a compressor: suction and discharge; not allocated: an engine
+    type(reeds_t), allocatable :: reeds         !! of valves with a mass
     logical :: is_state = .false.               !! p and m are states
     type(cylinder_t), private :: cylinder
     type(chamber_t) :: chamber
     real(dp), private :: crankcase_pressure = 0 !! [Pa]
     real(dp) :: discharge_pressure = 0          !! of a compressor [Pa]
+    real(dp), private :: returning_temperature = 0   !! of gas that flows back from the discharge chamber [K]
     real(dp) :: closed_mass = 0                 !! m when the cylinder closes [kg]
     real(dp) :: opening_temperature = 0         !! T when the mechanism's cylinder last opened; 0: it has not [K]
     type(slice_t) :: pressures, masses          !! of all cylinders in the state vector, the mechanism's first
@@ -67,9 +72,13 @@ module cylinder_charge
   contains
     procedure :: set_case
     procedure :: prepare
+    procedure :: set_discharge
     procedure :: claim
     procedure :: declare
     procedure :: set_start
+    procedure :: set_rates
+    procedure :: reed_events
+    procedure :: pass_reed
     procedure :: admits
     procedure, non_overridable :: move
     procedure :: move_adiabatic
@@ -114,6 +123,7 @@ contains
       if (valves(i)%port == 'suction') self%valves(suction) = valves(i)
       if (valves(i)%port == 'discharge') self%valves(discharge) = valves(i)
     end do
+    if (any(self%valves%mass > 0)) allocate (self%reeds)
   end subroutine set_case
 
   !> Prepare for a cylinder, in which the gas was closed in at a volume [m^3].
@@ -134,6 +144,14 @@ contains
     self%crankcase_pressure = crankcase_pressure
   end subroutine prepare
 
+  !> Set the pressure behind the discharge valve of a compressor [Pa].
+  subroutine set_discharge(self, pressure)
+    class(charge_t), intent(inout) :: self
+    real(dp), intent(in) :: pressure
+    self%discharge_pressure = pressure
+    self%returning_temperature = self%delivery_temperature(pressure, self%chamber%heat_capacity_ratio)
+  end subroutine set_discharge
+
   !> Claim pressures and masses of a number of cylinders, and the integrals. The balance takes part in the error control, since the
   !> heat to walls that conduct well is that of small differences, and so do the losses of valves, whose rates have kinks where the
   !> pressures are equal; the others have no influence on the steps.
@@ -145,6 +163,7 @@ contains
     real(dp) :: work   !! natural size [J]
     call layout%claim_states(cylinders, self%chamber%closing_pressure, self%pressures)
     call layout%claim_states(cylinders, self%closed_mass, self%masses)
+    if (allocated(self%reeds)) call self%reeds%claim(layout, self%valves, cylinders)
     work = self%chamber%closing_pressure*self%chamber%displacement
     call layout%claim_quadratures(of_balance, work, self%sums)
     if (allocated(self%valves)) then
@@ -166,6 +185,7 @@ contains
     character(len=*), intent(in) :: prefix
     call list%add(prefix//'gas_pressure', y(self%pressures%first + i - 1), 'Pa', 'pressure of the gas in the cylinder')
     call list%add(prefix//'gas_mass', y(self%masses%first + i - 1), 'kg', 'its mass')
+    if (allocated(self%reeds)) call self%reeds%declare(list, self%valves, i, y, prefix)
     if (i > 1) return
     list%of_totals = .true.
     call list%add('gas_sums', y(self%sums%first:self%sums%last), '', &
@@ -190,6 +210,60 @@ contains
     end associate
     if (i == 1) y(self%sums%first) = self%energy(angle, y)
   end subroutine set_start
+
+  !> Set the rates of the states of cylinder i.
+  pure subroutine set_rates(self, i, now, y, dydt)
+    class(charge_t), intent(in) :: self
+    integer, intent(in) :: i
+    type(charge_motion_t), intent(in) :: now
+    real(dp), intent(in) :: y(:)
+    real(dp), intent(inout) :: dydt(:)
+    integer :: k
+    dydt(self%pressures%first + i - 1) = now%pressure_rate
+    dydt(self%masses%first + i - 1) = now%mass_rate
+    if (.not. allocated(self%reeds)) return
+    do k = suction, discharge
+      associate (at => self%reeds%at(k))
+        if (at%n == 0) cycle
+        dydt(at%position + i - 1) = y(at%rate + i - 1)
+        dydt(at%rate + i - 1) = now%valve_acceleration(k)
+      end associate
+    end do
+  end subroutine set_rates
+
+  !> Event functions of the valves of cylinder i that have a mass, and their rates.
+  pure subroutine reed_events(self, i, now, y, g, g_rate)
+    class(charge_t), intent(in) :: self
+    integer, intent(in) :: i
+    type(charge_motion_t), intent(in) :: now
+    real(dp), intent(in) :: y(:)
+    real(dp), intent(out) :: g(2), g_rate(2)
+    real(dp) :: excess(2)
+    integer :: k
+    excess = opening_difference(self, now%pressure)
+    do k = suction, discharge
+      call self%reeds%events(self%valves(k), k, i, excess(k), merge(-1, 1, k == suction)*now%pressure_rate, y, g(k), g_rate(k))
+    end do
+  end subroutine reed_events
+
+  !> Pass the event of a valve of cylinder i that has a mass.
+  pure subroutine pass_reed(self, i, port, now, y)
+    class(charge_t), intent(inout) :: self
+    integer, intent(in) :: i, port
+    type(charge_motion_t), intent(in) :: now
+    real(dp), intent(inout) :: y(:)
+    real(dp) :: excess(2)
+    excess = opening_difference(self, now%pressure)
+    call self%reeds%pass(self%valves(port), port, i, excess(port), y)
+  end subroutine pass_reed
+
+  !> By how much the pressure before each valve is above that behind it, at a pressure in the cylinder [Pa].
+  pure function opening_difference(self, pressure) result(excess)
+    class(charge_t), intent(in) :: self
+    real(dp), intent(in) :: pressure
+    real(dp) :: excess(2)
+    excess = [self%chamber%closing_pressure - pressure, pressure - self%discharge_pressure]
+  end function opening_difference
 
   !> Mass of the fresh charge in a volume [kg].
   pure real(dp) function fresh_mass(self, volume)
@@ -244,9 +318,8 @@ contains
       enthalpy = leak_enthalpy
       now%mass_rate = -now%leak_flow
       if (allocated(self%valves)) then
-        call move_valves(self, rate, now)
-        enthalpy = enthalpy + heat_capacity*(now%valve_flow(discharge)*now%temperature - now%valve_flow(suction)* &
-          self%given%temperature)
+        call move_valves(self, i, rate, y, now)
+        enthalpy = enthalpy + heat_capacity*(now%valve_heat(discharge) - now%valve_heat(suction))
         now%mass_rate = now%mass_rate + now%valve_flow(suction) - now%valve_flow(discharge)
       end if
       now%pressure_rate = ((g - 1)*(burning - now%heat_flow - enthalpy) - g*now%pressure*rate)/volume
@@ -256,25 +329,40 @@ contains
     end associate
   end subroutine move
 
-  !> Flows through the valves, and the work that is lost there, at a rate of the volume [m^3/s].
-  pure subroutine move_valves(self, rate, now)
+  !> Flows through the valves of cylinder i, and the work that is lost there, at a rate of the volume [m^3/s].
+  pure subroutine move_valves(self, i, rate, y, now)
     class(charge_t), intent(in) :: self
-    real(dp), intent(in) :: rate
+    integer, intent(in) :: i
+    real(dp), intent(in) :: rate, y(:)
     type(charge_motion_t), intent(inout) :: now
-    real(dp) :: pressure(2, 2), temperature(2), excess(2), share   ! (before, behind; valve), before it, which opens it [Pa], [K]
-    integer :: i
+    real(dp) :: share, reed(2)
+    real(dp) :: pressure(2, 2), temperature(2, 2), excess(2)   ! (before, behind; valve), which opens it [Pa], [K]
+    integer :: k
     pressure(:, suction) = [self%chamber%closing_pressure, now%pressure]
     pressure(:, discharge) = [now%pressure, self%discharge_pressure]
-    temperature = [self%given%temperature, now%temperature]
-    excess = pressure(1, :) - pressure(2, :)
-    do i = suction, discharge
-      share = self%valves(i)%open_share(excess(i))
-      now%valve_lift(i) = self%valves(i)%lift*share
-      now%valve_flow(i) = orifice_flow(self%valves(i)%area*share, self%chamber%gas_constant, self%chamber%heat_capacity_ratio, &
-        pressure(:, i), temperature([i, i]))
+    temperature(:, suction) = [self%given%temperature, now%temperature]
+    temperature(:, discharge) = [now%temperature, self%returning_temperature]
+    excess = opening_difference(self, now%pressure)
+    do k = suction, discharge
+      associate (valve => self%valves(k))
+        if (valve%mass > 0) then   ! behind a bound, in a trial step, the flow goes on smoothly
+          reed = self%reeds%lift_and_speed(valve, k, i, y)
+          now%valve_lift(k) = reed(1)
+          now%valve_speed(k) = reed(2)
+          now%valve_acceleration(k) = self%reeds%acceleration(valve, k, i, excess(k), y)
+          now%valve_flow(k) = now%valve_lift(k)/valve%lift*orifice_flow(valve%area, self%chamber%gas_constant, &
+            self%chamber%heat_capacity_ratio, pressure(:, k), temperature(:, k))
+        else
+          share = valve%open_share(excess(k))
+          now%valve_lift(k) = valve%lift*share
+          now%valve_flow(k) = orifice_flow(valve%area*share, self%chamber%gas_constant, self%chamber%heat_capacity_ratio, &
+            pressure(:, k), temperature(:, k))
+        end if
+      end associate
+      now%valve_heat(k) = now%valve_flow(k)*temperature(merge(1, 2, excess(k) >= 0), k)
     end do
     now%rates(delivered) = now%valve_flow(discharge)
-    now%rates(delivered_heat) = now%valve_flow(discharge)*now%temperature
+    now%rates(delivered_heat) = now%valve_heat(discharge)
     now%rates(suction_loss) = max(excess(suction), 0.0_dp)*rate
     now%rates(discharge_loss) = -max(excess(discharge), 0.0_dp)*rate
     now%rates(work_on_gas) = -now%pressure*rate

@@ -36,6 +36,7 @@ module other_cylinders
     procedure, non_overridable :: find_forces
     procedure :: set_charges
     procedure :: set_rates
+    procedure, non_overridable :: find_charge
     procedure :: heat
     procedure :: n_events
     procedure :: events
@@ -108,21 +109,30 @@ contains
     real(dp), intent(in) :: angle(:), speed(:), y(:)
     real(dp), intent(inout) :: dydt(:)
     type(charge_motion_t) :: now
-    real(dp) :: burning
-    logical :: is_open
     integer :: i
     do i = 1, size(angle)
-      burning = 0
-      is_open = .false.
-      if (allocated(gas%cycle)) then
-        is_open = self%part(i) == part_open
-        burning = self%cycles(i)%heat_slope(gas%sense*gas%angle(angle(i)), self%part(i), self%cycle_start(i))*gas%sense*speed(i)
-      end if
-      call gas%charge%move(i + 1, gas%sense*gas%angle(angle(i)), gas%sense*speed(i), burning, is_open, y, now)
-      dydt(gas%charge%pressures%first + i) = now%pressure_rate
-      dydt(gas%charge%masses%first + i) = now%mass_rate
+      call self%find_charge(gas, i, angle(i), speed(i), y, now)
+      call gas%charge%set_rates(i + 1, now, y, dydt)
     end do
   end subroutine set_rates
+
+  !> Mass and temperature of the gas of the i-th of them, where these are states, at a crank angle [rad] and a speed [rad/s].
+  pure subroutine find_charge(self, gas, i, angle, speed, y, now)
+    class(other_cylinders_t), intent(in) :: self
+    type(working_gas_t), intent(in) :: gas
+    integer, intent(in) :: i
+    real(dp), intent(in) :: angle, speed, y(:)
+    type(charge_motion_t), intent(out) :: now
+    real(dp) :: burning
+    logical :: is_open
+    burning = 0
+    is_open = .false.
+    if (allocated(gas%cycle)) then
+      is_open = self%part(i) == part_open
+      burning = self%cycles(i)%heat_slope(gas%sense*gas%angle(angle), self%part(i), self%cycle_start(i))*gas%sense*speed
+    end if
+    call gas%charge%move(i + 1, gas%sense*gas%angle(angle), gas%sense*speed, burning, is_open, y, now)
+  end subroutine find_charge
 
   !> Forces of the gas on the pistons at crank angles from their axes [rad], towards the shaft [N]; unchanged where there is none.
   pure subroutine find_forces(self, gas, y, angle, force)

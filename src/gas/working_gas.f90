@@ -13,6 +13,7 @@ module working_gas
   use cylinder_charge, only: charge_t, charge_motion_t, n_charge_sums, of_balance, moved
   use gas_cycle, only: part_open
   use flow_valve, only: suction, discharge
+  use valve_reeds, only: ports
   use trace_row, only: least, largest, of_cycle
   implicit none
   private
@@ -204,6 +205,7 @@ contains
     type(charge_motion_t), intent(in) :: charge
     type(trace_row_t), intent(inout) :: row
     real(dp) :: volume
+    integer :: k
     if (.not. self%has_force) return
     call row%add('cylinder_pressure[Pa]', pressure, 'absolute pressure of the gas in the cylinder')
     if (self%has_states()) call row%keep('max_cylinder_pressure', largest, 'largest pressure of the gas in the cylinder', &
@@ -225,8 +227,15 @@ contains
     if (.not. allocated(self%charge%valves)) return
     call row%add_on_request('suction_flow[kg/s]', charge%valve_flow(suction), 'flow of gas through the suction valve')
     call row%add_on_request('discharge_flow[kg/s]', charge%valve_flow(discharge), 'flow of gas through the discharge valve')
-    call row%add_on_request('suction_valve_lift[m]', charge%valve_lift(suction), 'lift of the suction valve')
-    call row%add_on_request('discharge_valve_lift[m]', charge%valve_lift(discharge), 'lift of the discharge valve')
+    do k = suction, discharge
+      call row%add_on_request(trim(ports(k))//'_valve_lift[m]', min(max(charge%valve_lift(k), 0.0_dp), &
+        self%charge%valves(k)%lift), 'lift of the '//trim(ports(k))//' valve')
+      if (.not. self%charge%valves(k)%mass > 0) cycle
+      call row%keep('max_'//trim(ports(k))//'_valve_lift', largest, 'largest lift of the '//trim(ports(k))//' valve', &
+        rate=charge%valve_speed(k), told=of_cycle)
+      call row%keep('min_'//trim(ports(k))//'_valve_lift', least, 'smallest lift of the '//trim(ports(k))//' valve', &
+        rate=charge%valve_speed(k), told=of_cycle)
+    end do
   end subroutine add_columns
 
   !> Derivative of the force with respect to the crank angle, of gas without states [N/rad].

@@ -287,18 +287,24 @@ contains
     end if
   end subroutine note_gas
 
-  !> Mean speed of the gas in the valves of a compressor.
+  !> Mean speed of the gas in the valves of a compressor, and valves that are slow beside its turns.
   subroutine note_valves(c, to)
     type(case_t), intent(in) :: c
     type(remarks_t), intent(inout) :: to
     real(dp), parameter :: slowest = 5, fastest = 120   ! [m/s]
+    real(dp), parameter :: least_tuning = 3   ! of a reed, its natural frequency over that of the turns
     real(dp) :: flow   ! of volume behind the piston [m^3/s]
+    real(dp) :: tuning
     integer :: i
     if (.not. allocated(c%valves)) return
     flow = pi/4*bore_of(c)**2*stroke_of(c)*abs(c%initial%crank_speed)/pi
     do i = 1, size(c%valves)
       if (flow < slowest*c%valves(i)%area .or. flow > fastest*c%valves(i)%area) call to%remark('valve_'//integer_text(i), 'area', &
         'makes a mean speed of the gas of '//short_text(flow/c%valves(i)%area, 3)//' m/s, usually 5 to 120', '')
+      if (.not. (c%valves(i)%mass > 0 .and. c%valves(i)%stiffness > 0 .and. abs(c%initial%crank_speed) > 0)) cycle
+      tuning = sqrt(c%valves(i)%stiffness/c%valves(i)%mass)/abs(c%initial%crank_speed)
+      if (tuning < least_tuning) call to%remark('valve_'//integer_text(i), 'mass', 'makes a natural frequency of only '// &
+        short_text(tuning, 3)//' times the turns of the crank, usually 4 to 20: more stiffness', '')
     end do
   end subroutine note_valves
 

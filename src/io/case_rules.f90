@@ -323,8 +323,14 @@ contains
     end if
     do i = 1, size(c%valves)
       associate (it => c%valves(i), group => 'valve_'//integer_text(i))
+        if (it%mass > 0) then
+          call values%demand(it%force_area > 0, group, 'force_area', 'with mass')
+          call values%forbid(.not. it%full_force() > 0, group, 'mass', 'needs stiffness or preload, which shut the valve')
+          cycle
+        end if
         call values%demand(it%force_area > 0 .or. .not. it%stiffness > 0, group, 'force_area', 'with stiffness')
         call values%forbid(it%preload > 0 .and. .not. it%stiffness > 0, group, 'preload', 'needs stiffness')
+        call values%forbid(it%damping > 0, group, 'damping', 'needs mass: without it the valve follows the pressures at once')
       end associate
     end do
   end subroutine check_compressor

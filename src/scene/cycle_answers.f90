@@ -23,6 +23,7 @@ module cycle_answers
   use cylinder_charge, only: of_balance, to_walls, leaked, leaked_enthalpy, moved, delivered, delivered_heat, suction_loss, &
     discharge_loss, work_on_gas
   use flow_valve, only: flow_valve_t, suction, discharge
+  use valve_reeds, only: ports
   use film_heat, only: temperature_sum, heat_to_oil, heat_to_housing
   implicit none
   private
@@ -115,6 +116,9 @@ module cycle_answers
     quantity_t('cycle_discharge_loss', 'W', 'power lost in the discharge valve: by pressures above that of discharge'), &
     quantity_t('cycle_max_suction_valve_lift', 'm', 'largest lift of the suction valve in the cycle'), &
     quantity_t('cycle_max_discharge_valve_lift', 'm', 'largest lift of the discharge valve in the cycle'), &
+    quantity_t('cycle_max_suction_valve_speed', 'm/s', &
+      'largest speed at which the suction valve meets its seat or its stop in the cycle, with `mass`'), &
+    quantity_t('cycle_max_discharge_valve_speed', 'm/s', 'the same of the discharge valve'), &
     quantity_t('cycle_open_valve', '', &
       'which valve is open through the whole cycle, `suction` or `discharge`; not told if both of them shut'), &
     quantity_t('cycle_leak_flow', 'kg/s', 'mean flow past the rings of a compressor'), &
@@ -381,34 +385,34 @@ contains
         call add('cycle_suction_loss', cycle%gas(suction_loss)/cycle%duration)
         call add('cycle_discharge_loss', cycle%gas(discharge_loss)/cycle%duration)
         if (scene%gas%has_force) then
-          call add_lifts(charge%valves, chamber%closing_pressure - [kept('', 'min_cylinder_pressure'), &
-            kept('', 'max_cylinder_pressure')], [kept('', 'max_cylinder_pressure'), kept('', 'min_cylinder_pressure')] - &
-            charge%discharge_pressure)
+          call add_lift(suction, charge%valves(suction), chamber%closing_pressure - [kept('', 'min_cylinder_pressure'), &
+            kept('', 'max_cylinder_pressure')])
+          call add_lift(discharge, charge%valves(discharge), [kept('', 'max_cylinder_pressure'), &
+            kept('', 'min_cylinder_pressure')] - charge%discharge_pressure)
         end if
         if (charge%loses_gas()) call add('cycle_leak_flow', cycle%gas(leaked)/cycle%duration)
         if (allocated(charge%walls)) call add('cycle_wall_heat_flow', cycle%gas(to_walls)/cycle%duration)
       end associate
     end subroutine add_compressor
 
-    !> The largest lifts of the valves of a compressor, and which of them does not shut, from the largest and the least difference
-    !> of the pressures on each [Pa].
-    subroutine add_lifts(valves, on_suction, on_discharge)
-      type(flow_valve_t), intent(in) :: valves(2)
-      real(dp), intent(in) :: on_suction(2), on_discharge(2)
-      call add('cycle_max_suction_valve_lift', valves(suction)%lift*valves(suction)%open_share(on_suction(1)))
-      call add('cycle_max_discharge_valve_lift', valves(discharge)%lift*valves(discharge)%open_share(on_discharge(1)))
-      call add_open_valve('suction', valves(suction)%open_share(on_suction(2)))
-      call add_open_valve('discharge', valves(discharge)%open_share(on_discharge(2)))
-    end subroutine add_lifts
-
-    !> Tell of a valve whose least share of its lift is not 0.
-    subroutine add_open_valve(name, least_share)
-      character(len=*), intent(in) :: name
-      real(dp), intent(in) :: least_share
-      if (.not. least_share > 0) return
+    !> The largest lift of a valve, the speed of its impacts if it has a mass, and whether it does not shut; without mass from the
+    !> largest and the least difference of the pressures on it [Pa].
+    subroutine add_lift(port, valve, difference)
+      integer, intent(in) :: port
+      type(flow_valve_t), intent(in) :: valve
+      real(dp), intent(in) :: difference(2)
+      real(dp) :: least_lift
+      if (valve%mass > 0) then   ! the largest lift is kept of its column
+        least_lift = kept('', 'min_'//trim(ports(port))//'_valve_lift')
+        call add('cycle_max_'//trim(ports(port))//'_valve_speed', cycle%valve_speed(port))
+      else
+        least_lift = valve%lift*valve%open_share(difference(2))
+        call add('cycle_max_'//trim(ports(port))//'_valve_lift', valve%lift*valve%open_share(difference(1)))
+      end if
+      if (.not. least_lift > 0) return
       call add('cycle_open_valve', 0.0_dp)
-      answers(size(answers))%text = name
-    end subroutine add_open_valve
+      answers(size(answers))%text = ports(port)
+    end subroutine add_lift
 
     !> The hardest impact of the skirt in the cycle.
     subroutine add_slap()

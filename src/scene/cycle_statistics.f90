@@ -39,6 +39,7 @@ module cycle_statistics
     real(dp) :: max_pressure_angle = 0                !! crank angle then [rad]
     real(dp) :: pin_turn = 0                          !! of a floating pin [rad]
     real(dp) :: gas(n_charge_sums) = 0                !! changes of the integrals of the gas, see `totals` of `charge_t`
+    real(dp) :: valve_speed(2) = 0                    !! largest at which a reed of a valve met its seat or stop [m/s]
     real(dp) :: opening_temperature = 0               !! of the gas when the cylinder last opened; 0: not yet [K]
   end type cycle_t
 
@@ -70,6 +71,7 @@ contains
       total%max_pressure = max(total%max_pressure, one%max_pressure)
       total%pin_turn = total%pin_turn + one%pin_turn
       total%gas = total%gas + one%gas
+      total%valve_speed = max(total%valve_speed, one%valve_speed)
       total%opening_temperature = one%opening_temperature
     end associate
     associate (total => self%total%pin, one => cycle%pin)

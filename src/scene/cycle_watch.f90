@@ -58,6 +58,7 @@ module cycle_watch
     procedure :: record_strobes
     procedure :: record_pin
     procedure :: record_turn
+    procedure :: record_valve
     procedure :: search_machine
     procedure :: has_cycle
     procedure :: last_cycle
@@ -143,6 +144,18 @@ contains
     real(dp), intent(in) :: angle
     self%present%pin(pin)%turning = self%present%pin(pin)%turning + angle
   end subroutine record_turn
+
+  !> Account for an event of the valves of a port that have a mass, before it: the reed may meet its seat or its stop.
+  pure subroutine record_valve(self, scene, port, y)
+    class(cycle_watch_t), intent(inout) :: self
+    type(scene_t), intent(in) :: scene
+    integer, intent(in) :: port
+    real(dp), intent(in) :: y(:)
+    associate (charge => scene%gas%charge)
+      self%present%valve_speed(port) = max(self%present%valve_speed(port), &
+        charge%reeds%impact_speed(charge%valves(port), port, y))
+    end associate
+  end subroutine record_valve
 
   !> Search the last step, up to t, where the scene is evaluated, for the largest pressure of the gas and the extreme angles of a
   !> floating pin in the present revolution.

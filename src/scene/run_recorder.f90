@@ -7,7 +7,8 @@ module run_recorder
   use run_state, only: run_state_t
   use ode_method, only: ode_method_t
   use ode_solver, only: observer_t
-  use scene_problem, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide, of_wear, phase_contact
+  use scene_problem, only: scene_t, evaluation_t, event_none, event_contact_begins, of_guide, of_wear, of_reeds, &
+    phase_contact
   use inside_step, only: evaluate_inside
   use trace_columns, only: column_list_t, row_values
   use row_times, only: row_times_t
@@ -341,6 +342,8 @@ contains
       call self%extremes%change_phases()
       call self%ledger%change_phases()
       if (allocated(self%asked)) call self%asked%change_phases()
+      if (problem%event_of(index)%joint == of_reeds .and. allocated(self%cycles)) &
+        call self%cycles%record_valve(problem, problem%event_of(index)%event, y)
       if (problem%reported_event(index) == event_none) return
       call evaluate_scene(self, problem, t, y, now, in_domain)
       associate (owner => problem%event_of(index))

@@ -12,6 +12,7 @@ submodule (scene_problem) scene_events
     find_lost_corner_forces, begin_corner_contact, contact_has_kink, corner_kink_time, inward_acceleration
   use piston_guide, only: corner_t, n_corners
   use crank_turns, only: n_turn_events
+  use valve_reeds, only: n_reed_events
   implicit none
 
   real(dp), parameter :: rounding = 4*epsilon(1.0_dp)   !! relative distance from the wall that is treated as none
@@ -36,6 +37,7 @@ contains
     if (allocated(scene%wear_cycle)) call number(of_wear, 1)
     if (allocated(scene%guide)) call number(of_guide, n_guide_events(scene%guide))
     if (allocated(scene%given_load)) call number(of_load, scene%given_load%n_events())
+    if (has_reeds(scene)) call number(of_reeds, n_reed_events)
 
   contains
 
@@ -83,8 +85,80 @@ contains
     associate (at => self%events_of(of_load))
       if (at%last >= at%first) call self%given_load%event(angle, speed, g(at%first), g_rate(at%first))
     end associate
+    associate (at => self%events_of(of_reeds))
+      if (at%last >= at%first) call find_reed_events(self, t, y, g(at%first:at%last), g_rate(at%first:at%last))
+    end associate
     if (needs_forces(self)) call find_force_events(self, t, y, g, g_rate)
   end procedure all_events
+
+  !> Whether a valve of a compressor has a mass.
+  pure logical function has_reeds(scene)
+    class(scene_t), intent(in) :: scene
+    has_reeds = .false.
+    if (scene%has_charge) has_reeds = allocated(scene%gas%charge%reeds)
+  end function has_reeds
+
+  !> Event functions of the valves that have a mass: of those of a port in all cylinders the largest.
+  pure subroutine find_reed_events(scene, t, y, g, g_rate)
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    real(dp), intent(out) :: g(n_reed_events), g_rate(n_reed_events)
+    type(charge_motion_t) :: now(most_cylinders + 1)
+    real(dp) :: own(n_reed_events), own_rate(n_reed_events)
+    integer :: i, k, n
+    g = -1
+    g_rate = 0
+    if (.not. scene%gas%charge%admits(y)) return
+    call find_charges(scene, t, y, n, now)
+    do i = 1, n
+      call scene%gas%charge%reed_events(i, now(i), y, own, own_rate)
+      do k = 1, n_reed_events
+        if (i > 1 .and. own(k) <= g(k)) cycle
+        g(k) = own(k)
+        g_rate(k) = own_rate(k)
+      end do
+    end do
+  end subroutine find_reed_events
+
+  !> The gas of all cylinders, that of the mechanism first, where its mass is a state.
+  pure subroutine find_charges(scene, t, y, n, now)
+    class(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: t, y(:)
+    integer, intent(out) :: n   !! number of cylinders
+    type(charge_motion_t), intent(out) :: now(most_cylinders + 1)
+    real(dp) :: angles(most_cylinders), speeds(most_cylinders)
+    integer :: i
+    n = 1
+    call scene%gas%find_charge(scene%crank_angle(t, y), scene%crank_speed(t, y), y, now(1))
+    if (.not. allocated(scene%other_gas)) return
+    n = 1 + size(scene%chain%train%cylinders)
+    call other_cranks(scene, t, y, angles, speeds)
+    do i = 1, n - 1
+      call scene%other_gas%find_charge(scene%gas, i, angles(i), speeds(i), y, now(i + 1))
+    end do
+  end subroutine find_charges
+
+  !> Pass an event of the valves of a port that have a mass, in all cylinders that have it; with `is_event` at least one of them
+  !> has.
+  subroutine pass_reeds(scene, port, is_event, t, y)
+    class(scene_t), intent(inout) :: scene
+    integer, intent(in) :: port
+    logical, intent(in) :: is_event
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: y(:)
+    type(charge_motion_t) :: now(most_cylinders + 1)
+    real(dp) :: g(n_reed_events, most_cylinders + 1), g_rate(n_reed_events), largest
+    integer :: i, n
+    call find_charges(scene, t, y, n, now)
+    do i = 1, n
+      call scene%gas%charge%reed_events(i, now(i), y, g(:, i), g_rate)
+    end do
+    largest = 0
+    if (is_event) largest = min(largest, maxval(g(port, :n)))
+    do i = 1, n
+      if (g(port, i) >= largest) call scene%gas%charge%pass_reed(i, port, now(i), y)
+    end do
+  end subroutine pass_reeds
 
   !> Whether some event functions need the forces at present.
   pure logical function needs_forces(scene)
@@ -130,6 +204,8 @@ contains
         call self%gas%pass(event, self%crank_angle(t, y), self%crank_speed(t, y), y)
       else if (i == of_other_gas) then
         call pass_others(self, event, t, y, .true.)
+      else if (i == of_reeds) then
+        call pass_reeds(self, event, .true., t, y)
       else if (i == of_turns) then
         call self%turns%pass(event, self%crank_angle(t, y), action)
       else if (i == of_load) then
@@ -312,7 +388,7 @@ contains
   end procedure prepare_start
 
   module procedure complete_state
-    real(dp) :: contact(2)
+    real(dp) :: contact(2), state(self%n)
     logical :: begins(self%n_joints)
     integer :: i
     if (allocated(self%guide)) then
@@ -320,6 +396,10 @@ contains
       call find_corner_speeds(self, t, y, self%guide%touches .and. .not. self%guide%impact_speed > 0)
     end if
     if (allocated(self%given_load)) call self%given_load%start(self%crank_angle(t, y), self%start_speed)
+    state = y   ! of which nothing changes
+    do i = 1, merge(n_reed_events, 0, has_reeds(self))   ! valves with another force than in the run from which the state is
+      call pass_reeds(self, i, .false., t, state)
+    end do
     begins = .false.
     do i = 1, self%n_joints   ! in a bearing of another shape a pin may be in contact that was not
       if (.not. may_touch(self%joints(i))) cycle

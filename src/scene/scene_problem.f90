@@ -28,7 +28,7 @@ module scene_problem
   public :: scene_t, evaluation_t, work_part_t
   public :: by_gas, by_drive, by_damping, by_guide, by_elastic
   public :: phase_free, phase_film, phase_contact
-  public :: event_none, event_contact_begins, event_contact_ends, of_guide, of_wear
+  public :: event_none, event_contact_begins, event_contact_ends, of_guide, of_wear, of_reeds
 
   !> Events reported in the trace.
   integer, parameter :: event_none = 0, event_contact_begins = 1, event_contact_ends = 2
@@ -48,12 +48,13 @@ module scene_problem
   end type evaluation_t
 
   !> Owners of events other than joints.
-  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2, of_wear = -3, of_other_gas = -4, of_load = -5
-  integer, parameter :: first_owner = of_load
+  integer, parameter :: of_gas = 0, of_turns = -1, of_guide = -2, of_wear = -3, of_other_gas = -4, of_load = -5, &
+    of_reeds = -6
+  integer, parameter :: first_owner = of_reeds
 
   !> The owner of an event function of the integrator.
   type :: event_owner_t
-    integer :: joint = 0            !! or of_gas, of_turns, of_guide, of_wear, of_other_gas, of_load
+    integer :: joint = 0            !! or of_gas, of_turns, of_guide, of_wear, of_other_gas, of_load, of_reeds
     integer :: event = 0            !! number of the event within its owner
   end type event_owner_t
 
@@ -379,8 +380,7 @@ contains
     real(dp) :: speed(most_cylinders)
     integer :: i, n
     associate (charge => self%gas%charge)
-      dydt(charge%pressures%first) = now%charge%pressure_rate
-      dydt(charge%masses%first) = now%charge%mass_rate
+      call charge%set_rates(1, now%charge, y, dydt)
       dydt(charge%sums%first:charge%sums%last) = now%charge%rates(:charge%sums%last - charge%sums%first + 1)
     end associate
     if (.not. allocated(self%other_gas)) return

@@ -258,8 +258,8 @@ contains
     end subroutine spread_columns
   end subroutine floating_jacobian
 
-  !> Add the derivatives of the rates of pressure and mass of the gas, by differences of the gas alone, and those of the
-  !> acceleration of the pin by the pressure.
+  !> Add the derivatives of the rates of pressure and mass of the gas and of the accelerations of valves that have a mass, by
+  !> differences of the gas alone, and those of the acceleration of the pin by the pressure.
   subroutine add_gas_slopes(scene, now, piston_row, y, a_p, a_v)
     class(scene_t), intent(in) :: scene
     type(evaluation_t), intent(in) :: now
@@ -267,36 +267,52 @@ contains
     real(dp), intent(in) :: y(:)
     real(dp), intent(inout) :: a_p(:, :), a_v(:, :)
     real(dp), parameter :: small = 1e-7_dp
-    type(charge_motion_t) :: moved
-    real(dp) :: state(size(y)), step
-    integer :: rows(2), i, m
+    real(dp) :: step
+    integer, allocatable :: rows(:), lifts(:)
+    integer :: i, m
     m = size(a_p, 2)
     associate (gas => scene%gas, q => now%motion%crank_angle, speed => now%motion%crank_speed)
       rows = [gas%charge%pressures%first, gas%charge%masses%first] - m
-      do i = 1, 2
-        step = small*y(m + rows(i))
-        state = y
-        state(m + rows(i)) = y(m + rows(i)) + step
-        call gas%find_charge(q, speed, state, moved)
-        a_v(rows, rows(i)) = change_of_rates(moved)/step
-        if (i == 1) a_v(piston_row, rows(1)) = scene%joints(1)%site%sense*scene%chain%bodies%per_piston_mass* &
-          (gas%force(moved%pressure) - gas%force(now%charge%pressure))/step
+      allocate (lifts(0))
+      if (allocated(gas%charge%reeds)) then
+        associate (at => gas%charge%reeds%at)
+          rows = [rows, pack(at%rate, at%n > 0) - m]
+          lifts = pack(at%position, at%n > 0)
+        end associate
+      end if
+      do i = 1, size(rows)
+        step = small
+        if (i <= 2) step = small*y(m + rows(i))   ! of a speed any step will do, the accelerations are linear in it
+        a_v(rows, rows(i)) = change_of_rates(0.0_dp, 0.0_dp, m + rows(i), step)/step
+      end do
+      step = small*y(gas%charge%pressures%first)
+      a_v(piston_row, rows(1)) = scene%joints(1)%site%sense*scene%chain%bodies%per_piston_mass* &
+        (gas%force(now%charge%pressure + step) - gas%force(now%charge%pressure))/step
+      do i = 1, size(lifts)   ! in which the flows are linear
+        step = small*gas%charge%valves(findloc(gas%charge%reeds%at%position, lifts(i), 1))%lift
+        a_p(rows, lifts(i)) = change_of_rates(0.0_dp, 0.0_dp, lifts(i), step)/step
       end do
       if (.not. scene%chain%drive%free_crank) return
-      call gas%find_charge(q + small, speed, y, moved)
-      a_p(rows, scene%crank%position) = change_of_rates(moved)/small
+      a_p(rows, scene%crank%position) = change_of_rates(small, 0.0_dp, 0, 0.0_dp)/small
       step = small*max(abs(speed), 1.0_dp)
-      call gas%find_charge(q, speed + step, y, moved)
-      a_v(rows, scene%crank%rate - m) = change_of_rates(moved)/step
+      a_v(rows, scene%crank%rate - m) = change_of_rates(0.0_dp, step, 0, 0.0_dp)/step
     end associate
 
   contains
 
-    !> By how much the rates of pressure and mass differ from the present ones.
-    pure function change_of_rates(moved) result(rates)
-      type(charge_motion_t), intent(in) :: moved
-      real(dp) :: rates(2)
-      rates = [moved%pressure_rate - now%charge%pressure_rate, moved%mass_rate - now%charge%mass_rate]
+    !> By how much these rates differ from the present ones at another crank angle [rad] and speed [rad/s], or with another state i.
+    function change_of_rates(by_angle, by_speed, i, by_state) result(change)
+      real(dp), intent(in) :: by_angle, by_speed, by_state
+      integer, intent(in) :: i   !! 0: none
+      real(dp) :: change(size(rows))
+      real(dp) :: state(size(y)), before(size(y)), after(size(y))
+      type(charge_motion_t) :: moved
+      state = y
+      if (i > 0) state(i) = y(i) + by_state
+      call scene%gas%find_charge(now%motion%crank_angle + by_angle, now%motion%crank_speed + by_speed, state, moved)
+      call scene%gas%charge%set_rates(1, now%charge, y, before)
+      call scene%gas%charge%set_rates(1, moved, state, after)
+      change = after(m + rows) - before(m + rows)
     end function change_of_rates
   end subroutine add_gas_slopes
 
