@@ -6,7 +6,7 @@ module test_face_film
   use checks, only: checks_t
   use data_tables, only: load_table
   use random_numbers, only: random_numbers_t
-  use face_film, only: face_film_t, face_motion_t, face_loads_t, no_loads
+  use face_film, only: face_film_t, face_motion_t, face_loads_t, face_springs_t, faces_t, no_loads
   implicit none
   private
   public :: run_test_face_film
@@ -20,6 +20,8 @@ contains
     call a_plane_slides(check)
     call losses_are_positive(check)
     call slopes_are_those_of_loads(check)
+    call springs_balance(check)
+    call slopes_of_springs(check)
   end subroutine run_test_face_film
 
   !> One of the skirts of data/film/skirt_states.csv.
@@ -243,4 +245,194 @@ contains
       moved(k) = at(k) + by
     end function moved
   end subroutine slopes_are_those_of_loads
+
+  !> A random state of an elastic skirt with smooth walls far enough from each other, which has the springs of its faces.
+  subroutine draw(random, film, motion, springs, is_smooth)
+    type(random_numbers_t), intent(inout) :: random
+    type(face_film_t), intent(in) :: film
+    type(face_motion_t), intent(out) :: motion
+    type(face_springs_t), intent(out) :: springs(2)
+    logical, intent(out) :: is_smooth
+    real(dp) :: u(10)
+    integer :: k
+    do k = 1, size(u)
+      call random%uniform(u(k))
+    end do
+    u(:5) = (2*u(:5) - 1)*[20e-6_dp, 3e-4_dp, 0.1_dp, 5.0_dp, 15.0_dp]
+    motion = face_motion_t(u(1), u(2), u(3), u(4), u(5))
+    springs = face_springs_t(10**(6 + 4*u(6)), [0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp])
+    springs(1)%deflection = 2e-5_dp*u(7:8)
+    springs(2)%deflection = 2e-5_dp*u(9:10)
+    is_smooth = film%least_elastic_gap(motion%offset, motion%tilt, springs) > 9*film%asperities%roughness
+  end subroutine draw
+
+  !> Loads of both elastic faces, and what they and their springs take from the piston [W].
+  subroutine load_faces(film, motion, springs, loads, taken)
+    type(face_film_t), intent(in) :: film
+    type(face_motion_t), intent(in) :: motion
+    type(face_springs_t), intent(inout) :: springs(2)
+    type(face_loads_t), intent(out) :: loads
+    real(dp), intent(out) :: taken
+    integer :: k
+    loads = no_loads
+    taken = 0
+    do k = 1, 2
+      call film%find_loads(3 - 2*k, motion, loads, springs=springs(k))
+      taken = taken - springs(k)%stiffness*dot_product(springs(k)%deflection, springs(k)%rate)
+    end do
+    taken = taken + power(loads, motion)
+  end subroutine load_faces
+
+  !> In random states what elastic faces take beyond the energy of their springs is what pressure flow, shear and the drag of the
+  !> springs dissipate, summed over the grid from gaps that are computed here, or more where suction is cut off; no spring is drawn
+  !> to the wall; the mirror image of a state has the mirror image of its loads.
+  subroutine springs_balance(check)
+    class(checks_t), intent(inout) :: check
+    type(face_film_t) :: film
+    type(face_loads_t) :: loads, mirrored
+    type(face_motion_t) :: motion, mirror
+    type(face_springs_t) :: springs(2), turned(2)
+    type(faces_t) :: faces
+    type(random_numbers_t) :: random
+    real(dp) :: taken, other, lost, size, unlike, unbalanced, least
+    integer :: i, n
+    logical :: is_smooth
+    unlike = 0
+    unbalanced = 0
+    least = 0
+    n = 0
+    call random%begin(11)
+    do i = 1, 3000
+      call make(1 + mod(i, 4), mod(i, 3) == 0, film)
+      call draw(random, film, motion, springs, is_smooth)
+      if (.not. is_smooth) cycle
+      n = n + 1
+      call load_faces(film, motion, springs, loads, taken)
+      call film%field(motion, faces, springs)
+      lost = dissipation(film, motion, springs, faces)
+      if (film%cuts_suction) lost = max(lost, taken)   ! at the edges of what is cut off more is lost than these pressures tell
+      size = lost + abs(loads%force*motion%offset_rate) + abs(loads%moment*motion%tilt_rate) + springs(1)%stiffness* &
+        sum(abs(springs(1)%deflection*springs(1)%rate) + abs(springs(2)%deflection*springs(2)%rate))
+      unbalanced = max(unbalanced, abs(taken - lost)/size)
+      least = min(least, minval([springs(1)%deflection + 1e-5_dp*springs(1)%rate, &
+        springs(2)%deflection + 1e-5_dp*springs(2)%rate]))
+      mirror = face_motion_t(-motion%offset, -motion%tilt, -motion%offset_rate, -motion%tilt_rate, motion%velocity)
+      turned = springs([2, 1])
+      call load_faces(film, mirror, turned, mirrored, other)
+      unlike = max(unlike, abs(loads%force + mirrored%force)/(abs(loads%force) + 1), abs(other - taken)/(abs(taken) + 1), &
+        maxval(abs(turned(1)%rate - springs(2)%rate))/(maxval(abs(springs(2)%rate)) + 1e-6_dp))
+    end do
+    call check%that(n > 500, 'elastic skirt: states')
+    call check%close_to(unbalanced, 0.0_dp, 5e-12_dp, 'elastic skirt: power against dissipation on the grid')
+    call check%close_to(unlike, 0.0_dp, 1e-10_dp, 'elastic skirt: mirror image')
+    call check%that(least >= -1e-18_dp, 'elastic skirt: no spring is drawn to the wall')
+  end subroutine springs_balance
+
+  !> What shear, pressure flow and drag of the springs dissipate between smooth walls [W].
+  real(dp) function dissipation(film, motion, springs, faces) result(lost)
+    type(face_film_t), intent(in) :: film
+    type(face_motion_t), intent(in) :: motion
+    type(face_springs_t), intent(in) :: springs(2)
+    type(faces_t), intent(in) :: faces
+    real(dp) :: wide, step, speed, width, beyond
+    integer :: i, j, k, n, m
+    n = size(faces%angle)
+    m = size(faces%height)
+    wide = film%half_angle/n
+    step = film%radius*wide
+    lost = 0
+    do k = 1, 2
+      speed = motion%velocity - (3 - 2*k)*film%radius*sin(film%half_angle)/film%half_angle*motion%tilt_rate
+      lost = lost + 1e-5_dp*springs(k)%stiffness*sum(springs(k)%rate**2)
+      associate (z => faces%height, p => faces%pressure(:, :, k))
+        do i = 1, n
+          do j = 1, m
+            width = 0.5_dp*(z(min(j + 1, m)) - z(max(j - 1, 1)))
+            lost = lost + 2*film%viscosity*speed**2/gap(faces%angle(i), z(j))*step*width
+            if (j == 1) cycle
+            lost = lost + 2*gap(faces%angle(i), 0.5_dp*(z(j - 1) + z(j)))**3/(12*film%viscosity)*step/(z(j) - z(j - 1))* &
+              (p(i, j) - p(i, j - 1))**2
+            if (j == m) cycle
+            beyond = 0
+            if (i < n) beyond = p(i + 1, j)
+            lost = lost + 2*merge(1, 2, i < n)*gap(faces%angle(i) + 0.5_dp*wide, z(j))**3/(12*film%viscosity)*width/step* &
+              (p(i, j) - beyond)**2
+          end do
+        end do
+      end associate
+    end do
+
+  contains
+
+    real(dp) function gap(angle, height)
+      real(dp), intent(in) :: angle, height
+      real(dp) :: share
+      associate (z => film%height)
+        share = (height - z(2))/(z(1) - z(2))
+        gap = film%clearance + film%barrel*(2*(height - film%widest)/(z(1) - z(2)))**2 + film%ovality*sin(angle)**2 + cos(angle)* &
+          (dot_product(springs(k)%deflection, [share, 1 - share]) - (3 - 2*k)*(motion%offset + height*motion%tilt))
+      end associate
+    end function gap
+  end function dissipation
+
+  !> Slopes of the loads of elastic faces and of the rates of their springs, by the motion of the piston and by deflections, against
+  !> differences on both sides, as for rigid faces.
+  subroutine slopes_of_springs(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: step(7) = [1e-12_dp, 1e-10_dp, 1e-7_dp, 1e-5_dp, 1e-5_dp, 1e-12_dp, 1e-12_dp]
+    type(face_film_t) :: film
+    type(face_motion_t) :: motion
+    type(face_springs_t) :: springs(2)
+    type(random_numbers_t) :: random
+    real(dp) :: own(3, 5), of_loads(3, 7), of_rates(2, 7), at(7), here(5), change(5, 2), slopes(5), size_of(5, 7), worst(5, 7)
+    integer :: i, k, side
+    logical :: is_smooth
+    size_of = 0
+    worst = 0
+    call random%begin(13)
+    do i = 1, 400
+      call make(1 + mod(i, 4), mod(i, 3) == 0, film)
+      call draw(random, film, motion, springs, is_smooth)
+      if (film%least_elastic_gap(motion%offset, motion%tilt, springs) < 0) cycle
+      springs%stiffness = 5e7_dp
+      side = merge(1, -1, mod(i, 2) == 0)
+      at = [motion%offset, motion%tilt, motion%offset_rate, motion%tilt_rate, motion%velocity, springs(1)%deflection]
+      own = 0
+      here = found(at, own)
+      call film%panel_slopes(side, springs(1)%stiffness, own, of_loads, of_rates)
+      do k = 1, size(step)
+        slopes = [of_loads(:, k), of_rates(:, k)]
+        size_of(:, k) = max(size_of(:, k), abs(slopes))
+        change(:, 1) = (found(moved(k, step(k)), own) - here)/step(k) - slopes
+        change(:, 2) = (here - found(moved(k, -step(k)), own))/step(k) - slopes
+        worst(:, k) = max(worst(:, k), minval(abs(change), dim=2))
+      end do
+    end do
+    do k = 1, size(step)
+      call check%close_to(maxval(worst(:, k)/size_of(:, k)), 0.0_dp, 1e-4_dp, 'elastic skirt: slopes')
+    end do
+
+  contains
+
+    function moved(k, by)
+      integer, intent(in) :: k
+      real(dp), intent(in) :: by
+      real(dp) :: moved(7)
+      moved = at
+      moved(k) = at(k) + by
+    end function moved
+
+    !> Loads of the face and rates of its springs.
+    function found(at, own)
+      real(dp), intent(in) :: at(7)
+      real(dp), intent(inout) :: own(3, 5)
+      real(dp) :: found(5)
+      type(face_loads_t) :: loads
+      type(face_springs_t) :: these
+      loads = no_loads
+      these = face_springs_t(springs(1)%stiffness, at(6:), [0.0_dp, 0.0_dp])
+      call film%find_loads(side, face_motion_t(at(1), at(2), at(3), at(4), at(5)), loads, own, these)
+      found = [loads%force, loads%moment, loads%friction, these%rate]
+    end function found
+  end subroutine slopes_of_springs
 end module test_face_film

@@ -1,15 +1,19 @@
 !> Balance of the flows in the film of one face, on a grid of n cells across half of it and m intervals along it: pressures of the
 !> nodes by Reynolds' condition (no suction; a ruptured node into which oil flows is full again) or with suction left to cut off,
-!> and what further sources do to them.
+!> and what further sources do to them. A face on two springs gives way, which takes oil in: the rates of the springs follow with
+!> the pressures that load them.
 module face_balance
   use kinds, only: dp
   implicit none
   private
-  public :: guess_full, balance, respond
+  public :: guess_full, balance, guess_yielding, balance_yielding, respond
 
   real(dp), parameter :: least_inflow = 1e-13_dp  !! over the largest source, with which a ruptured node fills again
+  real(dp), parameter :: lowest_suction = 1e-14_dp   !! of a full node of a face that gives way, over the largest pressure of a face
+                                                  !! at rest, which the rates may cancel
   integer, parameter :: sweeps = 3                !! of Gauss and Seidel over the guess of that part
   integer, parameter :: most_rounds = 60          !! of the search for the part that is full
+  integer, parameter :: most_halvings = 30        !! of a change of the rates, until the springs balance better
 
 contains
 
@@ -20,25 +24,22 @@ contains
     real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1)
     logical, intent(inout) :: full(n, m - 1)
     real(dp) :: along_pair(n/2, m/2), round_pair(0:n/2, m/2 - 1), source_pair(n/2, m/2 - 1), p(0:n/2 + 1, 0:m/2)
-    real(dp) :: guess(0:n + 1, 0:m)
     logical :: full_pair(n/2, m/2 - 1)
-    integer :: i, j, pass
     if (mod(n, 2) + mod(m, 2) > 0) return
-    do j = 1, m/2
-      do i = 1, n/2   ! two flows side by side, each through two conductances one after the other
-        along_pair(i, j) = sum(along(2*i - 1:2*i, 2*j - 1)*along(2*i - 1:2*i, 2*j)/ &
-          (along(2*i - 1:2*i, 2*j - 1) + along(2*i - 1:2*i, 2*j)))
-      end do
-    end do
-    do j = 1, m/2 - 1
-      round_pair(:, j) = 0.5_dp*(round(::2, 2*j) + 0.5_dp*(round(::2, 2*j - 1) + round(::2, 2*j + 1)))
-      do i = 1, n/2
-        source_pair(i, j) = sum(source(2*i - 1:2*i, 2*j) + &
-          0.5_dp*(source(2*i - 1:2*i, 2*j - 1) + source(2*i - 1:2*i, 2*j + 1)))
-      end do
-    end do
+    call pair_conductances(n, m, along, round, along_pair, round_pair)
+    call pair_nodes(n, m, source, source_pair)
     full_pair = .true.
     call balance(n/2, m/2, along_pair, round_pair, source_pair, .false., full_pair, p)
+    call refine(n, m, along, round, source, p, full)
+  end subroutine guess_full
+
+  !> The nodes that are full after some sweeps over them, from the pressures of the grid of half as many cells and intervals.
+  pure subroutine refine(n, m, along, round, source, p, full)
+    integer, intent(in) :: n, m
+    real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1), p(0:n/2 + 1, 0:m/2)
+    logical, intent(out) :: full(n, m - 1)
+    real(dp) :: guess(0:n + 1, 0:m)
+    integer :: i, j, pass
     guess = 0
     do j = 1, m/2
       do i = 1, n/2
@@ -56,7 +57,37 @@ contains
       end do
     end do
     full = guess(1:n, 1:m - 1) > 0
-  end subroutine guess_full
+  end subroutine refine
+
+  !> Conductances of the grid of half as many cells and intervals.
+  pure subroutine pair_conductances(n, m, along, round, along_pair, round_pair)
+    integer, intent(in) :: n, m
+    real(dp), intent(in) :: along(n, m), round(0:n, m - 1)
+    real(dp), intent(out) :: along_pair(n/2, m/2), round_pair(0:n/2, m/2 - 1)
+    integer :: i, j
+    do j = 1, m/2
+      do i = 1, n/2   ! two flows side by side, each through two conductances one after the other
+        along_pair(i, j) = sum(along(2*i - 1:2*i, 2*j - 1)*along(2*i - 1:2*i, 2*j)/ &
+          (along(2*i - 1:2*i, 2*j - 1) + along(2*i - 1:2*i, 2*j)))
+      end do
+    end do
+    do j = 1, m/2 - 1
+      round_pair(:, j) = 0.5_dp*(round(::2, 2*j) + 0.5_dp*(round(::2, 2*j - 1) + round(::2, 2*j + 1)))
+    end do
+  end subroutine pair_conductances
+
+  !> Sums over the nodes of that grid of what the nodes have.
+  pure subroutine pair_nodes(n, m, have, pair)
+    integer, intent(in) :: n, m
+    real(dp), intent(in) :: have(n, m - 1)
+    real(dp), intent(out) :: pair(n/2, m/2 - 1)
+    integer :: i, j
+    do j = 1, m/2 - 1
+      do i = 1, n/2
+        pair(i, j) = sum(have(2*i - 1:2*i, 2*j) + 0.5_dp*(have(2*i - 1:2*i, 2*j - 1) + have(2*i - 1:2*i, 2*j + 1)))
+      end do
+    end do
+  end subroutine pair_nodes
 
   !> Pressures of the nodes for which the flows balance, by one of both conditions; for Reynolds' from a guess of the nodes that are
   !> full. Where suction is cut off all must be full, and it is left to cut.
@@ -68,10 +99,8 @@ contains
     real(dp), intent(out) :: p(0:n + 1, 0:m)
     real(dp) :: a(0:n + 1, n*m + 2), x(n*m + 2)
     integer :: number(n, m)   ! of a full node among them
-    real(dp) :: inflow, least
-    logical :: changes, is_full
+    logical :: changes
     integer :: i, j, k, pass
-    least = least_inflow*maxval(abs(source))
     p = 0
     do pass = 1, most_rounds
       call assemble(n, m, along, round, full, k, number, a)
@@ -89,23 +118,180 @@ contains
         end do
       end do
       if (cuts_suction) exit
-      changes = .false.
-      do j = 1, m - 1
-        do i = 1, n
-          if (full(i, j)) then
-            is_full = .not. p(i, j) < 0
-          else
-            inflow = source(i, j) + along(i, j)*p(i, j - 1) + along(i, j + 1)*p(i, j + 1) + round(i - 1, j)*p(i - 1, j) + &
-              round(i, j)*p(i + 1, j)
-            is_full = inflow > least
-          end if
-          if (is_full .neqv. full(i, j)) changes = .true.
-          full(i, j) = is_full
-        end do
-      end do
+      call change_full(n, m, along, round, source, p, least_inflow*maxval(abs(source)), 0.0_dp, full, changes)
       if (.not. changes) exit
     end do
   end subroutine balance
+
+  !> Find which nodes are full, from the pressures for which those balance that were.
+  pure subroutine change_full(n, m, along, round, source, p, least, lowest, full, changes)
+    integer, intent(in) :: n, m
+    real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1), p(0:n + 1, 0:m)
+    real(dp), intent(in) :: least    !! inflow with which a ruptured node fills again
+    real(dp), intent(in) :: lowest   !! pressure of a full node [Pa]
+    logical, intent(inout) :: full(n, m - 1)
+    logical, intent(out) :: changes
+    real(dp) :: inflow
+    logical :: is_full
+    integer :: i, j
+    changes = .false.
+    do j = 1, m - 1
+      do i = 1, n
+        if (full(i, j)) then
+          is_full = .not. p(i, j) < lowest
+        else
+          inflow = source(i, j) + along(i, j)*p(i, j - 1) + along(i, j + 1)*p(i, j + 1) + round(i - 1, j)*p(i - 1, j) + &
+            round(i, j)*p(i + 1, j)
+          is_full = inflow > least
+        end if
+        if (is_full .neqv. full(i, j)) changes = .true.
+        full(i, j) = is_full
+      end do
+    end do
+  end subroutine change_full
+
+  !> `guess_full` of a face that gives way, see `balance_yielding`.
+  pure subroutine guess_yielding(n, m, along, round, source, by_rate, weight, load, drag, full)
+    integer, intent(in) :: n, m
+    real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1)
+    real(dp), intent(in) :: by_rate(n, m - 1, 2), weight(n, m - 1, 2), load(2), drag
+    logical, intent(inout) :: full(n, m - 1)
+    real(dp) :: along_pair(n/2, m/2), round_pair(0:n/2, m/2 - 1), source_pair(n/2, m/2 - 1), p(0:n/2 + 1, 0:m/2), rate(2)
+    real(dp), dimension(n/2, m/2 - 1, 2) :: by_rate_pair, weight_pair
+    logical :: full_pair(n/2, m/2 - 1)
+    integer :: k
+    if (mod(n, 2) + mod(m, 2) > 0) return
+    call pair_conductances(n, m, along, round, along_pair, round_pair)
+    call pair_nodes(n, m, source, source_pair)
+    do k = 1, 2
+      call pair_nodes(n, m, by_rate(:, :, k), by_rate_pair(:, :, k))
+      call pair_nodes(n, m, weight(:, :, k), weight_pair(:, :, k))
+    end do
+    full_pair = .true.
+    call balance_yielding(n/2, m/2, along_pair, round_pair, source_pair, by_rate_pair, weight_pair, load, drag, .false., &
+      full_pair, rate, p)
+    call refine(n, m, along, round, source + rate(1)*by_rate(:, :, 1) + rate(2)*by_rate(:, :, 2), p, full)
+  end subroutine guess_yielding
+
+  !> `balance` of a face that gives way on two springs, with the rates v of these: the sources are those of a face at rest and v times
+  !> those of the rates, and each spring, whose own force is in its load, resists with a drag,
+  !>
+  !>     drag v_k = load_k + sum of weight_k p
+  !>
+  !> Pressures are linear in v while the part that is full stays, and while that which is cut off does.
+  pure subroutine balance_yielding(n, m, along, round, source, by_rate, weight, load, drag, cuts_suction, full, rate, p)
+    integer, intent(in) :: n, m
+    real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1)
+    real(dp), intent(in) :: by_rate(n, m - 1, 2)   !! sources over the rate of each spring [m^2]
+    real(dp), intent(in) :: weight(n, m - 1, 2)    !! load of each spring over the pressure [m^2]
+    real(dp), intent(in) :: load(2)                !! of each spring without the pressures [N]
+    real(dp), intent(in) :: drag                   !! [N s/m]
+    logical, intent(in) :: cuts_suction
+    logical, intent(inout) :: full(n, m - 1)
+    real(dp), intent(out) :: rate(2)               !! [m/s]
+    real(dp), intent(out) :: p(0:n + 1, 0:m)
+    real(dp) :: part(3, n, m - 1)   ! pressures of a face at rest, and over the rates
+    real(dp) :: squeezed(n, m - 1)  ! sources by the rates
+    logical :: changes
+    integer :: pass
+    p = 0
+    do pass = 1, most_rounds
+      call find_parts(n, m, along, round, source, by_rate, full, part)
+      if (cuts_suction) then
+        rate = cut_rate(n*(m - 1), weight, part, load, drag)
+      else
+        rate = balanced_rate(n*(m - 1), weight, part, full, load, drag)
+      end if
+      p(1:n, 1:m - 1) = part(1, :, :) + rate(1)*part(2, :, :) + rate(2)*part(3, :, :)
+      if (cuts_suction) exit
+      squeezed = rate(1)*by_rate(:, :, 1) + rate(2)*by_rate(:, :, 2)
+      call change_full(n, m, along, round, source + squeezed, p, least_inflow*maxval(abs(source) + abs(squeezed)), &
+        -lowest_suction*maxval(abs(part(1, :, :))), full, changes)
+      if (.not. changes) exit
+    end do
+  end subroutine balance_yielding
+
+  !> Pressures of the full nodes of a face at rest, and those over the rate of each spring; 0 at others.
+  pure subroutine find_parts(n, m, along, round, source, by_rate, full, part)
+    integer, intent(in) :: n, m
+    real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1), by_rate(n, m - 1, 2)
+    logical, intent(in) :: full(n, m - 1)
+    real(dp), intent(out) :: part(3, n, m - 1)
+    real(dp) :: a(0:n + 1, n*m + 2), x(n*m + 2), over_rate(2, n*m + 2)
+    integer :: number(n, m)
+    integer :: i, j, k
+    call assemble(n, m, along, round, full, k, number, a)
+    x(:k + n + 2) = 0
+    over_rate(:, :k + n + 2) = 0
+    do j = 1, m - 1
+      do i = 1, n
+        if (.not. full(i, j)) cycle
+        x(number(i, j)) = source(i, j)
+        over_rate(:, number(i, j)) = by_rate(i, j, :)
+      end do
+    end do
+    call solve_symmetric(k, n, a, x)
+    call substitute(2, k, n, a, over_rate)
+    part = 0
+    do j = 1, m - 1
+      do i = 1, n
+        if (.not. full(i, j)) cycle
+        part(1, i, j) = x(number(i, j))
+        part(2:, i, j) = over_rate(:, number(i, j))
+      end do
+    end do
+  end subroutine find_parts
+
+  !> The rates for which the springs balance, with the pressures of the nodes that count.
+  pure function balanced_rate(n, weight, part, counts, load, drag) result(rate)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: weight(n, 2), part(3, n), load(2), drag
+    logical, intent(in) :: counts(n)
+    real(dp) :: rate(2), a(2, 2), b(2)
+    integer :: i, k
+    a = reshape([drag, 0.0_dp, 0.0_dp, drag], [2, 2])
+    b = load
+    do i = 1, n
+      if (.not. counts(i)) cycle
+      do k = 1, 2
+        b(k) = b(k) + weight(i, k)*part(1, i)
+        a(k, :) = a(k, :) - weight(i, k)*part(2:, i)
+      end do
+    end do
+    rate = [a(2, 2)*b(1) - a(1, 2)*b(2), a(1, 1)*b(2) - a(2, 1)*b(1)]/(a(1, 1)*a(2, 2) - a(1, 2)*a(2, 1))
+  end function balanced_rate
+
+  !> The rates for which the springs balance where suction is cut off, by Newton's method with steps that are halved until the balance
+  !> is better: it is linear while the nodes without suction stay.
+  pure function cut_rate(n, weight, part, load, drag) result(rate)
+    integer, intent(in) :: n
+    real(dp), intent(in) :: weight(n, 2), part(3, n), load(2), drag
+    real(dp) :: rate(2), next(2), pressure(n), next_pressure(n)
+    integer :: pass, halving
+    rate = 0
+    pressure = part(1, :)
+    do pass = 1, most_rounds
+      next = balanced_rate(n, weight, part, pressure > 0, load, drag)
+      next_pressure = part(1, :) + next(1)*part(2, :) + next(2)*part(3, :)
+      if (all((next_pressure > 0) .eqv. (pressure > 0))) exit
+      do halving = 1, most_halvings
+        if (miss(next, next_pressure) < miss(rate, pressure)) exit
+        next = 0.5_dp*(next + rate)
+        next_pressure = 0.5_dp*(next_pressure + pressure)
+      end do
+      rate = next
+      pressure = next_pressure
+    end do
+    rate = next
+
+  contains
+
+    !> What the springs miss [N].
+    pure real(dp) function miss(rate, pressure)
+      real(dp), intent(in) :: rate(2), pressure(n)
+      miss = norm2(load - drag*rate + matmul(max(pressure, 0.0_dp), weight))
+    end function miss
+  end function cut_rate
 
   !> The symmetric matrix of the balances of the full nodes, in the form of `solve_symmetric`.
   pure subroutine assemble(n, m, along, round, full, k, number, a)
@@ -150,7 +336,7 @@ contains
     real(dp), intent(out) :: p(:, :, :)        !! the same
     real(dp) :: a(0:n + 1, n*m + 2), unused(n*m + 2), x(size(sources, 1), n*m + 2)
     integer :: number(n, m)
-    integer :: i, j, k, last
+    integer :: i, j, last
     call assemble(n, m, along, round, full, last, number, a)
     unused(:last + n + 2) = 0
     call solve_symmetric(last, n, a, unused)
@@ -160,17 +346,7 @@ contains
         if (full(i, j)) x(:, number(i, j)) = sources(:, i, j)
       end do
     end do
-    do k = 1, last
-      do i = 1, n
-        x(:, k + i) = x(:, k + i) - a(i, k)*x(:, k)
-      end do
-    end do
-    do k = last, 1, -1
-      x(:, k) = x(:, k)/a(0, k)
-      do i = 1, n
-        x(:, k) = x(:, k) - a(i, k)*x(:, k + i)
-      end do
-    end do
+    call substitute(size(x, 1), last, n, a, x)
     p = 0
     do j = 1, m - 1
       do i = 1, n
@@ -178,6 +354,25 @@ contains
       end do
     end do
   end subroutine respond
+
+  !> Solve the system for further right sides, with the matrix that `solve_symmetric` leaves.
+  pure subroutine substitute(n_sides, n, band, a, x)
+    integer, intent(in) :: n_sides, n, band
+    real(dp), intent(in) :: a(0:band + 1, n + band + 2)
+    real(dp), intent(inout) :: x(n_sides, n + band + 2)
+    integer :: i, k
+    do k = 1, n
+      do i = 1, band
+        x(:, k + i) = x(:, k + i) - a(i, k)*x(:, k)
+      end do
+    end do
+    do k = n, 1, -1
+      x(:, k) = x(:, k)/a(0, k)
+      do i = 1, band
+        x(:, k) = x(:, k) - a(i, k)*x(:, k + i)
+      end do
+    end do
+  end subroutine substitute
 
   !> Solve a symmetric positive definite system of n equations, whose diagonals are 0 or more above the main one: a(i, k) is the
   !> element of row k + i and column k. Two columns are eliminated in each pass. Beyond the last equation a must be 0, but for

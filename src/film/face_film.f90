@@ -10,6 +10,13 @@
 !> H(h) is the mean gap of rough surfaces. Where the film ruptures p = 0: by Reynolds' condition (no suction; a ruptured node
 !> into which oil flows is full again), or by cutting negative pressures off (Gumbel).
 !>
+!> An elastic face is a rigid panel on two springs at its ends, whose deflections w_t, w_b >= 0 take it away from the wall, linear in
+!> between: a panel has a motion like that of the piston, but for U. Springs and film have no mass,
+!>
+!>     Int (p + p_a) cos(phi) N_k dA = K w_k + K tau w_k',   N_t = (z - z_b)/l, N_b = 1 - N_t
+!>
+!> where the drag K tau keeps the rates defined without a film, and p is linear in them.
+!>
 !> Half of the face (it is symmetric) has cells in phi, and in z nodes that are closer at its ends. The balances of the nodes are
 !> symmetric; forces are plain sums, and their power is exactly what shear and pressure flow dissipate on the grid.
 module face_film
@@ -18,10 +25,10 @@ module face_film
   use asperities, only: asperities_t
   use bearing_size, only: bearing_t
   use monotone_cubic, only: monotone_cubic_t
-  use face_balance, only: guess_full, balance
+  use face_balance, only: guess_full, balance, guess_yielding, balance_yielding
   implicit none
   private
-  public :: face_film_t, face_motion_t, face_loads_t, face_tangent_t, faces_t, no_loads, &
+  public :: face_film_t, face_motion_t, face_loads_t, face_springs_t, face_tangent_t, faces_t, no_loads, &
     no_tangent, tangent_found, tangent_acts
 
   real(dp), parameter :: closer = 0.6_dp          !! how much closer the nodes at the ends are
@@ -38,6 +45,15 @@ module face_film
   end type face_motion_t
 
   integer, parameter :: n_motion = 5   !! number of these components, by which slopes are counted
+
+  real(dp), parameter :: relaxation = 1e-5_dp   !! tau, in which a face without a film springs back [s]
+
+  !> The springs at the ends of a face, top and bottom.
+  type :: face_springs_t
+    real(dp) :: stiffness          !! K, of each [N/m]
+    real(dp) :: deflection(2)      !! w [m]
+    real(dp) :: rate(2)            !! w' [m/s]
+  end type face_springs_t
 
   !> Loads on the piston, of one face or of both.
   type :: face_loads_t
@@ -57,8 +73,13 @@ module face_film
     type(face_motion_t) :: motion
     type(face_loads_t) :: loads
     real(dp) :: slopes(3, n_motion)  !! of force, moment and friction
+    ! of elastic faces, side +1 and then -1, top and bottom of each
+    real(dp) :: deflection(4), rate(4)
+    real(dp) :: by_deflection(3, 4)          !! slopes of the loads
+    real(dp) :: rate_slopes(4, n_motion + 4) !! slopes of the rates, by motion and deflections
   contains
     procedure :: loads_at
+    procedure :: yield
   end type face_tangent_t
 
   !> The films of both halves of a skirt, side +1 and then -1. Each face is symmetric to its thrust axis: half of it is given.
@@ -94,9 +115,12 @@ module face_film
     procedure :: prepare
     procedure :: find_loads
     procedure :: least_relief_gap
+    procedure :: least_elastic_gap
     procedure :: ends
     procedure :: field
-    procedure, private, non_overridable :: find_flows
+    procedure :: panel_motion
+    procedure :: panel_slopes
+    procedure, private, non_overridable :: find_flows, contact_pressure
   end type face_film_t
 
   interface
@@ -110,6 +134,36 @@ module face_film
       real(dp), intent(in) :: p(0:self%around + 1, 0:self%along)
       real(dp), intent(inout) :: slopes(3, n_motion)
     end subroutine add_slopes
+
+    !> Motion of the panel of an elastic face. The speed of its surface along the bore remains that of the piston's.
+    pure type(face_motion_t) module function panel_motion(self, side, motion, springs) result(panel)
+      class(face_film_t), intent(in) :: self
+      integer, intent(in) :: side
+      type(face_motion_t), intent(in) :: motion      !! of the piston
+      type(face_springs_t), intent(in) :: springs
+    end function panel_motion
+
+    !> `find_pressures` of an elastic face, with the rates of its springs; on entry `motion` is that of a panel whose springs are at
+    !> rest.
+    pure module subroutine find_yielding(self, side, motion, at, springs, full, p)
+      type(face_film_t), intent(in) :: self
+      integer, intent(in) :: side
+      type(face_motion_t), intent(in) :: motion
+      real(dp), intent(in) :: at(self%around, 0:self%along + 1, n_seen)
+      type(face_springs_t), intent(inout) :: springs
+      logical, intent(out) :: full(self%around, self%along - 1)
+      real(dp), intent(out) :: p(0:self%around + 1, 0:self%along)
+    end subroutine find_yielding
+
+    !> Slopes of the loads of an elastic face and of the rates of its springs, by the motion of the piston and both deflections, from
+    !> those of the loads by the motion of its panel.
+    pure module subroutine panel_slopes(self, side, stiffness, own, of_loads, of_rates)
+      class(face_film_t), intent(in) :: self
+      integer, intent(in) :: side
+      real(dp), intent(in) :: stiffness   !! [N/m]
+      real(dp), intent(in) :: own(3, n_motion)
+      real(dp), intent(out) :: of_loads(3, n_motion + 2), of_rates(2, n_motion + 2)
+    end subroutine panel_slopes
   end interface
 
 contains
@@ -157,6 +211,20 @@ contains
     gap = self%clearance + minval(self%relief - abs(offset + self%z*tilt))
   end function least_relief_gap
 
+  !> The same of elastic faces.
+  pure real(dp) function least_elastic_gap(self, offset, tilt, springs) result(gap)
+    class(face_film_t), intent(in) :: self
+    real(dp), intent(in) :: offset, tilt            !! [m], [rad]
+    type(face_springs_t), intent(in) :: springs(2)  !! of the sides +1 and -1
+    type(face_motion_t) :: panel
+    integer :: k
+    gap = huge(gap)
+    do k = 1, 2
+      panel = self%panel_motion(3 - 2*k, face_motion_t(offset, tilt, 0.0_dp, 0.0_dp, 0.0_dp), springs(k))
+      gap = min(gap, self%clearance + minval(self%relief - (3 - 2*k)*(panel%offset + self%z*panel%tilt)))
+    end do
+  end function least_elastic_gap
+
   !> Negative gaps at the thrust axis of both faces, top and bottom, first those of the side +1 [m], and their rates [m/s].
   pure subroutine ends(self, motion, depth, depth_rate)
     class(face_film_t), intent(in) :: self
@@ -172,36 +240,38 @@ contains
     depth(:2) = depth(:2) - self%clearance - relief
   end subroutine ends
 
-  !> Add the loads of the face on one side, +1 or -1, and their slopes.
-  pure subroutine find_loads(self, side, motion, loads, slopes)
+  !> Add the loads of the face on one side, +1 or -1, and their slopes. With springs it is elastic: their rates are found, and the
+  !> slopes are those by the motion of its panel.
+  pure subroutine find_loads(self, side, motion, loads, slopes, springs)
     class(face_film_t), intent(in) :: self
     integer, intent(in) :: side
     type(face_motion_t), intent(in) :: motion
     type(face_loads_t), intent(inout) :: loads
     real(dp), intent(inout), optional :: slopes(3, n_motion)   !! of force, moment and friction, by the components of the motion
+    type(face_springs_t), intent(inout), optional :: springs   !! with their deflections
     real(dp) :: at(self%around, 0:self%along + 1, n_seen), p(0:self%around + 1, 0:self%along)
-    real(dp) :: speed, area, pressing, boundary, carried, friction
+    real(dp) :: speed, area, pressing, contact, carried, friction
     logical :: full(self%around, self%along - 1)
+    type(face_motion_t) :: panel
     integer :: i, j
     speed = motion%velocity - side*self%arm*motion%tilt_rate
-    call see_gaps(self, side, motion, at)
-    call find_pressures(self, side, motion, at, full, p)
-    if (present(slopes)) call add_slopes(self, side, motion, at, full, p, slopes)
+    panel = motion
+    call find_face(self, side, panel, at, full, p, springs)
+    if (present(slopes)) call add_slopes(self, side, panel, at, full, p, slopes)
     p = max(p, 0.0_dp)
     friction = 0
     carried = 0
     do j = 0, self%along
       area = 2*self%step*self%width(j)   ! with its mirror image
       do i = 1, self%around
-        boundary = 0
-        if (at(i, j, gap) < 8*self%asperities%roughness) boundary = self%asperities%pressure(-at(i, j, gap), 0.0_dp)
-        pressing = (p(i, j) + boundary)*self%cosine(i, 1)*area
+        contact = self%contact_pressure(at(i, j, gap))
+        pressing = (p(i, j) + contact)*self%cosine(i, 1)*area
         loads%force = loads%force - side*pressing
         loads%moment = loads%moment - side*pressing*self%z(j)
-        loads%asperities = loads%asperities + boundary*self%cosine(i, 1)*area
+        loads%asperities = loads%asperities + contact*self%cosine(i, 1)*area
         friction = friction - self%viscosity*speed/at(i, j, mean)*area - &
           p(i, j)*(at(i, j + 1, mean_half) - at(i, j, mean_half))*self%step
-        carried = carried + boundary*area
+        carried = carried + contact*area
       end do
     end do
     friction = friction + self%asperities%friction_force(speed, carried)
@@ -211,21 +281,58 @@ contains
     loads%pressure = max(loads%pressure, maxval(p))
   end subroutine find_loads
 
-  !> Gaps and pressures of both films at a motion.
-  subroutine field(self, motion, faces)
+  !> Gaps and pressures of a face, those of the film still to be cut off at 0. On exit the motion is that of the panel.
+  pure subroutine find_face(self, side, motion, at, full, p, springs)
+    type(face_film_t), intent(in) :: self
+    integer, intent(in) :: side
+    type(face_motion_t), intent(inout) :: motion
+    real(dp), intent(out) :: at(self%around, 0:self%along + 1, n_seen)
+    logical, intent(out) :: full(self%around, self%along - 1)
+    real(dp), intent(out) :: p(0:self%around + 1, 0:self%along)
+    type(face_springs_t), intent(inout), optional :: springs
+    type(face_motion_t) :: of_piston
+    if (present(springs)) then
+      of_piston = motion
+      springs%rate = 0
+      motion = self%panel_motion(side, of_piston, springs)
+      call see_gaps(self, side, motion, at)
+      call find_yielding(self, side, motion, at, springs, full, p)
+      motion = self%panel_motion(side, of_piston, springs)
+    else
+      call see_gaps(self, side, motion, at)
+      call find_pressures(self, side, motion, at, full, p)
+    end if
+  end subroutine find_face
+
+  !> Pressure of the asperities at a gap [Pa].
+  pure real(dp) function contact_pressure(self, gap)
+    class(face_film_t), intent(in) :: self
+    real(dp), intent(in) :: gap   !! [m]
+    contact_pressure = 0
+    if (gap < 8*self%asperities%roughness) contact_pressure = self%asperities%pressure(-gap, 0.0_dp)
+  end function contact_pressure
+
+  !> Gaps and pressures of both films at a motion, of elastic faces with their deflections.
+  subroutine field(self, motion, faces, springs)
     class(face_film_t), intent(in) :: self
     type(face_motion_t), intent(in) :: motion
     type(faces_t), intent(out) :: faces
+    type(face_springs_t), intent(inout), optional :: springs(2)   !! of the sides +1 and -1
     real(dp) :: at(self%around, 0:self%along + 1, n_seen), p(0:self%around + 1, 0:self%along)
     logical :: full(self%around, self%along - 1)
+    type(face_motion_t) :: panel
     integer :: k
     allocate (faces%angle(self%around), faces%height(self%along + 1))
     allocate (faces%gap(self%around, self%along + 1, 2), faces%pressure(self%around, self%along + 1, 2))
     faces%angle = acos(self%cosine(:, 1))
     faces%height = self%z
     do k = 1, 2
-      call see_gaps(self, 3 - 2*k, motion, at)
-      call find_pressures(self, 3 - 2*k, motion, at, full, p)
+      panel = motion
+      if (present(springs)) then
+        call find_face(self, 3 - 2*k, panel, at, full, p, springs(k))
+      else
+        call find_face(self, 3 - 2*k, panel, at, full, p)
+      end if
       faces%gap(:, :, k) = at(:, :self%along, gap)
       faces%pressure(:, :, k) = max(p(1:self%around, :), 0.0_dp)
     end do
@@ -304,13 +411,39 @@ contains
   pure type(face_loads_t) function loads_at(self, motion) result(loads)
     class(face_tangent_t), intent(in) :: self
     type(face_motion_t), intent(in) :: motion
-    real(dp) :: change(3)
-    change = matmul(self%slopes, [motion%offset - self%motion%offset, motion%tilt - self%motion%tilt, &
-      motion%offset_rate - self%motion%offset_rate, motion%tilt_rate - self%motion%tilt_rate, &
-      motion%velocity - self%motion%velocity])
+    real(dp) :: change(3), moved(n_motion)
+    moved = change_of(self, motion)
+    change = matmul(self%slopes, moved)
     loads = self%loads
     loads%force = loads%force + change(1)
     loads%moment = loads%moment + change(2)
     loads%friction = loads%friction + change(3)
   end function loads_at
+
+  !> Add to the linear loads at a motion what other deflections change, and find the rates of the springs.
+  pure subroutine yield(self, motion, deflection, loads, rate)
+    class(face_tangent_t), intent(in) :: self
+    type(face_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: deflection(4)        !! [m]
+    type(face_loads_t), intent(inout) :: loads   !! of `loads_at`
+    real(dp), intent(out) :: rate(4)             !! [m/s]
+    real(dp) :: change(3), moved(n_motion), bent(4)
+    moved = change_of(self, motion)
+    bent = deflection - self%deflection
+    change = matmul(self%by_deflection, bent)
+    loads%force = loads%force + change(1)
+    loads%moment = loads%moment + change(2)
+    loads%friction = loads%friction + change(3)
+    rate = self%rate + matmul(self%rate_slopes(:, :n_motion), moved) + matmul(self%rate_slopes(:, n_motion + 1:), bent)
+  end subroutine yield
+
+  !> By how much the components of a motion differ from those of a tangent.
+  pure function change_of(tangent, motion) result(change)
+    type(face_tangent_t), intent(in) :: tangent
+    type(face_motion_t), intent(in) :: motion
+    real(dp) :: change(n_motion)
+    change = [motion%offset - tangent%motion%offset, motion%tilt - tangent%motion%tilt, &
+      motion%offset_rate - tangent%motion%offset_rate, motion%tilt_rate - tangent%motion%tilt_rate, &
+      motion%velocity - tangent%motion%velocity]
+  end function change_of
 end module face_film

@@ -98,7 +98,6 @@ contains
       call values%forbid(acts, 'guide', trim(of_corners(i)), &
         'is for kind = ''clearance'': a lubricated skirt has no dry corners')
     end do
-    call values%forbid(c%guide%stiffness > 0, 'guide', 'stiffness', 'must be 0 with kind = ''lubricated'': its faces are rigid')
     call check_profile(c, values)
     if (values%problems%concerns('guide') .or. .not. allocated(c%skirt_film%asperities)) return
     call check_oil(c%skirt_film%oil%oil, trim(groups(1)), values)

@@ -42,6 +42,9 @@ module guide_element
     type(face_loads_t) :: skirt           !! of the film of the skirt
     real(dp) :: skirt_power               !! that it takes [W]
     type(face_tangent_t) :: tangent       !! of that film
+    real(dp) :: deflection(n_corners)     !! of elastic faces at their ends, away from the wall [m]
+    real(dp) :: spring_energy             !! stored in them [J]
+    real(dp) :: spring_power              !! its rate [W]
     type(ring_now_t) :: ring(most_piston_rings)
   end type guide_loads_t
 
@@ -100,10 +103,11 @@ contains
     type(trace_row_t), intent(inout) :: row
   end subroutine no_columns
 
-  !> The films of the skirt at a motion of the piston, with heights above the pin: none.
-  subroutine no_faces(self, motion, faces)
+  !> The films of the skirt at a motion of the piston and deflections of its faces, with heights above the pin: none.
+  subroutine no_faces(self, motion, deflection, faces)
     class(guide_element_t), intent(in) :: self
     type(face_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: deflection(n_corners)
     type(faces_t), intent(out) :: faces
   end subroutine no_faces
 

@@ -1,4 +1,5 @@
-!> Element of the guide: film between both faces of the skirt and the bore, with the contact of their asperities. See `face_film`.
+!> Element of the guide: film between both faces of the skirt and the bore, with the contact of their asperities, where the faces are
+!> elastic with the deflections of their ends as states. See `face_film`.
 module skirt_film
   use kinds, only: dp
   use constants, only: degree
@@ -6,7 +7,7 @@ module skirt_film
   use trace_row, only: trace_row_t, least, largest, largest_size, mean, of_cycle
   use chain_motion, only: motion_t, tilting_t
   use piston_skirt, only: skirt_t, n_corners, corner_names
-  use face_film, only: face_film_t, face_motion_t, faces_t, no_loads, tangent_found, tangent_acts
+  use face_film, only: face_film_t, face_motion_t, face_springs_t, faces_t, no_loads, tangent_found, tangent_acts
   use guide_case, only: guide_case_t
   use guide_element, only: guide_element_t, guide_loads_t
   implicit none
@@ -18,13 +19,16 @@ module skirt_film
   type, extends(guide_element_t) :: skirt_film_t
     type(face_film_t) :: film
     real(dp) :: com_height = 0   !! of the centre of mass above the pin, along the piston [m]
+    real(dp) :: stiffness = 0    !! of the spring at each end of each face [N/m]; 0: rigid faces
   contains
     procedure :: prepare
     procedure :: find_loads
     procedure :: admits
     procedure :: add_columns
     procedure :: see_faces
+    procedure, private :: springs
     procedure, private :: find_film_loads
+    procedure, private :: find_elastic_loads
   end type skirt_film_t
 
 contains
@@ -52,6 +56,12 @@ contains
       film%asperities = wanted%film%asperities
       call film%prepare()
     end associate
+    self%stiffness = wanted%stiffness
+    if (.not. self%stiffness > 0) return
+    self%n_states = n_corners
+    self%state_name = 'skirt_deflection'
+    self%state_unit = 'm'
+    self%state_scale(:n_corners) = skirt%clearance
   end subroutine prepare
 
   pure subroutine find_loads(self, skirt, motion, y, now)
@@ -65,18 +75,31 @@ contains
     associate (it => motion%tilting)
       at = face_motion_t(it%offset, it%tilt, it%offset_rate, it%tilt_rate, now%speed)
     end associate
+    now%deflection = 0
+    now%spring_energy = 0
+    now%spring_power = 0
+    if (self%stiffness > 0) now%deflection = y(self%states%first:self%states%last)
     if (now%tangent%role == tangent_acts) then
       now%skirt = now%tangent%loads_at(at)
+      if (self%stiffness > 0) &
+        call now%tangent%yield(at, now%deflection, now%skirt, now%rates(self%rates%first:self%rates%last))
+    else if (self%stiffness > 0) then
+      call self%find_elastic_loads(at, now)
     else
       call self%find_film_loads(at, now)
+    end if
+    if (self%stiffness > 0) then
+      now%spring_energy = 0.5_dp*self%stiffness*sum(now%deflection**2)
+      now%spring_power = self%stiffness*dot_product(now%deflection, now%rates(self%rates%first:self%rates%last))
     end if
     now%force = now%force + now%skirt%force
     now%moment = now%moment + now%skirt%moment
     now%friction_force = now%friction_force + now%skirt%friction
     call self%film%ends(at, depth, depth_rate)
-    now%corner%depth = depth
+    now%corner%depth = depth - now%deflection
     now%corner%depth_rate = depth_rate
-    now%skirt_power = -(now%skirt%force*at%offset_rate + now%skirt%moment*at%tilt_rate + now%skirt%friction*at%velocity)
+    now%skirt_power = -(now%skirt%force*at%offset_rate + now%skirt%moment*at%tilt_rate + now%skirt%friction*at%velocity) &
+      - now%spring_power
   end subroutine find_loads
 
   !> Loads of the films of both faces, and their tangent if it is wanted.
@@ -100,11 +123,63 @@ contains
     end if
   end subroutine find_film_loads
 
-  subroutine see_faces(self, motion, faces)
+  !> The same of elastic faces, with the rates of their deflections.
+  pure subroutine find_elastic_loads(self, at, now)
+    class(skirt_film_t), intent(in) :: self
+    type(face_motion_t), intent(in) :: at
+    type(guide_loads_t), intent(inout) :: now
+    type(face_springs_t) :: springs(2)
+    real(dp) :: own(3, 5), of_loads(3, 7), of_rates(2, 7)
+    integer :: k, side
+    now%skirt = no_loads
+    springs = self%springs(now%deflection)
+    if (now%tangent%role == tangent_found) then
+      now%tangent%slopes = 0
+      now%tangent%rate_slopes = 0
+    end if
+    do k = 1, 2
+      side = 3 - 2*k
+      if (now%tangent%role == tangent_found) then
+        own = 0
+        call self%film%find_loads(side, at, now%skirt, own, springs(k))
+        call self%film%panel_slopes(side, self%stiffness, own, of_loads, of_rates)
+        now%tangent%slopes = now%tangent%slopes + of_loads(:, :5)
+        now%tangent%by_deflection(:, 2*k - 1:2*k) = of_loads(:, 6:)
+        now%tangent%rate_slopes(2*k - 1:2*k, :5) = of_rates(:, :5)
+        now%tangent%rate_slopes(2*k - 1:2*k, 4 + 2*k:5 + 2*k) = of_rates(:, 6:)
+      else
+        call self%film%find_loads(side, at, now%skirt, springs=springs(k))
+      end if
+      now%rates(self%rates%first + 2*k - 2:self%rates%first + 2*k - 1) = springs(k)%rate
+    end do
+    if (now%tangent%role /= tangent_found) return
+    now%tangent%motion = at
+    now%tangent%loads = now%skirt
+    now%tangent%deflection = now%deflection
+    now%tangent%rate = now%rates(self%rates%first:self%rates%last)
+  end subroutine find_elastic_loads
+
+  !> The springs of both faces, with their deflections.
+  pure function springs(self, deflection)
+    class(skirt_film_t), intent(in) :: self
+    real(dp), intent(in) :: deflection(n_corners)
+    type(face_springs_t) :: springs(2)
+    springs(1) = face_springs_t(self%stiffness, deflection(:2), [0.0_dp, 0.0_dp])
+    springs(2) = face_springs_t(self%stiffness, deflection(3:), [0.0_dp, 0.0_dp])
+  end function springs
+
+  subroutine see_faces(self, motion, deflection, faces)
     class(skirt_film_t), intent(in) :: self
     type(face_motion_t), intent(in) :: motion
+    real(dp), intent(in) :: deflection(n_corners)
     type(faces_t), intent(out) :: faces
-    call self%film%field(motion, faces)
+    type(face_springs_t) :: springs(2)
+    if (self%stiffness > 0) then
+      springs = self%springs(deflection)
+      call self%film%field(motion, faces, springs)
+    else
+      call self%film%field(motion, faces)
+    end if
     faces%height = faces%height + self%com_height
   end subroutine see_faces
 
@@ -112,7 +187,13 @@ contains
     class(skirt_film_t), intent(in) :: self
     real(dp), intent(in) :: y(*)
     type(tilting_t), intent(in) :: tilting
-    admits = self%film%least_relief_gap(tilting%offset, tilting%tilt) > deepest*self%film%asperities%roughness
+    real(dp) :: gap
+    if (self%stiffness > 0) then
+      gap = self%film%least_elastic_gap(tilting%offset, tilting%tilt, self%springs(y(self%states%first:self%states%last)))
+    else
+      gap = self%film%least_relief_gap(tilting%offset, tilting%tilt)
+    end if
+    admits = gap > deepest*self%film%asperities%roughness
   end function admits
 
   pure subroutine add_columns(self, now, row)
@@ -141,7 +222,13 @@ contains
     do i = 1, n_corners
       row%place = corner_names(i)//'_'
       call row%add('gap[m]', -now%corner(i)%depth, 'gap between this end of a face of the skirt and the bore')
+      if (self%stiffness > 0) call row%add('deflection[m]', now%deflection(i), &
+        'deflection of this end of a face of the skirt, away from the bore')
     end do
     row%place = ''
+    if (.not. self%stiffness > 0) return
+    call row%add_on_request('skirt_deflection[m]', maxval(now%deflection), 'largest deflection of an end of a face of the skirt')
+    call row%keep('max_deflection', largest, 'largest deflection of an end of a face of the skirt', has_angle=.true.)
+    call row%add_on_request('skirt_spring_energy[J]', now%spring_energy, 'elastic energy stored in the faces of the skirt')
   end subroutine add_columns
 end module skirt_film

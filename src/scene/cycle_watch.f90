@@ -102,7 +102,7 @@ contains
     self%heat = heat_of(scene, y)
     self%gas = scene%charge_totals(t, y)
     self%energy = 0
-    if (in_domain) self%energy = scene%chain%energy(now%motion)
+    if (in_domain) self%energy = scene%energy(now)
     self%initial_energy = initial_energy
     self%strobe_offset = two_pi - modulo(-self%direction*(self%strobe_angle - self%start_angle), two_pi)
     self%has_strobe = .false.
@@ -296,7 +296,7 @@ contains
     integer :: i
     force_integral = scene%force_integrals(y)
     loss = scene%joint_loss(t, y)
-    energy = scene%chain%energy(now%motion)
+    energy = scene%energy(now)
     works = 0
     if (allocated(scene%parts)) works(:size(scene%parts)) = scene%works(t, y)
     call self%record_point(scene, t)

@@ -6,6 +6,7 @@ module film_snapshots
   use ode_method, only: ode_method_t
   use scene_problem, only: scene_t, evaluation_t, phase_film
   use face_film, only: face_motion_t, faces_t
+  use piston_guide, only: n_corners
   use inside_step, only: evaluate_inside
   implicit none
   private
@@ -35,7 +36,7 @@ module film_snapshots
     real(dp), allocatable, private :: kept(:, :)  !! (quantity, snapshot): time, crank angle, joint, share, e, e', both angular
                                                   !! speeds
     integer, private :: n_skirt = 0               !! number of motions of the skirt stored
-    real(dp), allocatable, private :: skirt(:, :) !! (quantity, snapshot): time, crank angle, motion
+    real(dp), allocatable, private :: skirt(:, :) !! (quantity, snapshot): time, crank angle, motion, deflections
   contains
     procedure :: prepare
     procedure :: record
@@ -52,7 +53,7 @@ contains
     type(scene_t), intent(in) :: scene
     self%times = times
     allocate (self%kept(10, size(self%times)*size(scene%joints)), source=0.0_dp)
-    allocate (self%skirt(7, size(self%times)), source=0.0_dp)
+    allocate (self%skirt(7 + n_corners, size(self%times)), source=0.0_dp)
   end subroutine prepare
 
   !> Store the motions at the requested times in the last step of the method, up to t_to.
@@ -76,7 +77,7 @@ contains
         self%n_skirt = self%n_skirt + 1
         associate (it => now%motion%tilting)
           self%skirt(:, self%n_skirt) = [self%times(self%next), now%motion%crank_angle, it%offset, it%tilt, it%offset_rate, &
-            it%tilt_rate, now%guide%speed]
+            it%tilt_rate, now%guide%speed, now%guide%deflection]
         end associate
       end if
       if (in_domain) then
@@ -132,7 +133,7 @@ contains
         field%time = kept(1)
         field%crank_angle = kept(2)
         call scene%guide%slots(scene%guide%filmed)%element%see_faces( &
-          face_motion_t(kept(3), kept(4), kept(5), kept(6), kept(7)), field%faces)
+          face_motion_t(kept(3), kept(4), kept(5), kept(6), kept(7)), kept(8:), field%faces)
       end associate
     end do
   end function skirt_fields

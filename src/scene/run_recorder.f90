@@ -102,7 +102,7 @@ contains
         f%time = t
         call self%limits%turn_limit%begin(t, abs(f%crank_travel)/two_pi)
       else if (in_domain) then
-        self%initial_energy = scene%chain%energy(now%motion)
+        self%initial_energy = scene%energy(now)
         self%start_angle = now%motion%crank_angle
       end if
     end associate
@@ -313,7 +313,7 @@ contains
     logical, intent(in) :: in_domain, has_row
     real(dp) :: energy, speed
     if (.not. in_domain) return
-    energy = scene%chain%energy(now%motion)
+    energy = scene%energy(now)
     associate (f => self%extremes%figures)
       f%max_energy = max(f%max_energy, abs(energy))
       f%max_energy_residual = max(f%max_energy_residual, abs(energy - self%initial_energy - scene%work(y)))
@@ -469,7 +469,7 @@ contains
     if (.not. all(abs(self%values) <= huge(self%values))) self%has_left = .true.
     if (self%has_left) return
     associate (f => self%extremes%figures)
-      f%row_energy_residual = max(f%row_energy_residual, abs(scene%chain%energy(now%motion) - self%initial_energy - scene%work(y)))
+      f%row_energy_residual = max(f%row_energy_residual, abs(scene%energy(now) - self%initial_energy - scene%work(y)))
     end associate
     call self%ledger%add_row(self%values)
     call self%sink%accept_row(self%values)

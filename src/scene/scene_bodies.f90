@@ -195,6 +195,7 @@ contains
           now%power = now%power + (loads%bore_force*at%offset_rate + loads%bore_moment*at%tilt_rate) &
             - loads%axial_force*at%com_velocity
         end associate
+        if (self%guide%filmed > 0) now%power = now%power + now%guide%spring_power
       else
         now%power = now%power - loads%axial_force*motion%piston_velocity
       end if

@@ -146,6 +146,7 @@ module scene_problem
     procedure :: turned
     procedure :: force_integrals
     procedure :: joint_loss
+    procedure :: energy
     procedure :: energy_scale
     procedure :: speed_scale
     procedure :: twist_frequency
@@ -842,6 +843,15 @@ contains
     end if
     if (.not. speed_scale > 0) speed_scale = 1/self%span
   end function speed_scale
+
+  !> Kinetic and potential energy of the bodies, with that of elastic parts [J].
+  pure real(dp) function energy(self, now)
+    class(scene_t), intent(in) :: self
+    type(evaluation_t), intent(in) :: now
+    energy = self%chain%energy(now%motion)
+    if (.not. allocated(self%guide)) return
+    if (self%guide%filmed > 0) energy = energy + now%guide%spring_energy
+  end function energy
 
   !> Natural size of the energy [J]: the kinetic energy at the speed scale, the potential energy of a lift by the crank length, and
   !> the energy of rod and piston at the natural speeds of the joints.

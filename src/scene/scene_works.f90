@@ -115,6 +115,7 @@ contains
           power = now%loads%bore_force*at%offset_rate + now%loads%bore_moment*at%tilt_rate + &
             now%guide%friction_force*at%com_velocity
         end associate
+        if (scene%guide%filmed > 0) power = power + now%guide%spring_power
       else
         power = now%guide%friction_force*now%motion%piston_velocity
       end if

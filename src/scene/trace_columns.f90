@@ -164,7 +164,7 @@ contains
     if (row%is_full()) return
     call add_forces(scene, now, row, reaction)
     energy = 0
-    if (row%wants(2)) energy = scene%chain%energy(now%motion)
+    if (row%wants(2)) energy = scene%energy(now)
     call row%add('energy[J]', energy, 'kinetic and potential energy of all bodies, with the energy stored in elastic members')
     call row%add('energy_residual[J]', energy - initial_energy - work, &
       'energy minus initial energy minus the work of all non-conservative forces and of the drive; 0 for an exact integration')
