@@ -103,7 +103,7 @@ FIRST_OF_BEARINGS = (
     ("normal_force", "contact force", "kN", 1e-3),
 )
 OF_BEARINGS = (
-    ("eccentricity_ratio", "eccentricity over the clearance", "-", 1.0),
+    ("eccentricity_ratio", "eccentricity over the clearance", "", 1.0),
     ("asperity_force", "force of the asperities", "kN", 1e-3),
     ("friction_force", "friction", "N", 1.0),
     ("film_temperature", "film temperature", "K", 1.0),
@@ -116,7 +116,7 @@ OF_BEARINGS = (
 )
 
 #: Units of columns in a trace, and what a page shows: unit and factor.
-UNITS = {"m": ("µm", 1e6), "N": ("kN", 1e-3), "Pa": ("MPa", 1e-6), "Pa.s": ("mPa s", 1e3), "N.m": ("N m", 1.0)}
+UNITS = {"m": ("µm", 1e6), "N": ("kN", 1e-3), "Pa": ("MPa", 1e-6), "kg/s": ("g/s", 1e3), "Pa.s": ("mPa s", 1e3), "N.m": ("N m", 1.0)}
 
 #: Plots in which the run of the ideal joint has a plot of its own, because the quantity is a property of that run.
 APART = ("energy_residual",)
@@ -128,7 +128,8 @@ def packed(data: bytes) -> str:
 
 
 def chosen_rows(columns: list[np.ndarray], most: int = MOST_ROWS) -> np.ndarray:
-    """Rows to keep: all, or for each stretch of rows the first and those with the smallest and largest value of every column."""
+    """Rows to keep: all, or for each stretch of rows the first and those with the smallest and largest value of every column, and rows at
+    equal distances between them up to half of `most`."""
     rows = len(columns[0])
     if rows <= most:
         return np.arange(rows)
@@ -139,6 +140,8 @@ def chosen_rows(columns: list[np.ndarray], most: int = MOST_ROWS) -> np.ndarray:
         kept.add(int(low))
         for values in columns:
             kept.update((int(low + values[low:high].argmin()), int(low + values[low:high].argmax())))
+    if len(kept) < most // 2:
+        kept.update(np.linspace(0, rows - 1, most // 2 - len(kept)).astype(int).tolist())
     return np.array(sorted(kept))
 
 

@@ -12,11 +12,23 @@ const spoken = { words: {}, comma: false };   // words in the page's language, d
 const W = (text) => spoken.words[text] || text;
 const local = (text) => (spoken.comma ? text.replace(/(\d)\.(?=\d)/g, "$1,") : text);
 
-// Degrees of a crank angle [rad] within the cycle of a scene, as the summary counts them.
+// Degrees of a crank angle [rad] within the cycle of a scene, as the summary counts them; what is left beyond the end of the axis of a
+// cycle that begins within it is at the beginning of that axis.
 function angleInCycle(cycle, radians) {
   const from = cycle.angle * 180 / Math.PI, length = cycle.degrees;
   const start = ((from % length) + length) % length;   // just before a whole cycle: its end, but for rounding
-  return radians * 180 / Math.PI - from + (length - start < 1e-3 * length ? start - length : start);
+  const angle = radians * 180 / Math.PI - from + (length - start < 1e-3 * length ? start - length : start);
+  return angle > 1.001 * length ? angle - length : angle;
+}
+// The first of the abscissae in a cycle that is at the beginning of the axis again, -1 without one; and a list that begins with its value
+// there, with a gap where the run's end meets its beginning.
+const foldOf = (x, length) => x.findIndex((v, i) => i > 0 && v < x[i - 1] - length / 2);
+const fromFold = (list, fold) => (fold < 0 ? list : [...list.slice(fold), null, ...list.slice(0, fold)]);
+// The parts of an axis beyond a time; `x` gives the abscissa of a time, and the whole axis shows the times from `begin` to `end`.
+function partsBeyond(time, begin, end, x, whole) {
+  if (time === null || time >= end) return [];
+  const [from, to] = [x(time), x(end)];
+  return time <= begin ? [whole] : to > from ? [[from, to]] : [[from, whole[1]], [whole[0], to]];
 }
 
 // The drawing of a run on the canvases of the page: its scene, its columns by name, pressure and oil around the pin. `moved` is called
@@ -32,7 +44,6 @@ function drawingOf(scene, column, pressure, oil, moved = () => {}, others = null
   document.body.classList.toggle("tight-main-bearing", !mainBearing);
   const beside = 2 * joint + Boolean(smallEnd) + Boolean(crankPin) + Boolean(mainBearing) + Boolean(bore);   // views beside that of the mechanism
   document.body.classList.toggle("unmagnified", !beside);
-  document.body.style.setProperty("--beside", beside);
   document.body.classList.toggle("single", !scene.engine);
   document.body.classList.toggle("contactless", scene.contacts.length === 0);
   document.body.classList.toggle("filmless", !scene.angles);
@@ -346,8 +357,8 @@ function drawingOf(scene, column, pressure, oil, moved = () => {}, others = null
   function drawTimeline() {
     const { g, width, height } = prepare("timeline");
     const curve = scene.line, values = column[curve.column], strip = scene.contacts.length ? 26 : 0, [low, high] = curve.range;
-    const X = (t) => 8 + (width - 16) * (t - begin) / (end - begin);
-    const Y = (v) => 8 + (height - strip - 16) * (high - v) / (high - low || 1);
+    const X = (t) => 8 + (width - 16) * (t - begin) / (end - begin);   // the title is above the curve
+    const Y = (v) => 22 + (height - strip - 30) * (high - v) / (high - low || 1);
     if (joint && low < 0) { g.fillStyle = "rgba(204,121,167,0.18)"; g.fillRect(8, Y(0), width - 16, Y(low) - Y(0)); }
     if (joint) {
       g.beginPath(); g.moveTo(8, Y(0)); g.lineTo(width - 8, Y(0));
@@ -365,13 +376,14 @@ function drawingOf(scene, column, pressure, oil, moved = () => {}, others = null
     g.globalAlpha = 1;
     g.font = "11px system-ui, sans-serif";
     const [least, most] = curve.extremes.map((value) => (curve.factor * value).toPrecision(3));
-    const text = local(`${curve.title} ${least} … ${most} ${curve.unit}`);
-    g.fillStyle = COLOUR.soft; g.globalAlpha = 0.85;
-    g.fillRect(10, 5, g.measureText(text).width + 6, 15);
-    g.globalAlpha = 1;
     g.fillStyle = COLOUR.muted;
-    g.fillText(text, 13, 16);
-    if (strip) g.fillText(W("contacts"), 12, height - strip + 6);
+    const text = local(`${curve.title} ${least} … ${most} ${curve.unit}`.replaceAll("-", "−"));
+    g.fillText(text, 10, 14);
+    if (strip) {
+      const x = 22 + g.measureText(text).width;
+      g.fillText(W("contacts"), x + 12, 14);
+      g.fillStyle = COLOUR.purple; g.fillRect(x, 6, 8, 8);
+    }
     g.beginPath(); g.moveTo(X(now), 2); g.lineTo(X(now), height - 2);
     g.strokeStyle = COLOUR.vermilion; g.lineWidth = 2; g.stroke();
   }

@@ -97,7 +97,9 @@
     const plot = run.scene.plots.find((one) => one.title === title), curve = plot && plot.curves[0];
     if (!curve) return null;
     const times = (name, factor) => Array.from(run.column[name], (v) => v * factor);
-    return { x: plot.timed ? Array.from(run.column.crank_angle, (v) => abscissa(run, v)) : times(curve.x, curve.x_factor), y: times(curve.y, curve.y_factor) };
+    const x = plot.timed ? Array.from(run.column.crank_angle, (v) => abscissa(run, v)) : times(curve.x, curve.x_factor);
+    const fold = plot.timed && run.scene.cycle ? foldOf(x, run.scene.cycle.degrees) : -1;
+    return { x: fromFold(x, fold), y: fromFold(times(curve.y, curve.y_factor), fold) };
   }
   function charts() {
     const { plots } = shown.scene, there = [...byId("charts").children].map((one) => one.dataset.title);
@@ -123,15 +125,15 @@
     canvas.width = Math.round(width * ratio); canvas.height = Math.round(height * ratio); g.scale(ratio, ratio);
     const span = (axis) => {
       let low = Infinity, high = -Infinity;
-      for (const [series] of list) for (const v of series[axis]) { if (v < low) low = v; if (v > high) high = v; }
+      for (const [series] of list) for (const v of series[axis]) if (v !== null) { low = Math.min(low, v); high = Math.max(high, v); }
       return high > low ? [low, high] : [low - 1, high + 1];
     };
     const cycle = plot.timed && shown.scene.cycle, [x0, x1] = cycle ? [0, cycle.degrees] : span("x"), [y0, y1] = span("y");
     const X = (v) => 46 + (width - 60) * (v - x0) / (x1 - x0), Y = (v) => 22 + (height - 44) * (y1 - v) / (y1 - y0);
     g.font = "11px system-ui, sans-serif";
-    if (plot.timed && shown.scene.certified !== null) {
-      const from = X(abscissa(shown, drawing.angleAt(shown.scene.certified)));
-      g.fillStyle = "rgba(127,127,127,0.25)"; g.fillRect(Math.max(46, from), 22, Math.max(0, width - 14 - Math.max(46, from)), height - 44);
+    if (plot.timed) {
+      g.fillStyle = "rgba(127,127,127,0.25)";
+      for (const [from, to] of partsBeyond(shown.scene.certified, drawing.begin, drawing.end, (t) => abscissa(shown, drawing.angleAt(t)), [x0, x1])) g.fillRect(X(from), 22, X(to) - X(from), height - 44);
     }
     g.strokeStyle = COLOUR.line; g.lineWidth = 1; g.fillStyle = COLOUR.muted; g.textAlign = "right";
     for (const v of nice(y0, y1, 4)) { g.beginPath(); g.moveTo(46, Y(v)); g.lineTo(width - 14, Y(v)); g.stroke(); g.fillText(local(String(v)), 42, Y(v) + 4); }
@@ -143,7 +145,7 @@
     g.save(); g.beginPath(); g.rect(46, 20, width - 60, height - 40); g.clip();
     for (const [series, colour] of list) {
       g.beginPath();
-      series.x.forEach((v, i) => g.lineTo(X(v), Y(series.y[i])));
+      series.x.forEach((v, i) => { if (v !== null) g[i && series.x[i - 1] !== null ? "lineTo" : "moveTo"](X(v), Y(series.y[i])); });
       g.strokeStyle = COLOUR[colour]; g.lineWidth = colour === "blue" ? 1.5 : 1; g.globalAlpha = colour === "blue" ? 1 : 0.7; g.stroke(); g.globalAlpha = 1;
     }
     g.restore();

@@ -40,14 +40,15 @@
     return [first, last];
   };
   const angleOf = (radians) => (cycleAlone() ? angleInCycle(scene.cycle, radians) : radians * 180 / Math.PI);   // or counted on over all revolutions
+  const inCycle = () => overAngle() && cycleAlone();
   const abscissae = () => {
     const [first, last] = shownRows();
     return Array.from(overAngle() ? column.crank_angle.subarray(first, last) : time.subarray(first, last), (v) => (overAngle() ? angleOf(v) : 1e3 * v));
   };
+  const fold = () => (inCycle() ? foldOf(abscissae(), scene.cycle.degrees) : -1);
   const abscissaAt = (t) => (overAngle() ? angleOf(drawing.angleAt(t)) : 1e3 * t);
 
   // Dead centres in the cycle shown, as thin lines, and ticks each quarter of a revolution.
-  const inCycle = () => overAngle() && cycleAlone();
   const deadCentres = () => {
     if (!inCycle()) return [];
     const first = [Math.asin(scene.axis / (scene.crank + scene.rod)), Math.PI + Math.asin(scene.axis / (scene.rod - scene.crank))];
@@ -59,8 +60,11 @@
     : { "xaxis.autorange": true, "xaxis.tickmode": "auto" });
 
   // The part of the run beyond its certified time.
-  const uncertified = () => (scene.certified === null ? [] : [{ type: "rect", layer: "below", x0: abscissaAt(scene.certified), x1: abscissaAt(end),
-    yref: "paper", y0: 0, y1: 1, fillcolor: "rgba(127,127,127,0.18)", line: { width: 0 } }]);
+  const uncertified = () => {
+    const [from, to] = cycleAlone() ? [scene.cycle.begin, scene.cycle.end] : [drawing.begin, end];
+    return partsBeyond(scene.certified, from, to, abscissaAt, inCycle() ? [0, scene.cycle.degrees] : [abscissaAt(from), abscissaAt(to)]).map(([x0, x1]) => (
+      { type: "rect", layer: "below", x0, x1, yref: "paper", y0: 0, y1: 1, fillcolor: "rgba(127,127,127,0.18)", line: { width: 0 } }));
+  };
 
   function markPlots() {   // mark the moment shown on the time axes; not while playing, which would be too slow
     clearTimeout(marked);
@@ -74,10 +78,10 @@
   }
 
   async function changeAbscissa() {
-    const x = abscissae(), [first, last] = shownRows(), title = overAngle() ? W("crank angle [deg]") : W("time [ms]");
+    const at = fold(), x = fromFold(abscissae(), at), [first, last] = shownRows(), title = overAngle() ? W("crank angle [deg]") : W("time [ms]");
     linking = true;
     for (const chart of charts.filter((c) => c.timed)) {
-      await Plotly.update(chart.div, { x: chart.curves.map(() => x), y: chart.curves.map((curve) => values(curve, "y").slice(first, last)) },
+      await Plotly.update(chart.div, { x: chart.curves.map(() => x), y: chart.curves.map((curve) => fromFold(values(curve, "y").slice(first, last), at)) },
         { "xaxis.title.text": title, "yaxis.autorange": true, ...ticks() });
     }
     linking = false;
@@ -104,6 +108,11 @@
   const theme = () => ({ layout: { paper_bgcolor: COLOUR.paper, plot_bgcolor: COLOUR.paper, font: { color: COLOUR.ink }, shapedefaults: { line: { color: COLOUR.ink } },
     modebar: { color: COLOUR.grey, activecolor: COLOUR.ink, bgcolor: COLOUR.paper }, hoverlabel: { bgcolor: COLOUR.soft, font: { color: COLOUR.ink } },
     xaxis: { gridcolor: COLOUR.line, zerolinecolor: COLOUR.grey }, yaxis: { gridcolor: COLOUR.line, zerolinecolor: COLOUR.grey } } });
+  // Title and margins of a chart: on a phone and on paper long titles begin at its edge, and a legend may take two lines.
+  const narrow = (onPaper = false) => onPaper || window.matchMedia("(max-width: 600px)").matches;
+  const frameFor = (isNarrow, curves) => (!isNarrow ? { title: { font: { size: 14 }, xref: "paper" }, margin: { l: 70, r: 15, t: curves > 1 ? 54 : 40, b: 45 } }
+    : { title: { font: { size: 12 }, xref: "container" }, margin: { l: 55, r: 12, t: curves > 2 ? 70 : curves > 1 ? 54 : 40, b: 45 } });
+  const framed = (c, onPaper) => { const { title, margin } = frameFor(narrow(onPaper), c.div.data.length); return { "title.font.size": title.font.size, "title.xref": title.xref, margin }; };
   function recolour(sizes = () => ({})) {
     readColours();
     draw();
@@ -124,18 +133,18 @@
       return [trace(W("apart"), curve.colour, (i) => phase[i] !== 2), trace(W("in contact"), "purple", touching)];
     });
     const shapes = plot.circle ? [{ type: "circle", x0: -1, x1: 1, y0: -1, y1: 1, line: { width: 1 } }] : plot.timed ? uncertified() : [];
+    const frame = frameFor(narrow(), data.length);
     await Plotly.newPlot(div, data, { template: theme(),
-      title: { text: plot.title, font: { size: 14 }, x: 0, xref: "paper", xanchor: "left", y: 1, yref: "container",
-        yanchor: "top", pad: { t: 10 } }, margin: { l: 70, r: 15, t: data.length > 1 ? 54 : 40, b: 45 }, shapes,
-      font: { size: 11 }, separators: spoken.comma ? ",." : ".,", hovermode: plot.timed ? "x" : "closest", showlegend: data.length > 1,
-      legend: { orientation: "h", x: 0, xanchor: "left", y: 1, yanchor: "bottom" },
+      title: { ...frame.title, text: plot.title, x: 0, xanchor: "left", y: 1, yref: "container", yanchor: "top", pad: { t: 10 } },
+      margin: frame.margin, shapes, font: { size: 11 }, separators: spoken.comma ? ",." : ".,", hovermode: plot.timed ? "x" : "closest",
+      showlegend: data.length > 1, legend: { orientation: "h", x: 0, xanchor: "left", y: 1, yanchor: "bottom" },
       xaxis: { title: { text: plot.x }, zeroline: false },
       yaxis: { title: { text: plot.y }, zeroline: true, scaleanchor: plot.circle ? "x" : undefined },
-    }, { responsive: true, displaylogo: false, displayModeBar: "hover", modeBarButtons: [["toImage", "zoom2d", "pan2d", "resetScale2d"]] });
+    }, { responsive: true, displaylogo: false, displayModeBar: !narrow() && "hover", modeBarButtons: [["toImage", "zoom2d", "pan2d", "resetScale2d"]] });
     charts.push({ div, timed: plot.timed, curves: plot.curves });
     if (plot.timed) {
       div.on("plotly_relayout", (change) => linkZoom(div, change));
-      div.on("plotly_click", (event) => { controls.play(false); seek(time[shownRows()[0] + event.points[0].pointNumber]); });
+      div.on("plotly_click", (event) => { controls.play(false); const [first, last] = shownRows(); seek(fromFold(Array.from(time.subarray(first, last)), fold())[event.points[0].pointNumber]); });
     }
   }
 
@@ -161,7 +170,7 @@
   // on paper colours are light, and two charts stand beside each other
   const onPaper = (on) => {
     document.documentElement.classList.toggle("on-paper", on);
-    recolour((c) => (on ? { width: c.timed ? 340 : 330, height: c.timed ? 210 : 330 } : { width: null, height: null, autosize: true }));
+    recolour((c) => ({ ...framed(c, on), ...(on ? { width: c.timed ? 340 : 330, height: c.timed ? 210 : 330 } : { width: null, height: null, autosize: true }) }));
   };
   window.addEventListener("beforeprint", () => onPaper(true));
   window.addEventListener("afterprint", () => onPaper(false));
