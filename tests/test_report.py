@@ -295,9 +295,10 @@ CROWDED = """return gudgeon.charts.filter(c => { const box = s => c.div.querySel
   bar = box(arguments[0]); return title.right > box('.main-svg').right || (legend && legend.height && legend.top < title.bottom - 2) || (bar && bar.left < title.right); })
   .map(c => c.div.layout.title.text)"""
 
-#: Widths of a page and of what it shows: of each view; texts in tables that are cut; names that a line break parts from their colour.
+#: Widths of the views, of their first row and of its place; texts in tables that are cut; names that a line break parts from their colour.
 FITS = """const all = (q) => [...document.querySelectorAll(q)];
-return {views: all('#views canvas').map(c => c.clientWidth).filter(w => w), cut: all('#answers table, #losses table').filter(t => t.scrollWidth > t.clientWidth).map(t => t.textContent),
+const views = all('#views canvas').filter(c => c.clientWidth), first = views.filter(c => c.offsetTop === views[0].offsetTop);
+return {width: document.getElementById('views').clientWidth, row: first.map(c => c.clientWidth).reduce((a, b) => a + b), views: all('#views canvas').map(c => c.clientWidth).filter(w => w), cut: all('#answers table, #losses table').filter(t => t.scrollWidth > t.clientWidth).map(t => t.textContent),
   parted: all('.key').filter(k => k.getClientRects().length > 1).map(k => k.textContent)};"""
 
 
@@ -310,7 +311,7 @@ def check_screens(browser: Browser, page: Path, checks: Assertions, pictures: Pa
         checks.check((width := browser.width_at(wanted)) == wanted, f"{page.stem}: the page is {width} wide instead of {wanted}")
         fits = browser.run(FITS)
         checks.check(not fits["cut"] and not fits["parted"], f"{page.stem}: cut or parted texts", f"{wanted}: {fits}")
-        checks.check(min(fits["views"]) >= 150, f"{page.stem}: views of {min(fits['views'])} pixels", str(wanted))
+        checks.check(min(fits["views"]) >= 150 and fits["row"] > 0.75 * fits["width"], f"{page.stem}: views fill their rows", f"{wanted}: {fits}")
         checks.check(not (found := browser.run(CROWDED, '.modebar-group')), f"{page.stem}: crowded titles", f"{wanted}: {found}")
         if pictures:
             browser.screenshot(pictures / f"{page.stem}_{wanted}.png")
