@@ -43,6 +43,7 @@ add "examples" .venv/bin/python tests/test_examples.py "$@"
 add "Python package" .venv/bin/python tests/test_python.py "$program" "$@"
 add "periodic orbits" .venv/bin/python tests/test_orbits.py "$program" "$@"
 add "functional mock-up units" .venv/bin/python tests/test_fmu.py "$@"
+add "server of the explorer" .venv/bin/python tests/test_explore_server.py
 add "explorer in a browser" .venv/bin/python tests/test_explore.py --program "$program"
 add "shell and editor" .venv/bin/python tests/test_shell_pages.py "$program"
 echo "$passed passed, $failed failed"

@@ -11,6 +11,7 @@ scripts/setup.sh --browser installs; without them the test fails. Ends with the 
 import argparse
 import base64
 import json
+import math
 import shutil
 import socket
 import subprocess
@@ -31,7 +32,7 @@ from measured import use_virtual_environment
 use_virtual_environment()
 
 from gudgeon.language import Language
-from gudgeon.report.answers import Answers, lines, losses_of, section, warnings
+from gudgeon.report.answers import Answers, html_of, lines, losses_of, number, section, warnings
 
 TOP = Path(__file__).resolve().parents[1]
 
@@ -386,6 +387,14 @@ def check_answers(checks: Assertions) -> None:
     checks.check(("Hardest slap", "0.0464 m/s at 378.3°, film from 11.45 µm at 529.8°") in lines(SimpleNamespace(summary=rows | film))[2], "slap of a skirt on its film")
     text = section(SimpleNamespace(summary=of_losses))
     checks.check("<td>Crank pin</td><td>6 kPa</td><td>60 W</td><td>24 %</td>" in text and "<td>All losses (FMEP)</td><td>25 kPa</td><td>250 W</td>" in text, f"table of losses: {text}")
+    for value, difference, text in ((123.456, 0.02, "123.5"), (123.456, 0.3, "123.<i>5</i>"), (123.456, 0.6, "12<i>3.5</i>"), (123.456, 30, "1<i>23.5</i>"), (-0.005966, 2e-5, "−0.0059<i>66</i>"),
+                                    (1.234e-9, 1e-12, "1.23<i>4</i>e−09"), (1.234, math.inf, "<i>1.234</i>"), (1.234, math.nan, "<i>1.234</i>"), (0.0, 0.0, "0")):
+        found = html_of(number(value, difference))
+        checks.check(found == text.replace("<i>", '<span class="loose">').replace("</i>", "</span>"), f"certified digits: {found}")
+    certified = SimpleNamespace(summary=rows | {"certified_until": ("1", "s"), "cycle_max_force_difference": ("-0.3", "N")})
+    found = dict(lines(certified)[1])
+    checks.check(html_of(found["Largest force"][0]).startswith('1.234 kN at <span class="loose">12.0</span>°; reversed <span class="loose">0.3024</span> kN'), f"certified answers: {found}")
+    checks.check(html_of(Language("pt").say(found["Largest force"][0])).startswith('1,234 kN a <span class="loose">12,0</span>°'), f"in Portuguese: {Language('pt').say(found['Largest force'][0])}")
     said = warnings(SimpleNamespace(summary=rows))
     checks.check(len(said) == 2 and "piston pin changes by 65 %" in said[0] and "run.until=periodic" in said[0], f"a motion that has not settled: {said}")
     checks.check(said[1].startswith("50 of 51 contacts at the crank pin are faster"), f"contacts beyond the theory: {said}")

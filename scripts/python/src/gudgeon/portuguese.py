@@ -583,6 +583,8 @@ TEXTS = {
     "copy as": "copiar como",
     "save": "salvar",
     "case file": "arquivo do caso",
+    "sweep": "varredura",
+    "runs over the range of the slider that was moved last": "simulações ao longo da faixa do último controle movido",
     "page": "página",
     "stop": "parar",
     "close": "fechar",

@@ -10,7 +10,7 @@ from gudgeon.names import PLACES
 from gudgeon.plots.bearing import last_cycle, run_cycle
 from gudgeon.plots.columns import COLOURS, crank_angles, values_of
 from gudgeon.plots.style import BLUE
-from gudgeon.report.answers import Answers, lines, losses_of, number, title
+from gudgeon.report.answers import FIRM, Answers, lines, losses_of, number, title
 from gudgeon.results import MissingResult, Run
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -61,7 +61,7 @@ def write(axes: Axes, heading: str, head: Sequence[str], rows: Sequence[tuple[st
     edges, y = np.concatenate(([0], np.cumsum(widths))), 1.0
     step = 0.115 / (axes.get_subplotspec().get_position(axes.figure).height * A4[1])   # height of a line of 7 points
     for cells in ([("", head)] if head else []) + list(rows):
-        texts = [textwrap.fill(say(text), max(int(letters * width), 8)) for text, width in zip([cells[0], *cells[1]], widths)]
+        texts = [textwrap.fill(say(text).translate(FIRM), max(int(letters * width), 8)) for text, width in zip([cells[0], *cells[1]], widths)]
         for line in "\n".join(texts).splitlines():
             language.current.keep(line)   # it is in the page's language
         for x, text in zip(edges, texts):

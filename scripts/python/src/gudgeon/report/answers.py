@@ -5,6 +5,7 @@ All values are those of the last whole cycle; those of a run without one are of 
 
 import html
 import math
+import re
 from collections.abc import Callable
 
 from gudgeon.language import Language
@@ -14,6 +15,10 @@ from gudgeon.results import Run
 #: Shown together behind a value: the crank angle at which it occurs.
 ANGLE = "_angle"
 
+#: Digits that a certificate does not confirm, within a text; pages show them grey.
+LOOSE = str.maketrans("0123456789", "".join(chr(0x1D7F6 + digit) for digit in range(10)))
+FIRM = {loose: chr(digit) for digit, loose in zip(LOOSE, LOOSE.values())}
+
 
 class Answers:
     """The rows of a summary as numbers."""
@@ -21,6 +26,7 @@ class Answers:
     def __init__(self, run: Run) -> None:
         self.summary = run.summary
         self.of_cycle = "cycle_start" in run.summary
+        self.is_certified = "certified_until" in run.summary
 
     def __call__(self, name: str) -> float | None:
         try:
@@ -28,23 +34,41 @@ class Answers:
         except (KeyError, ValueError):
             return None
 
-    def shown(self, name: str, unit: str, factor: float = 1.0, offset: float = 0.0) -> str:
-        """A value in a unit, with its crank angle if there is one; empty without this row."""
+    def difference(self, name: str) -> float:
+        """How far the runs of the certificate are apart; 0 without a certificate, infinite where it does not have this row."""
+        found = self(f"{name}_difference") if self.is_certified else 0.0
+        return math.inf if found is None else abs(found)
+
+    def figure(self, name: str, factor: float = 1.0, offset: float = 0.0, form: str = ".4g") -> str:
+        """A value times a factor; empty without this row."""
         value = self(name)
-        if value is None:
-            return ""
-        text = f"{number(factor * (value + offset))} {unit}"
-        angle = self(name + ANGLE)
-        return text if angle is None else f"{text} at {angle:.1f}°"
+        return "" if value is None else number(factor * (value + offset), abs(factor) * self.difference(name), form)
+
+    def shown(self, name: str, unit: str, factor: float = 1.0, offset: float = 0.0, form: str = ".4g") -> str:
+        """A value in a unit, with its crank angle if there is one; empty without this row."""
+        text, angle = self.figure(name, factor, offset, form), self.figure(name + ANGLE, form=".1f")
+        return text and f"{text} {unit}" + (f" at {angle}°" if angle else "")
 
     def of(self, pre: str, in_cycle: str, in_run: str) -> str:
         """The name of a bearing's row, of the last cycle or of the whole run."""
         return pre + (in_cycle if self.of_cycle else in_run)
 
 
-def number(value: float) -> str:
-    """A value with four digits and a typographic minus."""
-    return f"{value:.4g}".replace("-", "−")
+def number(value: float, difference: float = 0.0, form: str = ".4g") -> str:
+    """A value with four digits and a typographic minus. Digits are LOOSE where half a unit of their place is below the difference."""
+    text = f"{value:{form}}"
+    if difference != 0 and math.isfinite(value):
+        digits, mark, exponent = text.partition("e")
+        units = len(digits.partition(".")[0]) - 1  # the place of units in the text
+        places = ((units - i if i <= units else units - i + 1) + int(exponent or 0) for i in range(len(digits)))
+        text = "".join(one if difference <= 0.5 * 10.0**place else one.translate(LOOSE) for one, place in zip(digits, places)) + mark + exponent
+    return text.replace("-", "−")
+
+
+def html_of(text: str) -> str:
+    """A text in HTML, with its LOOSE digits as such."""
+    loose = "".join(map(chr, FIRM))
+    return re.sub(f"[{loose}](?:[.,]?[{loose}])*", lambda found: f'<span class="loose">{found[0].translate(FIRM)}</span>', html.escape(text))
 
 
 def gap(rows: Answers, pre: str, is_film: bool) -> str:
@@ -63,39 +87,37 @@ def temperature(rows: Answers, pre: str) -> str:
 
 def losses(rows: Answers, pre: str) -> str:
     """Loss of a bearing: of its film and of its friction together."""
-    parts = [value for part in ("film", "friction") if (value := rows(f"{pre}cycle_mean_{part}_power")) is not None]
-    return f"{number(sum(parts))} W" if parts else ""
+    names = [name for part in ("film", "friction") if rows(name := f"{pre}cycle_mean_{part}_power") is not None]
+    return f"{number(sum(rows(name) or 0.0 for name in names), sum(map(rows.difference, names)))} W" if names else ""
 
 
 def touching(rows: Answers, pre: str) -> str:
     """Share of the time in contact, where there has been any, with the number of impacts and the speed of the hardest one."""
-    share = rows(rows.of(pre, "cycle_contact_share", "contact_time_fraction"))
-    if share is None or not (rows(f"{pre}contacts") or share):
+    name, speed = rows.of(pre, "cycle_contact_share", "contact_time_fraction"), rows.figure(f"{pre}cycle_max_impact_speed")
+    if rows(name) is None or not (rows(f"{pre}contacts") or rows(name)):
         return ""
-    impacts, speed = rows(f"{pre}cycle_impacts"), rows(f"{pre}cycle_max_impact_speed")
-    return f"{100 * share:.3g} %" + (f", {impacts:.0f} impacts at up to {number(speed)} m/s" if impacts and speed is not None else "")
+    impacts = rows.figure(f"{pre}cycle_impacts", form=".0f") if rows(f"{pre}cycle_impacts") else ""
+    return f"{rows.figure(name, 100, form='.3g')} %" + (f", {impacts} impacts at up to {speed} m/s" if impacts and speed else "")
 
 
 def force(rows: Answers, pre: str) -> str:
     """The largest force, and that along the rod in the other sense."""
     text = rows.shown(rows.of(pre, "cycle_max_force", "max_pin_force"), "kN", 1e-3)
-    back, degrees = rows(f"{pre}cycle_reversed_load"), rows(f"{pre}cycle_degrees_under_reversed_load")
-    if not text or back is None or degrees is None:
+    back, degrees = rows.figure(f"{pre}cycle_reversed_load", 1e-3), rows.figure(f"{pre}cycle_degrees_under_reversed_load", form=".0f")
+    if not (text and back and degrees):
         return text
-    return text + (f"; reversed {number(1e-3 * back)} kN over {degrees:.0f}°" if back > 0 else "; never reversed")
+    return text + (f"; reversed {back} kN over {degrees}°" if (rows(f"{pre}cycle_reversed_load") or 0.0) > 0 else "; never reversed")
 
 
 def slap(rows: Answers) -> str:
     """The hardest impact of the skirt, or of one with a film its fastest end and the least film."""
-    speed, film = rows("cycle_max_slap_speed"), rows("cycle_min_skirt_film_thickness")
-    if speed is not None and film is not None:
-        thin = f"film from {number(1e6 * film)} µm at {rows('cycle_min_skirt_film_thickness_angle'):.1f}°"
-        return f"{number(speed)} m/s at {rows('cycle_max_slap_speed_angle'):.1f}°, {thin}"
-    speed, energy, impacts = (rows(f"cycle_slap_{name}") for name in ("speed", "energy", "impacts"))
-    if speed is None or energy is None or impacts is None:
+    if (speed := rows.shown("cycle_max_slap_speed", "m/s")) and (film := rows.shown("cycle_min_skirt_film_thickness", "µm", 1e6)):
+        return f"{speed}, film from {film}"
+    speed, energy, impacts = (rows.figure(f"cycle_slap_{name}", factor, form=form) for name, factor, form in (("speed", 1, ".4g"), ("energy", 1e3, ".4g"), ("impacts", 1, ".0f")))
+    if not (speed and energy and impacts):
         return ""
     corner = rows.summary["cycle_slap_corner"][0].removeprefix("guide_")
-    return f"{number(speed)} m/s at {rows('cycle_slap_angle'):.1f}°, corner {corner}, {number(1e3 * energy)} mJ; {impacts:.0f} impacts"
+    return f"{speed} m/s at {rows.figure('cycle_slap_angle', form='.1f')}°, corner {corner}, {energy} mJ; {impacts} impacts"
 
 
 #: Lines of bearings: name, and the text for the rows with a prefix.
@@ -115,15 +137,10 @@ OF_BEARINGS: tuple[tuple[str, Callable[[Answers, str], str]], ...] = (
 def machine(rows: Answers) -> list[tuple[str, str]]:
     """Lines of the machine."""
     found = []
-    pressures = [f"{name} {number(1e-5 * value)}" for key, name in (("imep", "IMEP"), ("bmep", "BMEP"), ("fmep", "FMEP"))
-                 if (value := rows(f"cycle_{key}")) is not None]
-    if pressures:
-        one_way = rows("cycle_one_way_fmep")
-        text = f" (bearings {number(1e-5 * one_way)}, not fed back)" if one_way else ""
+    if pressures := [f"{name} {text}" for name in ("IMEP", "BMEP", "FMEP") if (text := rows.figure(f"cycle_{name.lower()}", 1e-5))]:
+        text = f" (bearings {rows.figure('cycle_one_way_fmep', 1e-5)}, not fed back)" if rows("cycle_one_way_fmep") else ""
         found.append(("Mean effective pressures", ", ".join(pressures) + text + " bar"))
-    powers = [f"{said} {number(1e-3 * value)} kW" for key, said in (("indicated", "indicated"), ("brake", "brake"))
-              if (value := rows(f"cycle_{key}_power")) is not None]
-    if powers:
+    if powers := [f"{said} {text}" for said in ("indicated", "brake") if (text := rows.shown(f"cycle_{said}_power", "kW", 1e-3))]:
         found.append(("Power", ", ".join(powers)))
     gas = [f"{name} {text}" for name, text in (
         ("up to", rows.shown("cycle_max_gas_temperature", "K", 1)), ("to the walls", rows.shown("cycle_heat_to_walls", "J", 1)),
@@ -138,19 +155,15 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
         found.append(("Hardest slap", text))
     if text := rows.shown("cycle_max_cylinder_pressure", "bar", 1e-5):
         found.append(("Cylinder pressure", text))
-    speed = rows(rows.of("", "cycle_mean_crank_speed", "mean_crank_speed"))
-    if speed is not None:
-        text = f"{number(speed * 9.549296585513721)} rpm"
-        if (change := rows("cycle_speed_fluctuation")) is not None and change > 1e-12:
-            text += f", fluctuates by {100 * change:.3g} %"
+    if text := rows.shown(rows.of("", "cycle_mean_crank_speed", "mean_crank_speed"), "rpm", 30 / math.pi):
+        if (rows("cycle_speed_fluctuation") or 0.0) > 1e-12:
+            text += f", fluctuates by {rows.figure('cycle_speed_fluctuation', 100, form='.3g')} %"
         found.append(("Crank speed", text))
     if text := rows.shown("cycle_max_drive_torque", "N m", 1):
         found.append(("Largest drive torque", text))
-    swing, drift = rows("pin_swing"), rows("pin_drift_per_revolution")
-    if swing is not None:
-        text = f"swings by {math.degrees(swing):.3g}°"
-        turned = "" if drift is None else f", drifts by {math.degrees(drift):.3g}° a revolution".replace("-", "−")
-        found.append(("Piston pin", text + turned))
+    if swing := rows.figure("pin_swing", 180 / math.pi, form=".3g"):
+        drift = rows.figure("pin_drift_per_revolution", 180 / math.pi, form=".3g")
+        found.append(("Piston pin", f"swings by {swing}°" + (f", drifts by {drift}° a revolution" if drift else "")))
     return found
 
 
@@ -197,7 +210,7 @@ def section(run: Run, language: Language | None = None) -> str:
     names, ours, others = lines(run)
     if not (ours or others):
         return ""
-    cell = html.escape
+    cell = html_of
     head = "".join(f"<th>{cell(say(name))}</th>" for name in names)
     body = "".join(f"<tr><td>{cell(say(name))}</td>" + "".join(f"<td>{cell(say(text))}</td>" for text in texts) + "</tr>" for name, texts in ours)
     bearings = f"<table><tr><th></th>{head}</tr>{body}</table>" if ours else ""

@@ -6,6 +6,7 @@ and the bytes of `scene_of`.
 """
 
 import dataclasses
+import gzip
 import hmac
 import http.server
 import json
@@ -37,6 +38,9 @@ HIDDEN = re.compile(r"(integrator|output|run|case)\.|initial\.crank_angle")
 FIRST = [re.compile(part) for part in (
     r"clearance$", r"\.oil$", r"viscosity$", r"temperature$", r"initial\.crank_speed$", r"restitution$", r"contact\.", r"friction\.", r"guide\.", r"combustion\.|cylinder_pressure\.|gas\.",
 )]  # fmt: skip
+
+#: On what a film's table depends: it moves to other clearances and viscosities in some milliseconds.
+TABLE = re.compile(r"bearing_(length|radius)|lubrication\.(law|variant|cavitation|film_points|table_file)|relative_tolerance")
 
 #: Oils of the menu; any other name can be set in the case.
 OILS = ("ISO VG 32", "ISO VG 46", "ISO VG 68", "ISO VG 100", "SAE 10W", "SAE 20", "SAE 30", "SAE 40", "SAE 50", "0W-20", "5W-30", "10W-40", "15W-40")
@@ -110,6 +114,7 @@ class Explorer:
         self.case, self.source, self.words, self.names, self.timeout = case, source, words, names, timeout
         self.language = language or Language()
         self.newest: dict[str, int] = {}  # of each page, its last request
+        self.tables: set[tuple[Any, ...]] = set()  # what whole tables have been made for
 
     # the case
 
@@ -146,7 +151,7 @@ class Explorer:
     def controls(self, values: Mapping[str, Any] = {}, more: Iterable[str] = ()) -> list[dict[str, Any]]:
         """The controls of the case with these values: of what it gives, of the keys of a law that was chosen, and of more keys."""
         case = self.changed(values)
-        names = self.names or [name for name, key in gudgeon.keys.items() if case.is_given(key) and not HIDDEN.match(name)]
+        names = list(self.names) if self.names else [name for name, key in gudgeon.keys.items() if case.is_given(key) and not HIDDEN.match(name)]
         for chosen in values:
             keys = gudgeon.groups()[gudgeon.keys[chosen].group].keys
             names += [f"{key.group}.{key.name}" for key in keys if key.choice == gudgeon.keys[chosen].name and case[chosen] in key.laws]
@@ -156,13 +161,19 @@ class Explorer:
         return [made for name in names if (made := self.control(case, name))]
 
     def coarse(self, case: gudgeon.Case) -> gudgeon.Case | None:
-        """The case with small tables of its films; None if it has no tables whose size is the program's own."""
+        """The case with small tables of its films; None if it has no tables whose size is the program's own, or has them whole."""
+        if self.table_of(case) in self.tables:
+            return None
         found: dict[str, int] = {}
         for name in (name for name in gudgeon.groups() if f"{name}.table_points" in gudgeon.keys and name in case):
             law = case[f"{name}.law"] in gudgeon.keys[f"{name}.table_points"].laws
             if law and case[f"{name}.variant"] == "table" and not case[f"{name}.table_points"]:
                 found |= {f"{name}.table_points": 33, f"{name}.film_points": 32}
         return case.set(found) if found else None
+
+    def table_of(self, case: gudgeon.Case) -> tuple[Any, ...]:
+        """The values of a case on which its tables depend."""
+        return tuple((name, case[name]) for name, key in gudgeon.keys.items() if TABLE.search(name) and case.is_given(key))
 
     # runs
 
@@ -185,6 +196,8 @@ class Explorer:
             run, failed = error.run, str(error)
         except TimeoutError as error:
             run, failed = error.run, f"{error}: gudgeon-plot explore --timeout sets this limit"  # type: ignore[attr-defined]
+        if small is None:
+            self.tables.add(self.table_of(case))
         tell(1)
         ran = time.perf_counter()
         if len(run) < 3:
@@ -203,14 +216,14 @@ class Explorer:
         whole, say = drawable(run), self.language.say
         scene, data = scene_of(of_cycle(whole), None, None, self.language, MOST_ROWS, self.is_shown)
         places, of_bearings, of_machine = answers.lines(whole)
-        found = [(say(name) + (f", {say(place)}" if len(places) > 1 else ""), say(text))
+        found = [(say(name) + (f", {say(place)}" if len(places) > 1 else ""), answers.html_of(say(text)))
                  for name, texts in of_bearings for place, text in zip(places, texts) if text]  # fmt: skip
         notes = [*(say(text) for text in warnings(whole)), *run.notes]
         if run.certificate is not None:
             notes.insert(0, say(f"Certified: {run.certificate.digits:.3g} digits until {1e3 * run.certificate.until:.4g} ms"))
         elif scene["contacts"]:
             notes.append(say("Contacts follow each other unpredictably: compare answers over many cycles, not single curves."))
-        head = {"scene": scene, "answers": [*found, *((say(name), say(text)) for name, text in of_machine)], "notes": notes}
+        head = {"scene": scene, "answers": [*found, *((say(name), answers.html_of(say(text))) for name, text in of_machine)], "notes": notes}
         return head, data
 
     @staticmethod
@@ -282,7 +295,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
         if not self.is_allowed(token):
             self.answer("open the address that gudgeon-plot explore has printed\n", "text/plain", 403)
         elif path == "/":
-            self.answer(self.server.explorer.html(self.server.token), "text/html; charset=utf-8")
+            text, packs = self.server.explorer.html(self.server.token).encode(), "gzip" in self.headers.get("Accept-Encoding", "")
+            self.answer(gzip.compress(text) if packs else text, "text/html; charset=utf-8", encoding="gzip" if packs else "identity")
         elif path == "/plotly.js":
             from gudgeon.report.page import LIBRARY
 

@@ -479,8 +479,10 @@ def scene_of(
 
 
 def text_of(name: str, language: Language) -> str:
-    """A file of the pages, its texts in [[...]] translated."""
-    text = (PAGE / name).read_text(encoding="utf-8").replace("{{motion}}", (PAGE / "motion.html").read_text(encoding="utf-8"))
+    """A file of the pages with the parts that they share, its texts in [[...]] translated."""
+    text = (PAGE / name).read_text(encoding="utf-8")
+    for part in ("head", "motion"):
+        text = text.replace(f"{{{{{part}}}}}", (PAGE / f"{part}.html").read_text(encoding="utf-8"))
     return re.sub(r"\[\[(.+?)\]\]", lambda found: html.escape(language.say(found[1])), text)
 
 

@@ -440,14 +440,15 @@ function drawingOf(scene, column, pressure, oil, moved = () => {}, others = null
     const found = forward ? scene.contacts.find((c) => c.begin > now + 1e-9) : scene.contacts.filter((c) => c.begin < now - 2e-9).pop();
     return found ? found.begin + 1e-9 : null;
   };
-  // The crank angle at a time [rad].
-  const angleAt = (t) => {
-    let i = time.findIndex((other) => other >= t);
+  const between = (xs, ys, x) => {
+    let i = xs.findIndex((other) => other >= x);
     if (i < 0) i = scene.rows - 1;
-    const from = Math.max(i - 1, 0), part = i > from ? (t - time[from]) / (time[i] - time[from]) : 0;
-    return column.crank_angle[from] + part * (column.crank_angle[i] - column.crank_angle[from]);
+    const from = Math.max(i - 1, 0), part = i > from ? (x - xs[from]) / (xs[i] - xs[from]) : 0;
+    return ys[from] + part * (ys[i] - ys[from]);
   };
-  return { scene, column, begin, end, seek, draw, at, magnification: shownMagnification, neighbour, contact, angleAt, get now() { return now; } };
+  const angleAt = (t) => between(time, column.crank_angle, t);   // the crank angle at a time [rad]
+  const timeAt = (angle) => between(column.crank_angle, time, angle);
+  return { scene, column, begin, end, seek, draw, at, magnification: shownMagnification, neighbour, contact, angleAt, timeAt, get now() { return now; } };
 }
 
 // Buttons, sliders and keys that move the drawing which `current()` returns. `stopped` is called when it stands still again.

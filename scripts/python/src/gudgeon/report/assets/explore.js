@@ -3,7 +3,7 @@
   const settings = JSON.parse(byId("settings").textContent), page = Math.random().toString(36).slice(2);
   const MOST_KEPT = 4, RESTS = 350, GIVE_UP = 1000, SAYS = 300;   // ms: of a hand at rest, of a run that a newer one ends, before the clock is shown
   const values = {}, sliders = {};   // values that differ from the case; controls by key
-  let shown = null, drawing = null, controls = null, kept = [];
+  let shown = null, drawing = null, controls = null, kept = [], swept = null;   // swept: the slider that was moved last
   Object.assign(spoken, settings);
   readColours();
   const element = (tag, more = {}, ...inside) => { const made = Object.assign(document.createElement(tag), more); made.append(...inside); return made; };
@@ -69,30 +69,34 @@
     controls.labels();
   }
   function redraw() {   // at the same crank angle as before
-    const { scene } = shown, part = drawing ? (drawing.now - drawing.begin) / (drawing.end - drawing.begin) : null;
+    const { scene } = shown, angle = drawing ? abscissa(drawing, drawing.at("crank_angle")) : null;
     drawing = drawingOf(scene, shown.column, shown.pressure, shown.oil, markCharts, kept.map((run, i) => ({ ...run, colour: GHOSTS[i] })));
     tell();
     charts();
-    drawing.seek(part === null ? scene.start : drawing.begin + part * (drawing.end - drawing.begin));
+    drawing.seek(angle === null ? scene.start : drawing.timeAt(atAbscissa(drawing, angle)));
   }
 
   // ---- answers of this run and of those that are kept
   const GHOSTS = ["vermilion", "green", "sky", "grey"];
-  const named = (run) => Object.entries(run.values).map(([name, value]) => `${name} = ${sliders[name] ? sliders[name].text(value) : value}`).join("\n") || W("as given");
+  const valueOf = (run, name) => (sliders[name] ? sliders[name].text(name in run.values ? run.values[name] : sliders[name].about.start) : name in run.values ? String(run.values[name]) : W("as given"));
+  const named = (run) => Object.keys(run.values).map((name) => `${name} = ${valueOf(run, name)}`).join(", ") || W("as given");
   function tell() {
     const runs = [shown, ...kept], of = runs.map((run) => Object.fromEntries(run.head.answers));
-    const heads = kept.map((run, i) => element("th", { title: named(run) }, element("i", { style: `background: ${COLOUR[GHOSTS[i]]}` }),
+    const keys = [...new Set(runs.flatMap((run) => Object.keys(run.values)))].filter((name) => kept.some((run) => run.values[name] !== shown.values[name]));
+    const heads = kept.map((run, i) => element("th", {}, element("i", { style: `background: ${COLOUR[GHOSTS[i]]}` }),
       element("button", { type: "button", textContent: W("back"), onclick: () => restore(run.values) }), " ",
       element("button", { type: "button", textContent: "×", ariaLabel: W("remove"), onclick: () => { kept = kept.filter((other) => other !== run); redraw(); } })));
     byId("answers").className = shown.head.draft || shown.head.failed ? "draft" : "";
     byId("answers").replaceChildren(element("tr", {}, element("th"), element("th", { textContent: shown.head.draft ? W("draft") : W("now") }), ...heads),
-      ...Object.keys(of[0]).map((name) => element("tr", {}, element("td", { textContent: name }), ...of.map((one) => element("td", { textContent: one[name] || "" })))));
+      ...keys.map((name) => element("tr", { className: "key-row" }, element("td", { textContent: name }), ...runs.map((run) => element("td", { textContent: valueOf(run, name) })))),
+      ...Object.keys(of[0]).map((name) => element("tr", {}, element("td", { textContent: name }), ...of.map((one) => element("td", { innerHTML: one[name] || "" })))));
     byId("notes").replaceChildren(...shown.head.notes.map((text) => element("p", { textContent: text })));
   }
   function keep() { if (shown) { kept = [shown, ...kept].slice(0, MOST_KEPT); redraw(); } }
 
   // ---- curves over the crank angle of the cycle, kept runs behind
-  const abscissa = (run, radians) => (run.scene.cycle ? angleInCycle(run.scene.cycle, radians) : radians * 180 / Math.PI);
+  const abscissa = ({ scene }, radians) => (scene.cycle ? angleInCycle(scene.cycle, radians) : radians * 180 / Math.PI);
+  const atAbscissa = ({ scene: { cycle } }, degrees) => Math.PI / 180 * (cycle ? (degrees - angleInCycle(cycle, cycle.angle) + cycle.degrees) % cycle.degrees : degrees) + (cycle ? cycle.angle : 0);
   function seriesOf(run, title) {
     const plot = run.scene.plots.find((one) => one.title === title), curve = plot && plot.curves[0];
     if (!curve) return null;
@@ -105,7 +109,7 @@
     const { plots } = shown.scene, there = [...byId("charts").children].map((one) => one.dataset.title);
     if (there.join() !== plots.map((plot) => plot.title).join()) {
       byId("charts").replaceChildren(...plots.map((plot) => {
-        const canvas = element("canvas", { role: "img", ariaLabel: plot.title, onclick: () => zoom(plot.title) }), figure = element("figure", {}, canvas, element("i"));
+        const canvas = element("canvas", { role: "button", tabIndex: 0, ariaLabel: plot.title, onclick: () => zoom(plot.title), onkeydown: (event) => { if (event.key === "Enter") zoom(plot.title); } }), figure = element("figure", {}, canvas, element("i"));
         figure.dataset.title = plot.title;
         return figure;
       }));
@@ -166,7 +170,7 @@
       await new Promise((done) => { script.onload = done; document.head.append(script); });
     }
     const plot = shown.scene.plots.find((one) => one.title === title), colours = [...GHOSTS.slice(0, kept.length).reverse(), "blue"];
-    const data = [...[...kept].reverse(), shown].map((run, i) => ({ series: seriesOf(run, title), name: run === shown ? W("now") : named(run).replaceAll("\n", ", "), line: { color: COLOUR[colours[i]], width: 1.2 } }))
+    const data = [...[...kept].reverse(), shown].map((run, i) => ({ series: seriesOf(run, title), name: run === shown ? W("now") : named(run), line: { color: COLOUR[colours[i]], width: 1.2 } }))
       .filter(({ series }) => series).map(({ series, ...rest }) => ({ ...series, ...rest, type: "scatter", mode: "lines" }));
     Plotly.newPlot("zoomed", data, { title: { text: plot.title }, paper_bgcolor: COLOUR.paper, plot_bgcolor: COLOUR.paper, font: { color: COLOUR.ink }, separators: spoken.comma ? ",." : ".,",
       xaxis: { title: { text: plot.timed ? W("crank angle [deg]") : plot.x } }, yaxis: { title: { text: plot.y } } }, { responsive: true, displaylogo: false });
@@ -195,7 +199,8 @@
         return about.kind === "integer" ? Math.round(value) : (Number((value * factor + offset).toPrecision(4)) - offset) / factor;
       };
       put = (value) => { box.value = text(value); if (typeof value === "number") slider.value = place(value); };
-      slider.addEventListener("input", () => { const value = at(slider.value / 200); box.value = text(value); set(value); });
+      slider.addEventListener("input", () => { const value = at(slider.value / 200); box.value = text(value); swept = { name, at }; set(value); });
+      swept = swept || { name, at };
       box.addEventListener("change", () => {
         const typed = box.value.trim(), found = typed.replace(",", ".").match(/^([-+]?[\d.]+(?:e[-+]?\d+)?)\s*(.*)$/i);
         const value = found && Number.isFinite(Number(found[1])) && (found[2] === "" || found[2] === unit) ? (Number(found[1]) - offset) / factor : typed;
@@ -256,10 +261,12 @@
   function copy(text) { byId("copied").textContent = text; navigator.clipboard?.writeText(text).catch(() => {}); }
   const quoted = (value, yes, no) => (typeof value === "boolean" ? (value ? yes : no) : value);
   byId("copy-set").addEventListener("click", () => copy(["gudgeon", ...Object.entries(values).map(([name, value]) => `--set '${name}=${quoted(value, "T", "F")}'`), settings.words_of_case].join(" ")));
-  byId("copy-python").addEventListener("click", () => {
-    const list = Object.entries(values).map(([name, value]) => `"${name}": ${typeof value === "boolean" ? quoted(value, "True", "False") : JSON.stringify(value)}`).join(", ");
-    copy(list ? `${settings.source}.set({${list}}).run()` : `${settings.source}.run()`);
-  });
+  const inPython = (without) => {
+    const list = Object.entries(values).filter(([name]) => name !== without).map(([name, value]) => `"${name}": ${typeof value === "boolean" ? quoted(value, "True", "False") : JSON.stringify(value)}`).join(", ");
+    return list ? `${settings.source}.set({${list}})` : settings.source;
+  };
+  byId("copy-python").addEventListener("click", () => copy(`${inPython()}.run()`));
+  byId("copy-sweep").addEventListener("click", () => copy(`gudgeon.sweep(${inPython(swept.name)}, {"${swept.name}": [${Array.from({ length: 11 }, (_, i) => swept.at(i / 10)).join(", ")}]})`));
   function save(content, ending) {
     const link = element("a", { href: URL.createObjectURL(new Blob([content])), download: `${settings.name}${ending}` });
     link.click();
@@ -273,9 +280,34 @@
     });
   }
 
+  // The right-hand side of the page as it is shown: its canvases, its colours, and its texts word by word.
+  async function picture() {
+    const main = document.querySelector("main"), area = main.getBoundingClientRect(), ratio = 2, outside = "#controls, #busy, [hidden], #answers button";
+    const canvas = element("canvas", { width: ratio * main.clientWidth, height: ratio * main.scrollHeight }), g = canvas.getContext("2d");
+    g.scale(ratio, ratio); g.fillStyle = COLOUR.paper; g.fillRect(0, 0, canvas.width, canvas.height);
+    g.translate(-area.left, main.scrollTop - area.top);
+    const drawn = [...main.querySelectorAll("*")].filter((one) => !one.closest(outside) && one.getClientRects().length);
+    for (const one of drawn) {
+      const box = one.getBoundingClientRect(), style = getComputedStyle(one), mark = getComputedStyle(one, "::before");
+      g.fillStyle = style.backgroundColor; g.fillRect(box.left, box.top, box.width, box.height);
+      if (one.matches(".key")) { g.fillStyle = mark.backgroundColor; g.fillRect(box.left, box.top + 3, parseFloat(mark.width), parseFloat(mark.height)); }
+      if (one.tagName === "CANVAS") g.drawImage(one, box.left, box.top, box.width, box.height);
+      g.fillStyle = style.color; g.font = `${style.fontWeight} ${style.fontSize} ${style.fontFamily}`; g.textBaseline = "middle";
+      for (const text of [...one.childNodes].filter((node) => node.nodeType === Node.TEXT_NODE)) {
+        for (const { 0: word, index } of text.data.matchAll(/\S+/g)) {
+          const range = document.createRange();
+          range.setStart(text, index); range.setEnd(text, index + word.length);
+          const place = range.getBoundingClientRect();
+          g.fillText(word, place.left, (place.top + place.bottom) / 2);
+        }
+      }
+    }
+    save(await new Promise((done) => { canvas.toBlob(done, "image/png"); }), ".png");
+  }
+  byId("save-picture").addEventListener("click", picture);
   byId("keep").addEventListener("click", keep);
   byId("reset").addEventListener("click", () => restore({}));
-  document.addEventListener("keydown", (event) => { if (event.key === "k" && event.target.type !== "text" && event.target.id !== "more") keep(); });
+  document.addEventListener("keydown", (event) => { if (event.key === "k" && !(event.ctrlKey || event.metaKey || event.altKey) && !event.target.matches("[type=text], select, #more")) keep(); });
   const again = () => { if (shown) { readColours(); redraw(); } };
   window.addEventListener("resize", again);
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
