@@ -19,6 +19,8 @@ TEXTS = {
     "force on the piston pin [kN]": "força no pino do pistão [kN]",
     "revolutions of the crank": "rotações da manivela",
     "jump {}": "salto {}",
+    "settled: {} °C": "regime: {} °C",
+    "least of each cycle": "mínimo de cada ciclo",
     "{}: the film settles at {} °C; each jump skips the cycles that warm it": "{}: o filme chega a {} °C; cada salto omite os ciclos que o aquecem",
     "force on the piston pin; at the right its largest value": "força no pino do pistão; à direita seu maior valor",
     "A second clearance adds impacts; an elastic rod or crankshaft softens them": "Uma segunda folga causa mais impactos; biela ou virabrequim elásticos os suavizam",

@@ -54,8 +54,12 @@ def plot_column(axis: Axes, runs: Sequence[Run], column: str, over: str = "crank
         x, order = 1e3 * run["time"][rows], slice(None)
         if over != "time":
             x, order = crank_angles(run["crank_angle"][rows], None if cycle is None else run.cycle)
-        axis.plot(x, factor * column_values[rows][order], color=colour, label=run.name)
-        if cycle is None and len(runs) == 1:
+        alone = cycle is None and len(runs) == 1
+        if alone and over == "time" and column.endswith("film_thickness") and jumps_of(run, column.removesuffix("film_thickness")):
+            show_least(axis, run, x, factor * column_values)
+        else:
+            axis.plot(x, factor * column_values[rows][order], color=colour, label=run.name)
+        if alone:
             shade_uncertified(axis, run, x)
             mark_jumps(axis, run, column, x, factor * column_values)
         if cycle is not None and over != "time":
@@ -63,16 +67,39 @@ def plot_column(axis: Axes, runs: Sequence[Run], column: str, over: str = "crank
     axis.set_ylabel(f"{column.replace('_', ' ')}\n[{shown}]" if shown else column.replace("_", " "))
 
 
+def jumps_of(run: Run, place: str) -> int:
+    """How often the temperature of the film of this place ("", "crank_pin_", ...) jumped to its settled value."""
+    return int(float(run.summary.get(f"{place}temperature_jumps", ("0", ""))[0]))
+
+
+def settled_temperature(run: Run, column: str) -> float | None:
+    """The mean temperature [°C] in the last cycle of a film that has settled by jumps; None of any other column."""
+    place = column.removesuffix("film_temperature")
+    mean = run.summary.get(f"{place}cycle_mean_film_temperature")
+    return float(mean[0]) - 273.15 if mean and place != column and jumps_of(run, place) else None
+
+
 def mark_jumps(axis: Axes, run: Run, column: str, x: np.ndarray, values: np.ndarray) -> None:
     """Number the jumps of a film's temperature to its settled value: they stand for many cycles that are left out. Those that cannot be
-    seen have no number."""
-    name = column.removesuffix("film_temperature")
-    jumps = int(float(run.summary.get(f"{name}temperature_jumps", ("0", ""))[0])) if name != column else 0
+    seen have no number. A band marks the settled value."""
+    settled = settled_temperature(run, column)
+    if settled is None:
+        return
+    axis.axhline(settled, color=ORANGE, alpha=0.4, linewidth=5, zorder=0)
+    axis.annotate(f"settled: {settled:.1f} °C", (1, settled), xycoords=("axes fraction", "data"), xytext=(0, 5), textcoords="offset points", ha="right", fontsize=7)
     steps = np.abs(np.diff(values))
-    rows = sorted(row for row in np.argsort(-steps)[:jumps] if steps[row] > 0.005 * np.ptp(values))
+    rows = sorted(row for row in np.argsort(-steps)[: jumps_of(run, column.removesuffix("film_temperature"))] if steps[row] > 0.005 * np.ptp(values))
     for i, row in enumerate(rows):
         axis.axvline(x[row], color=GREY, linestyle=":", linewidth=0.8)
         axis.annotate(f"jump {i + 1}", (x[row], 0.06), xycoords=("data", "axes fraction"), xytext=(3, 0), textcoords="offset points", fontsize=7, color=GREY)
+
+
+def show_least(axis: Axes, run: Run, x: np.ndarray, values: np.ndarray) -> None:
+    """Draw the least value of each cycle in place of the curve: while a film warms up, its change from cycle to cycle is the question."""
+    least = [rows.start + int(values[rows].argmin()) for rows in (rows_of_cycle(run, number) for number in range(whole_cycles(run)))]
+    axis.plot(x[least], values[least], "o--", color=BLUE, markersize=3.5, linewidth=0.6)
+    axis.margins(y=0.2)
+    axis.annotate("least of each cycle", (1, 1), xycoords="axes fraction", xytext=(0, -8), textcoords="offset points", ha="right", fontsize=7)
 
 
 def crank_angles(angle: np.ndarray, cycle: float | None) -> tuple[np.ndarray, np.ndarray | slice]:
@@ -89,22 +116,28 @@ def rows_of_cycle(run: Run, cycle: int | None) -> slice:
     """The rows of one whole cycle of a run, or all rows. The last one ends where the cycle ends whose answers are in the summary."""
     if cycle is None:
         return slice(None)
-    begin, length = (float(run.summary.get(f"cycle_{name}", (np.nan, ""))[0]) for name in ("start", "duration"))
-    travel = cycles_turned(run["time"], run["crank_angle"], run.cycle, begin + length if np.isfinite(begin + length) else None)
-    whole = max(int(travel[-1] + 1e-6), 1)
-    wanted = cycle if cycle >= 0 else whole + cycle
+    travel = turned(run)
+    wanted = cycle if cycle >= 0 else whole_cycles(run) + cycle
     found = np.flatnonzero((travel >= wanted - 1e-9) & (travel <= wanted + 1 + 1e-9))
     return slice(found[0], found[-1] + 1) if found.size else slice(0, 0)
+
+
+def turned(run: Run) -> np.ndarray:
+    """Cycles that the crank has turned through until each row; whole where the cycle ends whose answers are in the summary."""
+    begin, length = (float(run.summary.get(f"cycle_{name}", (np.nan, ""))[0]) for name in ("start", "duration"))
+    return cycles_turned(run["time"], run["crank_angle"], run.cycle, begin + length if np.isfinite(begin + length) else None)
+
+
+def whole_cycles(run: Run) -> int:
+    return max(int(turned(run)[-1] + 1e-6), 1)
 
 
 def title_of(run: Run, columns: Sequence[str]) -> str:
     """The title or the name of the case, with the temperature to which a film has settled by jumps."""
     title = str(run.parameter("case", "title", "")) or run.name
-    for column in columns:
-        place = column.removesuffix("film_temperature")
-        if place != column and f"{place}temperature_jumps" in run.summary and f"{place}cycle_mean_film_temperature" in run.summary:
-            settled = float(run.summary[f"{place}cycle_mean_film_temperature"][0]) - 273.15
-            return f"{run.name}: the film settles at {settled:.1f} °C; each jump skips the cycles that warm it"
+    settled = next((found for column in columns if (found := settled_temperature(run, column)) is not None), None)
+    if settled is not None:
+        return f"{run.name}: the film settles at {settled:.1f} °C; each jump skips the cycles that warm it"
     return title
 
 
