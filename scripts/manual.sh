@@ -27,7 +27,14 @@ quietly .venv/bin/ford scripts/manual/api.md
 quietly env NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs build --strict -f scripts/manual/mkdocs.yml
 echo build/manual/index.html
 $pdf || exit 0
-chromium --headless --no-sandbox --disable-gpu --no-pdf-header-footer --print-to-pdf=build/manual/gudgeon.pdf build/manual/print.html \
-  >"$log" 2>&1   # it complains of a machine without a desktop
-[ -s build/manual/gudgeon.pdf ] || { cat "$log" >&2; exit 1; }
+
+printed() {   # print.html as a PDF
+  chromium --headless --no-sandbox --disable-gpu --no-pdf-header-footer --print-to-pdf=build/manual/gudgeon.pdf build/manual/print.html \
+    >"$log" 2>&1   # it complains of a machine without a desktop
+  [ -s build/manual/gudgeon.pdf ] || { cat "$log" >&2; exit 1; }
+}
+
+printed
+.venv/bin/python scripts/manual/pages.py number || exit 1
+printed   # now with the numbers of the pages in its contents
 echo build/manual/gudgeon.pdf

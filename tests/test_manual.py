@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import html
 import json
 import os
 import re
@@ -23,6 +24,7 @@ from urllib.parse import unquote
 for folder in ("manual", "bench"):
     sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts" / folder))
 
+import pages as manual_pages
 import tell_rungs
 import tutorial
 from test_faults import ROOT, assertions, check, program_built
@@ -168,6 +170,7 @@ def check_built(program: Path) -> None:
     check(done.returncode == 0 and not done.stderr, "the manual is built without a warning", done.stderr[-500:])
     built = ROOT / "build/manual"
     check((built / "gudgeon.pdf").exists() and (built / "gudgeon.pdf").read_bytes()[:5] == b"%PDF-", "the manual is printed")
+    check_printed(built)
     for page in [built / "index.html", *sorted(built.glob("*.html")), *sorted(built.glob("api/*.html")), *sorted(built.glob("api/module/*.html"))[:5]]:
         if not page.exists():
             check(False, f"{page.name} is built")
@@ -178,6 +181,25 @@ def check_built(program: Path) -> None:
         links = [link for link in HREF.findall(text) if "://" not in link and not link.startswith(("#", "mailto:", "data:", "//", "/")) and link != "."]
         broken = [link for link in links if not (page.parent / unquote(link.partition("#")[0])).exists()]
         check(not broken and (links or page.name == "404.html"), f"manual, {page.name}: its links lead to existing files", str(broken))
+
+
+def check_printed(built: Path) -> None:
+    """The contents of the PDF have the pages where its sections begin; the font has the letters of the equations; numbers of the text are typeset."""
+    import hooks   # in .venv
+    from fontTools.ttLib import TTFont
+
+    text = (built / "print.html").read_text(encoding="utf-8")
+    begins = manual_pages.pages_printed((built / "gudgeon.pdf").read_bytes())
+    said = {name: int(page) for name, page in re.findall(r'data-page="(\w+)">(\d+)<', text)}
+    check(len(said) > 40 and all(begins[name] == page for name, page in said.items()), "the contents of the PDF have its pages", str(said))
+    check(list(said.values()) == sorted(said.values()), "in their order", str(said))
+    font = TTFont(built / "STIXTwoMath.woff")
+    letters = {ord(letter) for math in re.findall(r"<math.*?</math>", text, re.DOTALL) for letter in html.unescape(re.sub(r"<[^>]+>", "", math)) if not letter.isspace()}
+    lacking = {chr(letter) for letter in (letters | {0x221A}) - set(font.getBestCmap())}
+    check("MATH" in font and not lacking and (built / "STIXTwoMath.woff").stat().st_size < 2e5, "the font has the letters of the equations, and few others", str(lacking))
+    for written, wanted in (("1e-3 to 6.61e10 N/m^1.5", "10⁻³ to 6.61·10¹⁰ N/m<sup>1.5</sup>"), ("-0.25 kg m^2, 3.1-3.30, 2026-11-26", "−0.25 kg m², 3.1–3.30, 2026-11-26"),
+                            ("1.35 um<code>1e-3</code> x86-64 2e+01", "1.35 µm<code>1e-3</code> x86-64 20")):
+        check(hooks.typeset(written) == wanted, f"the manual prints {written}", hooks.typeset(written))
 
 
 def commands_of(page: Path) -> list[str]:
@@ -373,6 +395,9 @@ def check_read() -> None:
                 check(not broken, f"manual, {page}: every picture is shown", str(broken))
                 flat = browser.run("return [...document.querySelectorAll('math')].filter(m => m.getBoundingClientRect().height < 4).length")
                 check(flat == 0, f"manual, {page}: equations are drawn", str(flat))
+                numbered = browser.run("return [...document.querySelectorAll('.equation .number')].map(n => n.textContent)")
+                check(numbered == [f"eq. {i + 1}" for i in range(len(numbered))] and (page != "theory" or len(numbered) > 10),
+                      f"manual, {page}: equations are numbered", str(numbered))
                 browser.run(SEARCH, "asperities")
                 check(browser.wait("document.querySelectorAll('.md-search-result__item').length > 1", 20), f"manual, {page}: the search finds")
                 check(not (said := browser.messages()), f"manual, {page}: console", str(said))

@@ -350,7 +350,7 @@ def main() -> int:
             lines.append(f"| {one.place} | {one.statement} | {one.verdict} | {one.what} | {', '.join(f'`{c}`' for c in one.cases.split())} | {shown} |")
     if not options.check and not wrong:
         text = "\n".join(lines) + "\n" + NOTES + "\n**Commands.** Numbers are computed from the files of:\n\n" + "\n".join(f"    {c}" for c in commands)
-        write_table("findings", "What holds of the dissertation", "scripts/bench/check_findings.py", text)
+        write_table("findings", "Which results of the dissertation hold", "scripts/bench/check_findings.py", text)
     print(f"{len(findings) - wrong} passed, {wrong} failed")
     return 1 if wrong else 0
 

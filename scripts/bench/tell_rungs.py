@@ -10,7 +10,7 @@ import csv
 
 from measured import FOLDER, write_table
 
-#: Question: the cases, the scenes that are its rungs, and the quantities it asks for.
+#: Question: the cases, the models that it compares, and the quantities it asks for.
 QUESTIONS = {
     "Bearing": (("sim_I", "sim_III", "compressor", "motor"), ("ideal piston pin", "quasi-static piston pin", "film variant half_film", "film finite_bearing",
                                        "clearance at the crank pin too", "elastic rod", "no film"), ("peak_force", "min_film", "loss")),
@@ -32,7 +32,7 @@ def per_cent(part: float) -> str:
 
 
 def section(question: str, cases: tuple[str, ...], rungs: tuple[str, ...], quantities: tuple[str, ...]) -> str:
-    lines = [f"## {question}\n", f"| case | rung | evaluations | time | {' | '.join(NAMES[name] for name in quantities)} |", "|---" * (4 + len(quantities)) + "|"]
+    lines = [f"## {question}\n", f"| case | model | evaluations | time | {' | '.join(NAMES[name] for name in quantities)} |", "|---" * (4 + len(quantities)) + "|"]
     for case in cases:
         path = FOLDER / f"models_{case}.csv"
         if not path.exists():
@@ -54,7 +54,7 @@ def main() -> None:
         "those of the whole run against the case (of the minimum film over the clearance, of the contact share in parts of the time). Each case has a page "
         "with all its models, and the certificate of each run: a change smaller than its uncertainty there is none.",
         *(section(question, *asked) for question, asked in QUESTIONS.items())])
-    write_table("rungs", "Effect and cost of each rung", "scripts/bench/tell_rungs.py", text)
+    write_table("rungs", "Effect and cost of each model", "scripts/bench/tell_rungs.py", text)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,8 @@
                                               data/measured, the pages of other folders that they refer to, the program's reference
                                               pages, and every file with a link to it
     scripts/manual/pages.py local             replaces what the pages of FORD load from a network by files in build/manual_pages/api
+    scripts/manual/pages.py number            puts the numbers of the pages of build/manual/gudgeon.pdf into the contents of print.html, from
+                                              which Chromium prints it again
 """
 from __future__ import annotations
 
@@ -136,10 +138,26 @@ def local() -> None:
         page.write_text(text, encoding="utf-8")
 
 
+def pages_printed(printed: bytes) -> dict[str, int]:
+    """The page of a PDF of Chromium on which each section begins. Its objects stand open in the file: pages in their order, and a list of places."""
+    order = {number: i for i, number in enumerate(re.findall(rb"^(\d+) 0 obj\n<</Type /Page\n", printed, re.MULTILINE), 1)}
+    return {name.decode(): order[page] for name, page in re.findall(rb"/([\w-]+) \[(\d+) 0 R /XYZ", printed)}
+
+
+def number() -> None:
+    manual = TOP / "build/manual"
+    pages = pages_printed((manual / "gudgeon.pdf").read_bytes())
+    text = (manual / "print.html").read_text(encoding="utf-8")
+    text = re.sub(r'(<span class="page" data-page="([^"]*)">)\d+', lambda place: f"{place[1]}{pages[place[2]]}", text)
+    (manual / "print.html").write_text(text, encoding="utf-8")
+
+
 if __name__ == "__main__":
     if sys.argv[1:2] == ["collect"] and len(sys.argv) == 3:
         collect(sys.argv[2])
     elif sys.argv[1:] == ["local"]:
         local()
+    elif sys.argv[1:] == ["number"]:
+        number()
     else:
         sys.exit(__doc__)
