@@ -33,7 +33,7 @@ OF_RUN = (
 OF_STUDY = ("*min_film_thickness", "*contact_time_fraction", "*max_pin_force", "mean_crank_speed")
 
 #: Units that are shown in another one, and the factor to it.
-SHOWN = {"rad": ("deg", 180 / math.pi), "m3": ("mm3", 1e9), "m3/s": ("cm3/min", 6e7), "1": ("", 1.0), "-": ("", 1.0)}
+SHOWN = {"rad": ("deg", 180 / math.pi), "kg/s": ("g/s", 1e3), "m3": ("mm3", 1e9), "m3/s": ("cm3/min", 6e7), "1": ("", 1.0), "-": ("", 1.0)}
 
 
 class Unit(NamedTuple):
@@ -54,6 +54,8 @@ class Unit(NamedTuple):
             return cls("degC", offset=-273.15)
         if unit == "rad/s" and "crank_speed" in row:
             return cls("rpm", 30 / math.pi)
+        if unit == "m" and "film_thickness" in row:   # so that bearings can be compared
+            return cls("um", 1e6)
         if unit in SHOWN:
             return cls(*SHOWN[unit])
         name, factor = prefixed(unit.replace(".", " "), np.array(values, dtype=float))
