@@ -242,7 +242,7 @@ def _of_study(path: Path, wanted: list[str] | None, digits: int) -> Table:
             continue
         if 0 < names.index(name) < end:
             shown = of_parameter(name, values.to_numpy())
-            unit = Unit(shown.unit.replace("µ", "u").replace("²", "2").replace("³", "3"), shown.factor)
+            unit = Unit("degC", offset=-273.15) if shown.unit == "K" else Unit(shown.unit.replace("µ", "u").replace("²", "2").replace("³", "3"), shown.factor)
         else:
             unit = Unit.of(name, runs.units[name], values.to_numpy())
         head = f"{name} [{unit.name}]" if unit.name else name
