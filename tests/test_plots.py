@@ -296,6 +296,12 @@ class RigTables(unittest.TestCase):
         self.compare(gudgeon.read_pressure(self.made(self.rows(angles, " ", ".")), unit="bar"), 1441)
         self.compare(gudgeon.read_pressure(self.made("angle,pressure (kPa)\n" + self.rows(angles, ",", ".", shift=360, scale=100)), shift_deg=360), 1441)
         self.compare(gudgeon.read_pressure(self.made("angle,pressure (kPa)\n" + self.rows(angles + 0.25, ",", ".", scale=100))), 1442)
+        for unit in ("bar(a)", "bar (abs)", "bar abs", "barA", "[bar abs]"):
+            self.compare(gudgeon.read_pressure(self.made(f"Winkel;Druck\n°KW;{unit}\n" + self.rows(angles, ";", ","))), 1441)
+        trailing = "Winkel;Druck\n°KW;bar\n" + self.rows(angles, ";", ",").replace("\n", ";\n") + ";\nMittelwert;2,3\n"
+        self.compare(gudgeon.read_pressure(self.made(trailing)), 1441)
+        gauge = "Winkel;Druck\n°KW;bar (Ü)\n" + self.rows(angles, ";", ",")
+        self.compare(gudgeon.read_pressure(self.made(gauge), unit="bar"), 1441)
 
     def test_cycles(self) -> None:
         angles = np.arange(0, 3 * 720)
@@ -314,6 +320,10 @@ class RigTables(unittest.TestCase):
             (self.rows(angles, ";", ","), {}, "give unit="),
             ("a;p\ndeg;bar\n" + self.rows(angles[:400], ";", ","), {}, "less than a cycle of 720"),
             ("a;p\ndeg;bar\n" + self.rows(angles[::-1], ";", ","), {}, "does not increase"),
+            ("a;p\ndeg;bar\n" + self.rows(np.delete(angles, range(200, 260)), ";", ","), {}, "no rows between 199 and 260 degrees"),
+            ("a;p\ndeg;bar\n" + self.rows(angles, ";", ",").replace("\n7,00;", "\n7,00;1."), {},
+             "the pressure is missing or no number in 1 of 720 rows, first at the angle 7"),
+            ("a;p\ndeg;barü\n" + self.rows(angles, ";", ","), {}, "'barü' is a gauge pressure: unit='bar'"),
         ):
             with self.assertRaisesRegex(gudgeon.RigFileError, said):
                 gudgeon.read_pressure(self.made(text), **options)

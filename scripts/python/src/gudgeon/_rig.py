@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import io
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-#: Units of pressures in Pa. Gauge pressures stay gauge pressures: `pressure_offset` of the case makes them absolute.
-PRESSURES = {"pa": 1.0, "hpa": 1e2, "mbar": 1e2, "kpa": 1e3, "bar": 1e5, "bara": 1e5, "mpa": 1e6, "psi": 6894.757293168361, "psia": 6894.757293168361}
+#: Units of pressures in Pa.
+PRESSURES = {"pa": 1.0, "hpa": 1e2, "mbar": 1e2, "kpa": 1e3, "bar": 1e5, "mpa": 1e6, "psi": 6894.757293168361}
+#: A unit of pressures, what says that they are absolute, and what that they are gauge pressures: bar, bar(a), kPa abs, barü.
+PRESSURE = re.compile(rf"({'|'.join(PRESSURES)})[ _]*[\[(]? *((?:abs\.?|absolute?|a)|(gauge|g|ü|ue|rel\.?|relativ))? *[\])]?", re.IGNORECASE)
+#: From so many usual steps of the angle on, rows are missing.
+GAP = 5.0
 #: Units of crank angles in degrees.
 ANGLES = {"deg": 1.0, "degree": 1.0, "degrees": 1.0, "°": 1.0, "grad": 1.0, "°ca": 1.0, "ca": 1.0, "degca": 1.0, "cad": 1.0, "deg ca": 1.0, "°kw": 1.0, "kw": 1.0,
           "grad kw": 1.0, "graus": 1.0, "rad": 180 / np.pi}  # fmt: skip
@@ -39,28 +44,36 @@ def read_pressure(
     Columns may be separated by semicolons, tabulators, commas or blanks, decimals by a point or a comma; before the rows there may be
     any lines, of which the last ones name the columns and their units. `angle` and `pressure` choose columns by their names, or a part
     of them, or by their numbers from 0 on; without them they are found by unit and name. `unit` is that of the pressure where the
-    file has none. `shift_deg` is added to the angles, for files that count from another dead centre than the case.
+    file has none, or a gauge pressure's as it stands. `shift_deg` is added to the angles, for files that count from another dead centre than the case.
 
     With `average` the cycles of `period_deg` degrees (720, or 360 of a two-stroke or compressor) become their mean, at the angles
     of the samples; without it the first whole cycle is taken. The result has the columns crank_angle[deg], from 0 to the period, and
     pressure[bar], absolute or gauge as in the file (a gauge pressure needs the `pressure_offset` of the case); `save` writes it as the table of `&cylinder_pressure`.
 
-    Raises RigFileError for a file without rows of numbers, a column that is not there or not clear, a unit that is not known, an
-    angle that does not increase, or less than one cycle.
+    Raises RigFileError for a file without rows of numbers, a column that is not there or not clear, a unit that is not known or says
+    that a pressure is a gauge pressure, an angle that does not increase, an angle without a pressure, a gap, or less than one cycle.
     """
     text = _decoded(Path(path).read_bytes())
     names, units, values = _table(text, str(path))
     shown = _shown(names, units, values)
-    first = _column(names, units, angle, ANGLES, ANGLE_NAMES, "angle", str(path), shown)
-    second = _column(names, units, pressure, PRESSURES, PRESSURE_NAMES, "pressure", str(path), shown, other=first)
+    first = _column(names, units, angle, lambda text: _plain(text) in ANGLES, ANGLE_NAMES, "angle", str(path), shown)
+    second = _column(names, units, pressure, lambda text: not np.isnan(_pressure(text)[0]), PRESSURE_NAMES, "pressure", str(path), shown, other=first)
     factor = ANGLES.get(_plain(units[first]), 1.0 if not units[first] else np.nan)
-    in_pa = PRESSURES.get(_plain(unit if unit is not None else units[second]), np.nan)
+    written = unit if unit is not None else units[second]
+    in_pa, is_gauge = _pressure(written)
     if np.isnan(factor):
         raise RigFileError(f"{path}: the angle's unit '{units[first]}' is not known, but deg and rad are{shown}")
     if np.isnan(in_pa):
         raise RigFileError(f"{path}: the pressure's unit '{unit or units[second]}' is not known: give unit=, one of bar, mbar, kPa, MPa, Pa, hPa, psi{shown}")
+    if is_gauge:
+        raise RigFileError(f"{path}: '{written}' is a gauge pressure: unit='bar' (or its own) reads it as it stands, and pressure_offset of &cylinder_pressure "
+                           f"adds the ambient pressure{shown}")  # fmt: skip
     rows = values[:, [first, second]]
-    rows = rows[np.isfinite(rows).all(axis=1)]
+    known = np.isfinite(rows)
+    inner = np.flatnonzero(known.all(axis=1))
+    if len(inner) and (lost := inner[0] + np.flatnonzero(known[inner[0] : inner[-1], 0] & ~known[inner[0] : inner[-1], 1])).size:
+        raise RigFileError(f"{path}: the pressure is missing or no number in {lost.size} of {len(rows)} rows, first at the angle {rows[lost[0], 0]:g}{shown}")
+    rows = rows[inner]
     degrees, bar = _unrolled(rows[:, 0] * factor, period_deg), rows[:, 1] * in_pa / 1e5
     if len(degrees) < 3 or not np.all(np.diff(degrees) > 0):
         at = 0 if len(degrees) < 3 else int(np.argmin(np.diff(degrees)))
@@ -68,6 +81,10 @@ def read_pressure(
     step = float(np.median(np.diff(degrees)))
     if degrees[-1] - degrees[0] < period_deg - 1.5 * step:
         raise RigFileError(f"{path}: the angles span {degrees[-1] - degrees[0]:.4g} degrees, less than a cycle of {period_deg:g}: see period_deg{shown}")
+    steps = np.diff(degrees)
+    if steps.max() > GAP * np.quantile(steps, 0.95):
+        at = int(np.argmax(steps))
+        raise RigFileError(f"{path}: no rows between {degrees[at]:g} and {degrees[at + 1]:g} degrees{shown}")
     table = _one_cycle(degrees + shift_deg, bar, period_deg, step, average)
     if save is not None:
         table.to_csv(save, index=False, float_format="%.10g")
@@ -88,34 +105,35 @@ def _decoded(raw: bytes) -> str:
 def _table(text: str, path: str) -> tuple[list[str], list[str], np.ndarray]:
     """Names, units and rows of the table of a text: pandas reads it with the separators that give the most rows of numbers."""
     lines = [line for line in text.split("\n") if line.strip()]
-    found: list[tuple[int, int, int, np.ndarray, str]] = []
+    found: list[tuple[int, int, int, np.ndarray, str, str]] = []
     for separator, decimal in ((";", ","), (";", "."), ("\t", ","), ("\t", "."), (",", "."), (r"\s+", ","), (r"\s+", ".")):
-        fields = [len(re.split(separator, line.strip())) for line in lines]
+        stripped = [line.strip().rstrip(separator if len(separator) == 1 else None).strip() for line in lines]
+        fields = [len(re.split(separator, line)) for line in stripped]
         width = int(np.median(fields))
         if width < 2:
             continue
-        first = next((i for i, line in enumerate(lines) if fields[i] == width and _are_numbers(re.split(separator, line.strip()), decimal)), None)
+        first = next((i for i, line in enumerate(stripped) if fields[i] == width and _are_numbers(re.split(separator, line), decimal)), None)
         if first is None:
             continue
-        rows = pd.read_csv(io.StringIO("\n".join(lines[first:])), sep=separator, decimal=decimal, header=None, names=range(width), engine="python",
+        rows = pd.read_csv(io.StringIO("\n".join(stripped[first:])), sep=separator, decimal=decimal, header=None, names=range(width), engine="python",
                            on_bad_lines="skip", skipinitialspace=True)  # fmt: skip
         numbers = np.array([pd.to_numeric(rows[i], errors="coerce") for i in range(width)], dtype=float).T
-        numbers = numbers[np.isfinite(numbers).sum(axis=1) > 1]
-        found.append((len(numbers) * width, width, first, numbers, separator))
+        numbers = numbers[np.isfinite(numbers).any(axis=1)]
+        found.append((int((np.isfinite(numbers).sum(axis=1) > 1).sum()) * width, width, first, numbers, separator, decimal))
     if not found:
         raise RigFileError(f"{path}: no rows of at least two numbers are found; its first lines are\n" + "\n".join("  " + line[:100] for line in lines[:5]))
-    _, width, first, numbers, separator = max(found, key=lambda one: one[:2])
+    _, width, first, numbers, separator, decimal = max(found, key=lambda one: one[:2])
     heads = [[field.strip().strip('"') for field in re.split(separator, line.strip())] for line in lines[:first]]
-    heads = [head for head in heads if len(head) == width]
+    heads = [head[:width] for head in heads if len(head) >= width and not any(head[width:]) and not _are_numbers([head[0]] * 2, decimal)]
     names, units = [f"column {i}" for i in range(width)], [""] * width
-    if heads and len(heads) > 1 and all(not field or _plain(field) in PRESSURES or _plain(field) in ANGLES or _is_unit(field) for field in heads[-1]):
-        units = [_bare(field) for field in heads[-1]]
+    if heads and len(heads) > 1 and all(not field or PRESSURE.fullmatch(field.strip()) or _plain(field) in ANGLES or _is_unit(field) for field in heads[-1]):
+        units = [field.strip() if PRESSURE.fullmatch(field.strip()) else _bare(field) for field in heads[-1]]
         names = heads[-2]
     elif heads:
         names = heads[-1]
     for i, name in enumerate(names):
         inside = re.search(r"[\[(](.*?)[\])]", name)
-        if inside and not units[i]:
+        if inside and not units[i] and not PRESSURE.fullmatch(name):
             units[i], names[i] = inside[1].strip(), name[: inside.start()].strip()
     return names, units, numbers
 
@@ -123,6 +141,12 @@ def _table(text: str, path: str) -> tuple[list[str], list[str], np.ndarray]:
 def _are_numbers(fields: list[str], decimal: str) -> bool:
     pattern = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
     return all(not field.strip() or pattern.match(field.strip().replace(decimal, ".")) for field in fields) and sum(bool(field.strip()) for field in fields) > 1
+
+
+def _pressure(unit: str) -> tuple[float, bool]:
+    """A unit of pressures in Pa, NaN where it is none, and whether it says that they are gauge pressures."""
+    found = PRESSURE.fullmatch(unit.strip().strip("[]").strip())
+    return (PRESSURES[found[1].lower()], bool(found[3])) if found else (np.nan, False)
 
 
 def _bare(unit: str) -> str:
@@ -138,7 +162,7 @@ def _is_unit(field: str) -> bool:
 
 
 def _column(
-    names: list[str], units: list[str], wanted: str | int | None, known: dict[str, float], pattern: re.Pattern[str], what: str, path: str, shown: str,
+    names: list[str], units: list[str], wanted: str | int | None, known: Callable[[str], bool], pattern: re.Pattern[str], what: str, path: str, shown: str,
     other: int | None = None,
 ) -> int:  # fmt: skip
     if isinstance(wanted, int):
@@ -148,7 +172,7 @@ def _column(
     if wanted is not None:
         found = [i for i, name in enumerate(names) if name == wanted] or [i for i, name in enumerate(names) if wanted.lower() in name.lower()]
     else:
-        found = [i for i, unit in enumerate(units) if _plain(unit) in known and i != other]
+        found = [i for i, unit in enumerate(units) if known(unit) and i != other]
         named = [i for i, name in enumerate(names) if pattern.search(name) and i != other and (i in found or not found)]
         in_cylinder = [i for i in named if re.search(r"zyl|cyl|cil", names[i], re.IGNORECASE)]
         found = in_cylinder or named or found
