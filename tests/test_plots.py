@@ -35,6 +35,7 @@ import pandas as pd
 import show_noise
 import tradeoff
 from gudgeon import cli, language, names, study
+from gudgeon.commands import study as study_command
 from gudgeon.plots import bearing as bearing_pictures
 from gudgeon.plots import columns, compare, figures, film_pressure, laws, ringing, short, style
 from gudgeon.plots import film as film_pictures
@@ -512,6 +513,29 @@ class Tables(unittest.TestCase):
         self.assertEqual(list(found.cells), ["run", "contact.law", "joint.clearance [um]", "status", "max_pin_force [kN]", "impacts"])
         self.assertEqual(found.cells.values.tolist(), [["1", "hertz", "10.0", "done", "45.0", "2.00"], ["2", "flores", "20.0", "too deep", "-", "-"]])
         self.assertEqual(list(gudgeon.table(path).cells)[-1], "max_pin_force [kN]")
+
+    def test_a_study_shows_what_it_asks_for(self) -> None:
+        path = self.work / "y.runs.csv"
+        path.write_text("run,joint.clearance,integrator.revolutions,status,min_film_thickness[m],max_pin_force[N],cycle_fmep[Pa],guide_force_max_abs[N]\n"
+                        "1,1e-5,8,done,,45,2e4,3\n2,2e-5,8,done,,46,3e4,4\n")
+        self.assertEqual(list(gudgeon.table(path).cells), ["run", "joint.clearance [um]", "integrator.revolutions", "max_pin_force [N]"])
+        (self.work / "y.study.nml").write_text("&study\n  statistics = 'cycle_fmep, max abs guide_force'\n/\n")
+        self.assertEqual(list(gudgeon.table(path).cells)[3:], ["cycle_fmep [kPa]", "guide_force_max_abs [N]"])
+        (self.work / "y.strobe.csv").write_text("run,cycle,eccentricity_y[m]\n1,1,1e-6\n2,1,2e-6\n")
+        found = study_command.any_study(path, None)
+        self.assertEqual(list(found), ["y", "y.strobe"])   # curves over the one key that differs, and its strobes
+        self.assertEqual(len(found["y"].axes), 2)
+        self.assertTrue(found["y"].axes[-1].get_xlabel().startswith("radial clearance"))
+        np.testing.assert_allclose(found["y"].axes[0].lines[0].get_ydata(), [20, 30])   # kPa
+
+    def test_answers_of_skirts_and_compressors(self) -> None:
+        path = self.work / "z.csv"
+        path.write_text("time[s]\n0\n")
+        path.with_suffix(".summary.csv").write_text(
+            "quantity,value,unit\nstatus,done,\ncycle_start,0,s\ncycle_min_skirt_film_thickness,1.61E-05,m\ncycle_max_slap_speed,2.78E-02,m/s\n"
+            "cycle_min_ring_1_film_thickness,5.42E-07,m\ncycle_mass_flow,2.161E-03,kg/s\ncycle_volumetric_efficiency,9.16E-01,1\n"
+            "cycle_discharge_temperature,3.639130349E+02,K\ncycle_suction_loss,4.45,W\n")
+        self.assertEqual(list(self.rows(path).values()), [["16.1 um"], ["27.8 mm/s"], ["542 nm"], ["2.16 g/s"], ["0.916"], ["90.8 degC"], ["4.45 W"]])
 
 
 class Poincare(unittest.TestCase):

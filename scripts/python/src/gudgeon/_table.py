@@ -22,14 +22,17 @@ OF_CYCLE = (
     "status", "cycle_is_settled", "*cycle_min_film_thickness", "*cycle_min_film_thickness_angle", "*cycle_min_gap",
     "*cycle_max_film_pressure", "*cycle_max_force", "*cycle_contact_share", "*cycle_mean_film_power", "*cycle_mean_friction_power",
     "*cycle_mean_film_temperature", "*cycle_mean_film_side_flow", "*cycle_wear_depth_rate_*", "cycle_imep", "cycle_bmep", "cycle_fmep", "cycle_skirt_fmep", "cycle_ring_fmep",
+    "cycle_min_skirt_film_thickness", "cycle_max_slap_speed", "cycle_slap_speed", "cycle_slap_energy", "cycle_min_ring_*_film_thickness",
     "cycle_indicated_power", "cycle_brake_power", "cycle_max_cylinder_pressure", "cycle_mean_crank_speed", "cycle_speed_fluctuation",
+    "cycle_mass_flow", "cycle_volumetric_efficiency", "cycle_isentropic_efficiency", "cycle_discharge_temperature", "cycle_suction_loss",
+    "cycle_discharge_loss", "cycle_leak_flow", "cycle_wall_heat_flow",
     "cycle_max_drive_torque", "pin_swing", "pin_drift_per_revolution",
 )  # fmt: skip
 OF_RUN = (
     "status", "*min_film_thickness", "*min_gap", "*max_film_pressure", "*max_pin_force", "*max_force", "*contacts", "*contact_time_fraction",
     "*max_wear_depth_*", "mean_crank_speed", "max_drive_torque",
 )  # fmt: skip
-#: Columns of a study that are shown where none are chosen.
+#: Columns of a study that are shown where none are chosen and its file asks for none by `statistics`.
 OF_STUDY = ("*min_film_thickness", "*contact_time_fraction", "*max_pin_force", "mean_crank_speed")
 
 #: Units that are shown in another one, and the factor to it.
@@ -228,12 +231,16 @@ def _of_study(path: Path, wanted: list[str] | None, digits: int) -> Table:
     import pandas as pd
 
     from .names import of_parameter
-    from .study import Runs
+    from .study import Runs, asked_columns
 
     runs = Runs.read(path)
     names = list(runs.table.columns)
     end = names.index("status")
-    results = _answers(names[end + 1 :], OF_STUDY) if wanted is None else _chosen(names[end:], wanted)
+    if wanted is None:
+        asked = [name for name in asked_columns(path) if name in names[end:]]
+        results = asked or [name for name in _answers(names[end + 1 :], OF_STUDY) if runs.table[name].notna().any()]
+    else:
+        results = _chosen(names[end:], wanted)
     data, cells = {}, {}
     for name in [*names[:end], *(["status"] if not runs.done.all() and "status" not in results else []), *results]:
         values = runs.table[name]

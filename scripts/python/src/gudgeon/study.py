@@ -113,6 +113,14 @@ def sweep(program: Path, study: Path, out: Path, options: Sequence[str] = ()) ->
     return Runs.read(out / f"{study.stem}.runs.csv")
 
 
+def asked_columns(runs: Path) -> list[str]:
+    """The columns that the study of a NAME.runs.csv asks for by `statistics`, as NAME.study.nml beside it has them: `max abs x` is x_max_abs."""
+    study = runs.with_name(f"{runs.name.removesuffix('.runs.csv')}.study.nml")
+    asked = str(f90nml.read(study)["study"].get("statistics", "")) if study.exists() else ""
+    words = [part.split() for part in asked.split(",") if part.strip()]
+    return ["_".join([part[-1], *part[:-1]]) for part in words]
+
+
 @dataclass(frozen=True)
 class Runs:
     """The results of a study, NAME.runs.csv: one row for each run, columns by name without unit."""

@@ -21,7 +21,7 @@ from gudgeon.commands import Refused, add_output, save
 from gudgeon.plots import contact_laws as contact_study
 from gudgeon.plots import figures, studies
 from gudgeon.results import MissingResult, default_folder
-from gudgeon.study import Runs, warn_of_failures
+from gudgeon.study import Runs, asked_columns, warn_of_failures
 
 COLUMNS = ("min_film_thickness", "contact_time_fraction")
 
@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("runs", nargs="*", type=Path, metavar="NAME.runs.csv", help="results of any study")
     parser.add_argument("--picture", action="append", choices=tuple(PICTURES), help="picture of the shipped studies; repeatable")
     parser.add_argument("--columns", nargs="+", metavar="COLUMN",
-                        help=f"columns of a given study to draw, without their units (default: {' '.join(COLUMNS)})")
+                        help=f"columns of a given study to draw, without their units (default: those of its statistics, or else {' '.join(COLUMNS)})")
     parser.add_argument("--results", type=Path, metavar="DIR", help="of the shipped studies (default: results/studies)")
     parser.add_argument("--numbers", action="store_true", help="only print the numbers of the shipped studies, in Markdown")
     add_output(parser, several=True)
@@ -83,13 +83,16 @@ def contact_laws(results: Path) -> tuple[figures.Drawing, list[str]]:
 PICTURES = {"map": maps, "bifurcation": bifurcation, "restitution": restitution, "contact_laws": contact_laws}
 
 
-def any_study(path: Path, columns: list[str]) -> dict[str, figures.Drawing]:
+def any_study(path: Path, columns: list[str] | None) -> dict[str, figures.Drawing]:
     """Pictures of a study by their names: curves over one parameter, maps over a grid of two, points over each parameter of a
-    sample or of a grid of more; also the strobed points, if the study has them."""
+    sample or of a grid of more; also the strobed points, if the study has them. Without `columns` those are drawn for which the study
+    asks by `statistics`, or else COLUMNS. A parameter that has one value in all runs is no axis."""
     runs = Runs.read(path)
     warn_of_failures(path.name, runs)
     names = list(runs.table.columns)
-    parameters = names[1 : names.index("status")]
+    given = names[1 : names.index("status")]
+    parameters = [name for name in given if runs.table[name].nunique() > 1] or given[:1]
+    columns = columns or [name for name in asked_columns(path) if name in names] or list(COLUMNS)
     if unknown := [column for column in columns if column not in names]:
         raise MissingResult(f"{path}: no column {' '.join(unknown)}; the columns are {' '.join(names)}")
     if words := [column for column in columns if not pd.api.types.is_numeric_dtype(runs.table[column])]:
@@ -118,7 +121,7 @@ def run(options: argparse.Namespace) -> int:
         raise Refused("--numbers is for the shipped studies alone")
     results = options.results or default_folder() / "studies"
     for path in options.runs:
-        for stem, drawing in any_study(path, options.columns or list(COLUMNS)).items():
+        for stem, drawing in any_study(path, options.columns).items():
             save(drawing, options, path.parent, stem)
     for name in options.picture or ([] if options.runs else PICTURES):
         drawing, lines = PICTURES[name](results)
