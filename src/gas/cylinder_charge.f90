@@ -108,11 +108,12 @@ contains
   end subroutine parameters
 
   !> Take over the groups of a case.
-  subroutine set_case(self, given, walls, valves)
+  subroutine set_case(self, given, walls, valves, tolerance)
     class(charge_t), intent(inout) :: self
     type(charge_case_t), intent(in) :: given
     class(wall_law_t), allocatable, intent(in) :: walls
     type(flow_valve_t), allocatable, intent(in) :: valves(:)   !! one for both, or one for each port
+    real(dp), intent(in) :: tolerance                      !! relative, of the integration
     integer :: i
     self%given = given
     if (allocated(walls)) allocate (self%walls, source=walls)
@@ -123,7 +124,9 @@ contains
       if (valves(i)%port == 'suction') self%valves(suction) = valves(i)
       if (valves(i)%port == 'discharge') self%valves(discharge) = valves(i)
     end do
-    if (any(self%valves%mass > 0)) allocate (self%reeds)
+    if (.not. any(self%valves%mass > 0)) return
+    allocate (self%reeds)
+    self%reeds%margin = tolerance
   end subroutine set_case
 
   !> Prepare for a cylinder, in which the gas was closed in at a volume [m^3].

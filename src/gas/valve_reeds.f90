@@ -20,14 +20,17 @@ module valve_reeds
   !> Where a reed is.
   integer, parameter :: seated = 1, in_flight = 2, at_stop = 3
 
-  !> A reed meets a bound this share of its lift behind it, and leaves it at a force larger by this share of that at the full lift:
-  !> after an event, and at equal pressures, no event function is 0.
-  real(dp), parameter :: margin = 1e-12_dp
+  !> A reed leaves a bound at a force larger by this share of that at the full lift: at equal pressures no event function is 0.
+  real(dp), parameter :: force_margin = 1e-12_dp
+
   real(dp), parameter :: nearby = 1e-9_dp   !! of the lift: at a bound but for rounding
+  real(dp), parameter :: beyond = 1e-2_dp   !! of the lift: behind a bound by more than any margin
 
   type :: reeds_t
     type(coordinates_t) :: at(size(ports))   !! lifts and speeds of all cylinders, the mechanism's first; none: a valve without mass
     integer, allocatable :: place(:, :)      !! (port, cylinder)
+    real(dp) :: margin = 0   !! a reed meets a bound this share of its lift behind it: the tolerance, within which it may seem to do
+                             !! so while it leaves the bound
   contains
     procedure :: claim
     procedure :: declare
@@ -75,7 +78,7 @@ contains
         call list%add(name//'speed', speed, 'm/s', 'rate of its lift')
         if (.not. list%sets) cycle
         if (all(place /= [seated, in_flight, at_stop])) call list%refuse(name//'place', 'must be 1, 2 or 3')
-        if (abs(x - valves(k)%lift/2) > (1 + nearby)*valves(k)%lift/2) &
+        if (abs(x - valves(k)%lift/2) > (1 + beyond)*valves(k)%lift/2) &
           call list%refuse(name//'lift', 'must be from 0 to the full lift')
         if (place == in_flight) cycle
         x = merge(0.0_dp, valves(k)%lift, place == seated)
@@ -123,14 +126,14 @@ contains
     select case (self%place(port, i))
     case (in_flight)
       associate (share => y(self%at(port)%position + i - 1)/valve%lift)
-        g = abs(share - 0.5_dp) - 0.5_dp - margin
+        g = abs(share - 0.5_dp) - 0.5_dp - self%margin
         g_rate = sign(1.0_dp, share - 0.5_dp)*y(self%at(port)%rate + i - 1)/valve%lift
       end associate
     case (seated)
-      g = valve%opening_force(difference)/valve%full_force() - margin
+      g = valve%opening_force(difference)/valve%full_force() - force_margin
       g_rate = rate*valve%force_area/valve%full_force()
     case default
-      g = (valve%stiffness*valve%lift - valve%opening_force(difference))/valve%full_force() - margin
+      g = (valve%stiffness*valve%lift - valve%opening_force(difference))/valve%full_force() - force_margin
       g_rate = -rate*valve%force_area/valve%full_force()
     end select
   end subroutine events

@@ -235,6 +235,7 @@ contains
         rate=charge%valve_speed(k), told=of_cycle)
       call row%keep('min_'//trim(ports(k))//'_valve_lift', least, 'smallest lift of the '//trim(ports(k))//' valve', &
         rate=charge%valve_speed(k), told=of_cycle)
+      call row%add_on_request(trim(ports(k))//'_valve_speed[m/s]', charge%valve_speed(k), 'rate of this lift')
     end do
   end subroutine add_columns
 

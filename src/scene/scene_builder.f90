@@ -173,7 +173,8 @@ contains
     allocate (scene%gas)
     if (allocated(case%charge)) then
       allocate (scene%gas%charge)
-      call scene%gas%charge%set_case(case%charge, case%walls, case%valves)
+      call scene%gas%charge%set_case(case%charge, case%walls, case%valves, &
+        case%integrator%relative_tolerance)
     end if
     if (allocated(scene%chain%train) .and. allocated(case%cylinders)) &
       scene%gas%has_force = case%cylinders(scene%chain%train%full_number)%gas
