@@ -79,6 +79,7 @@ SCENES = {
     "woschni": ("gas/engine_walls", {"integrator.revolutions": "1.2", "initial.crank_angle_deg": "170"}),
     "hohenberg": ("gas/engine_walls", {"integrator.revolutions": "1.2", "initial.crank_angle_deg": "170", "wall_heat.law": "hohenberg", "initial.crank_speed": "-250"}),
     "valves": ("gas/compressor_valves", {"integrator.revolutions": "1.2", "integrator.relative_tolerance": "1e-7"}),
+    "reeds": ("gas/compressor_valves", {"integrator.revolutions": "1.2", "integrator.relative_tolerance": "1e-7", "valve_1.mass": "1e-3", "valve_1.damping": "0.5"}),
     "filled": ("gas/compressor", {"integrator.method": "'auto'", "integrator.revolutions": "1.2", "working_gas.gas_constant": "287", "working_gas.temperature": "300"}),
     "measured": ("gas/measured", {"integrator.method": "'auto'", "integrator.revolutions": "0.5", "initial.crank_angle_deg": "300",
                                   "cylinder_pressure.offset_deg": "-17.3"}),
@@ -219,7 +220,7 @@ PHASES = {"carried": {0}, "engine": {0, 2}, **dict.fromkeys(("still", "unexcited
           "wide": {1, 2}, "vanishing": {1, 2}, "massless": {0, 2}, "loose": {0, 2}, "start": {0, 2}, "dry": {0, 2}, "sticks": {0, 2}, "threlfall": {0, 2}, "brown_mcphee": {0, 2}, "stribeck": {0, 2}, "lugre": {0, 2},
           "elasto_plastic": {0, 2}, "conformal": {0, 2}, "johnson": {0, 2},
           "liner": {0, 2}, "pereira": {0, 2}, "dissipation": {0, 2}, "film": {1}, "contact": {1, 2}, "weighted": {1, 2}, "elastic": {1},
-          "inertia": {1, 2}, "compressor": {1}, "two_stroke": {1}, "woschni": {1}, "hohenberg": {1}, "valves": {1}, "filled": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1},
+          "inertia": {1, 2}, "compressor": {1}, "two_stroke": {1}, "woschni": {1}, "hohenberg": {1}, "valves": {1}, "reeds": {1}, "filled": {1}, "measured": {1}, "ramp": {1}, "motor": {1}, "both": {0, 2}, "crank": {0}, "films": {1},
           "worn": {0, 2}, "slap": {0, 2}, "jammed": {0, 2}, "guide": {0}, "ideal": {0}, "rod": {0, 2}, "rods": {0, 2}, "shaft": {1}, "bent": {0}}   # 0 free flight, 1 film, 2 contact
 
 #: (fault, scene, column, change of (value, row), text that the verdict must contain)
@@ -346,6 +347,9 @@ CORRUPTIONS: list[tuple[str, str, str, Callable[[float, int], float], str]] = [
     ("flow through a valve too large", "valves", "discharge_flow", lambda v, i: v * 1.001, "discharge flow"),
     ("lift of a valve too large", "valves", "suction_valve_lift", lambda v, i: v * 1.001, "lift of the suction valve"),
     ("pressure of a compressor that drifts", "valves", "cylinder_pressure", lambda v, i: v * (1 + 1e-5 * i), "cylinder_pressure is not the integral"),
+    ("flow back through a reed left out", "reeds", "discharge_flow", lambda v, i: max(v, 0.0), "discharge flow"),
+    ("speed of a reed too large", "reeds", "discharge_valve_speed", lambda v, i: v * 1.001, "discharge_valve_speed is not the integral"),
+    ("lift of a reed that drifts", "reeds", "suction_valve_lift", lambda v, i: v * (1 + 1e-5 * i), "suction_valve_lift is not the integral"),
     ("mass between ideal valves too large", "filled", "gas_mass", lambda v, i: v * 1.001, "state of the gas"),
     ("temperature between ideal valves too high", "filled", "gas_temperature", lambda v, i: v * 1.001, "temperature of the gas"),
     ("pressure that is not the measured one", "measured", "cylinder_pressure", lambda v, i: v * (1 + 1e-4), "gas law"),
@@ -522,8 +526,9 @@ MUTANTS = [
     ("gas pressure one part in a thousand too large", "gas_cycle.f90", "values(i) = p*(volume", "values(i) = 1.001_dp*p*(volume",
      "film", "gas law"),
     ("a constant of Woschni's law wrong", "woschni.f90", "h = 3.26_dp*", "h = 3.27_dp*", "woschni", "heat to the walls"),
-    ("enthalpy of the incoming gas with the temperature of the cylinder", "cylinder_charge.f90", "now%valve_flow(suction)* &\n          self%given%temperature)",
-     "now%valve_flow(suction)* &\n          now%temperature)", "valves", "cylinder_pressure is not the integral"),
+    ("enthalpy of the incoming gas with the temperature of the cylinder", "cylinder_charge.f90", "now%valve_flow(k)*temperature(merge(1, 2, excess(k) >= 0), k)",
+     "now%valve_flow(k)*now%temperature", "valves", "cylinder_pressure is not the integral"),
+    ("damper of a reed with the opposite sign", "valve_reeds.f90", "- valve%damping*", "+ valve%damping*", "reeds", "suction_valve_speed is not the integral"),
     ("flow through an orifice without its parabola", "nozzle_flow.f90", "if (y < 1) psi = psi*y*(3 - y)/2", "if (y < 1) psi = psi*y", "woschni", "leak"),
 ]
 

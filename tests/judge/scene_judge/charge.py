@@ -26,7 +26,15 @@ def requested_charge(run: Run) -> list[str]:
     """The columns on request that the judge needs."""
     if not has_charge(run):
         return []
-    return [*COLUMNS, *(VALVE_COLUMNS if "valve_1.area" in run.case else ())]
+    moving = [f"{port}_valve_speed" for port, valve in valves_of(run).items() if valve[-1]]
+    return [*COLUMNS, *(VALVE_COLUMNS if "valve_1.area" in run.case else ()), *moving]
+
+
+def valves_of(run: Run) -> dict[str, list[float]]:
+    """The numbers of the valve of each port."""
+    keys = "area", "lift", "force_area", "stiffness", "preload", "damping", "mass"
+    return {port: [run.number(f"{group}.{key}") for key in keys] for group in ("valve_1", "valve_2") if f"{group}.area" in run.case
+            for port in ("suction", "discharge") if run.text(f"{group}.port") in ("both", port)}
 
 
 class Charge:
@@ -40,11 +48,8 @@ class Charge:
         self.ratio = n("combustion.heat_capacity_ratio") if self.is_engine else n("working_gas.heat_capacity_ratio")
         self.is_state = "valve_1.area" in run.case or "wall_heat.wall_temperature" in run.case or self.leak > 0
         self.fill = n("combustion.intake_pressure") if self.is_engine else n("combustion.suction_pressure")
-        self.valves = {}
-        for group in ("valve_1", "valve_2"):
-            for port in ("suction", "discharge"):
-                if run.text(f"{group}.port") in ("both", port):
-                    self.valves[port] = [n(f"{group}.{key}") for key in ("area", "lift", "force_area", "stiffness", "preload")]
+        self.valves = valves_of(run)
+        self.returning = 0.0 if not self.valves else self.inlet * (n("combustion.discharge_pressure") / self.fill)**(1 - 1 / self.ratio)
 
     def orifice(self, area: float, high: float, low: float, temperature: float) -> float:
         """Flow from a pressure to a lower one."""
@@ -135,17 +140,29 @@ class ChargeChecks:
         case = n("combustion.crankcase_pressure")
         leak = charge.orifice(charge.leak, p, case, temperature) if p >= case else -charge.orifice(charge.leak, case, p, charge.inlet)
         yield "leak", get["leak_flow"], leak if closed else 0.0, charge.orifice(charge.leak, max(p, case), 0.0, temperature) + 1e-300
-        for port, (area, lift, force_area, stiffness, preload) in charge.valves.items():
+        for port, (area, lift, force_area, stiffness, preload, _, mass) in charge.valves.items():
             before, behind, warm = (charge.fill, p, charge.inlet) if port == "suction" else (p, n("combustion.discharge_pressure"), temperature)
             excess, span = before - behind, stiffness * lift
+            if mass:   # a state of the motion; gas flows both ways
+                opening = get[f"{port}_valve_lift"]
+                yield f"lift of the {port} valve", opening, min(max(opening, 0.0), lift), lift
+                come, gone = (before, behind) if excess > 0 else (behind, before)
+                hot = warm if excess > 0 else charge.returning if port == "discharge" else temperature
+                flow = math.copysign(charge.orifice(area * opening / lift, come, gone, hot), excess)
+                yield f"{port} flow", get[f"{port}_flow"], flow, charge.orifice(area, come, 0.0, hot) + 1e-300
+                continue
             share = min(max((excess * force_area - preload) / span, 0.0), 1.0) if stiffness else float(excess > 0)
             near = FLOW * (1 + max(before, behind) * force_area / span) if stiffness else 1.0   # the difference is one of rounded pressures
             yield f"lift of the {port} valve", get[f"{port}_valve_lift"], lift * share, lift * near / FLOW if abs(excess) < 1e-9 * before else lift * near
             full = charge.orifice(area, max(before, behind), 0.0, warm)
             yield f"{port} flow", get[f"{port}_flow"], charge.orifice(area * share, before, behind, warm) if excess > 0 else 0.0, full * max(1.0, near / FLOW * 1e-3) + 1e-300
 
-    def rates(self) -> tuple[list[float], list[float]]:
-        """Rates of the mass and of the pressure in every row."""
+    def excess(self, port: str, pressure: float) -> float:
+        """Difference of the pressures that opens a valve."""
+        return self.charge.fill - pressure if port == "suction" else pressure - self.run.number("combustion.discharge_pressure")
+
+    def rates(self) -> dict[str, list[float]]:
+        """Rates of the mass, of the pressure, and of lift and speed of valves with a mass in every row."""
         charge, g = self.charge, self.charge.ratio
         heat_capacity = g * charge.constant / (g - 1)
         masses, pressures = [], []
@@ -158,20 +175,31 @@ class ChargeChecks:
                 continue
             come, gone, leak = get.get("suction_flow", 0.0), get.get("discharge_flow", 0.0), get["leak_flow"]
             warm = get["gas_temperature"]
-            enthalpy = heat_capacity * (come * charge.inlet - gone * warm - leak * (warm if leak > 0 else charge.inlet))
+            enthalpy = heat_capacity * (come * (charge.inlet if come > 0 else warm) - gone * (warm if gone > 0 else charge.returning) - leak * (warm if leak > 0 else charge.inlet))
             across = self.gas.crank * math.sin(q + self.gas.top) - self.gas.axis
             swept = self.gas.area * self.gas.crank * (math.sin(q + self.gas.top) + across * math.cos(q + self.gas.top) / math.sqrt((self.gas.rod - across) * (self.gas.rod + across)))
             masses.append(come - gone - leak)
             pressures.append(((g - 1) * (charge.burning(q, turn) - get["wall_heat_flow"] + enthalpy) - g * get["cylinder_pressure"] * swept * turn) / get["cylinder_volume"])
-        return masses, pressures
+        found = {"gas_mass": masses, "cylinder_pressure": pressures}
+        for port, (_, full, force_area, stiffness, preload, damping, mass) in charge.valves.items():
+            if not mass:
+                continue
+            pressure, lifts, speeds = (self.columns[name] for name in ("cylinder_pressure", f"{port}_valve_lift", f"{port}_valve_speed"))
+            found[f"{port}_valve_lift"] = list(speeds)
+            found[f"{port}_valve_speed"] = [(self.excess(port, p) * force_area - preload - stiffness * x - damping * v) / mass if 0 < x < full or v else 0.0
+                                            for p, x, v in zip(pressure, lifts, speeds)]
+        return found
 
     def check_integrals(self, allowed: float) -> int:
         """Check mass and pressure against the integrals of their rates, from the first row of each part of the cycle; the number of checks."""
         pieces = pieces_of(self.checks, self.run)
         stencil = stencils(self.run.times, pieces, joined=False)
-        for name, rate in zip(("gas_mass", "cylinder_pressure"), self.rates()):
+        rates = self.rates()
+        for name, rate in rates.items():
             values, found = self.columns[name], integral(rate, stencil)
-            size = max(values)
+            size = max(max(values), -min(values))
+            if not size:   # a valve that stays shut
+                continue
             for rows in pieces:
                 rows = [i for i in rows if not (self.charge.is_open(q := self.columns["crank_angle"][i] - self.gas.top) or self.gas.jumps_near(q, 1e-7))]
                 if len(rows) <= 2 * NODES:   # of a sudden combustion: too few for a bound of the quadrature's error
@@ -184,7 +212,7 @@ class ChargeChecks:
                         continue
                     off = abs(values[i] - values[first] - found.value[i] + found.value[first]) - bound
                     self.take(f"{name} is not the integral of its rate", off / size, allowed, self.run.times[i])
-        return 2
+        return len(rates)
 
 
 def judge_charge(checks: RowChecks, allowed: float, resolved: bool) -> tuple[int, list[str], list[str]]:
