@@ -343,9 +343,10 @@ def runs() -> None:
 
 def steps() -> None:
     """Saved states and inputs."""
-    for name in ("sim_I", "flores/friction_100", "gas/compressor", "wear/worn_bore"):
+    reeds = {"valve_1.mass": 1e-3, "valve_1.damping": 0.5}
+    for name, more in (("sim_I", {}), ("flores/friction_100", {}), ("gas/compressor", {}), ("gas/compressor_valves", reeds), ("wear/worn_bore", {})):
         for method in ("adams", "radau", "auto"):
-            stepper = case_of(name).set({"integrator.method": method}).begin()
+            stepper = case_of(name).set({"integrator.method": method, **more}).begin()
             end = min(stepper.end, 0.05)
             stepper.advance(0.4 * end)
             saved = stepper.snapshot()

@@ -65,7 +65,8 @@ module reference_pages
       'wall_heat.wall_temperature=450 '//engine), &
     scene_kind_t('Compressor with the losses of its valves (`&valve`)', 'combustion.cycle=compressor combustion.bore=0.07 '// &
       'combustion.dead_space=0.05 combustion.discharge_pressure=5e5 working_gas.gas_constant=287 '// &
-      'working_gas.temperature=300 working_gas.heat_capacity_ratio=1.4 valve_1.area=2e-4 valve_1.lift=1e-3'), &
+      'working_gas.temperature=300 working_gas.heat_capacity_ratio=1.4 valve_1.area=2e-4 valve_1.lift=1e-3 '// &
+      'valve_1.force_area=2.5e-4 valve_1.stiffness=1000 valve_1.mass=1e-3'), &
     scene_kind_t('Elastic rod', 'elastic_rod.section_area=3e-4 elastic_rod.section_inertia=1.5e-8'), &
     scene_kind_t('Elastic crankshaft', 'crankshaft.flywheel_inertia=0.02 crankshaft.torsional_stiffness=2e4'), &
     scene_kind_t('Several cylinders (the numbers are those of the case)', 'crankshaft.flywheel_inertia=0 '// &
