@@ -250,6 +250,10 @@ def check_drag(browser: Browser, checks: Assertions, pictures: Path | None) -> N
         checks.check(same_rows(page, server.explorer.case.set(browser.run("return explorer.values")).run(), "film_thickness"), "whose film is that of the library")
         if pictures:
             browser.screenshot(pictures / "explore.png")
+        for width in (800, 390):
+            found = browser.width_at(width), *browser.run("const m = document.querySelector('main'); return [m.scrollWidth, m.clientWidth]")
+            checks.check(found[0] == width and found[1] == found[2], f"with kept runs a page of {width} is {found} wide")
+        browser.width_at(0)
 
 
 def check_films(browser: Browser, checks: Assertions) -> None:

@@ -110,9 +110,9 @@
     xaxis: { gridcolor: COLOUR.line, zerolinecolor: COLOUR.grey }, yaxis: { gridcolor: COLOUR.line, zerolinecolor: COLOUR.grey } } });
   // Title and margins of a chart: on a phone and on paper long titles begin at its edge, and a legend may take two lines.
   const narrow = (onPaper = false) => onPaper || window.matchMedia("(max-width: 600px)").matches;
-  const frameFor = (isNarrow, curves) => (!isNarrow ? { title: { font: { size: 14 }, xref: "paper" }, margin: { l: 70, r: 15, t: curves > 1 ? 54 : 40, b: 45 } }
-    : { title: { font: { size: 12 }, xref: "container" }, margin: { l: 55, r: 12, t: curves > 2 ? 70 : curves > 1 ? 54 : 40, b: 45 } });
-  const framed = (c, onPaper) => { const { title, margin } = frameFor(narrow(onPaper), c.div.data.length); return { "title.font.size": title.font.size, "title.xref": title.xref, margin }; };
+  const frameFor = (isNarrow, curves, text) => (!isNarrow ? { title: { font: { size: 14 }, xref: "paper" }, margin: { l: 70, r: 15, t: curves > 1 ? 54 : 40, b: 45 } }
+    : { title: { font: { size: Math.max(9, Math.min(12, Math.floor(560 / text.length))) }, xref: "container" }, margin: { l: 55, r: 12, t: curves > 2 ? 70 : curves > 1 ? 54 : 40, b: 45 } });
+  const framed = (c, onPaper) => { const { title, margin } = frameFor(narrow(onPaper), c.div.data.length, c.div.layout.title.text); return { "title.font.size": title.font.size, "title.xref": title.xref, margin }; };
   function recolour(sizes = () => ({})) {
     readColours();
     draw();
@@ -133,7 +133,7 @@
       return [trace(W("apart"), curve.colour, (i) => phase[i] !== 2), trace(W("in contact"), "purple", touching)];
     });
     const shapes = plot.circle ? [{ type: "circle", x0: -1, x1: 1, y0: -1, y1: 1, line: { width: 1 } }] : plot.timed ? uncertified() : [];
-    const frame = frameFor(narrow(), data.length);
+    const frame = frameFor(narrow(), data.length, plot.title);
     await Plotly.newPlot(div, data, { template: theme(),
       title: { ...frame.title, text: plot.title, x: 0, xanchor: "left", y: 1, yref: "container", yanchor: "top", pad: { t: 10 } },
       margin: frame.margin, shapes, font: { size: 11 }, separators: spoken.comma ? ",." : ".,", hovermode: plot.timed ? "x" : "closest",
