@@ -237,6 +237,7 @@ def check_drag(browser: Browser, checks: Assertions, pictures: Path | None) -> N
             before = browser.run(ANGLE)
             page.moved(SLIDE, key, part)
             checks.check(abs(browser.run(ANGLE) - before) < 0.01, "the animation keeps its crank angle", f"{key}: {before}, {browser.run(ANGLE)}")
+        page.moved("document.getElementById('reset').click()")
         browser.run("document.getElementById('keep').click()")
         count = browser.run("return explorer.runs.length")
         browser.run("""window.drag = 0; const e = document.querySelector('[data-key="joint.clearance"] [type=range]');
