@@ -281,7 +281,7 @@ def check_keys(program: Path) -> None:
 
 
 def check_pictures() -> None:
-    """Each picture is made by a command that data/pictures.csv names and that is there."""
+    """Each picture is made by a command that data/pictures.csv names and that is there; a vector file beside it by the same one with --format svg."""
     with (ROOT / "data/pictures.csv").open(encoding="utf-8", newline="") as lines:
         rows = list(csv.DictReader(lines))
     listed = {row["picture"]: row["command"] for row in rows}
@@ -289,6 +289,7 @@ def check_pictures() -> None:
     check(len(questions) == len(rows) and all(one.endswith("?") for one in questions), "data/pictures.csv: a question of its own for each picture")
     there = {str(path.relative_to(ROOT)) for folder in ("cases", "data", "scripts") for path in (ROOT / folder).rglob("*") if path.suffix in (".png", ".svg")}
     there = {path for path in there if "/build/" not in path}
+    there -= {path for path in there if path.endswith(".svg") and path.removesuffix(".svg") + ".png" in there}
     check(there == set(listed), "data/pictures.csv has every picture", str(there ^ set(listed)))
     missing = {command for command in listed.values() if not (command.startswith("gudgeon-plot ") or (ROOT / command.split()[0]).is_file())}
     check(not missing, "data/pictures.csv: the commands are there", str(missing))

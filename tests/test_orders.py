@@ -13,6 +13,8 @@ import sys
 import tempfile
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from unittest.mock import patch
 
 TOP = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TOP / "scripts" / "bench"))
@@ -107,7 +109,7 @@ def runs(folder: Path) -> None:
     fired = run("sim_IV", "run.until=periodic", "output.window=last_period", "integrator.method=auto", *sampled)
     text = page(fired)
     check('<section id="cycles">' in text and text.count("data:image/png") == 2, "the page of a periodic run shows its cycles")
-    check("which is periodic" in text and "crank speed [rad/s]" in text, "the page of a periodic run says that the run is periodic")
+    check("which is periodic" in text and "crank speed [rpm]" in text, "the page of a periodic run says that the run is periodic")
     table = work(fired).set_index("quantity")
     gas, damping = table.loc["gas", "work[J]"], table.loc["damping", "work[J]"]
     check(gas > 0 and abs(gas + damping) < 0.05 * gas, "a settled engine: the work of the gas is nearly that of the damping",
@@ -130,6 +132,10 @@ def runs(folder: Path) -> None:
     swept = 0.08 * np.pi / 4 * 0.07**2
     volume, pressure = ideal_diagram(replace(fired, case=machine), 0.05 * swept, 1.05 * swept)
     check(abs(np.trapezoid(1e5 * pressure, volume) / -(1403.144 / 25) - 1) < 1e-4, "the diagram of ideal valves", f"{np.trapezoid(1e5 * pressure, volume)}")
+    still = SimpleNamespace(place=settled_cycles.place, length=settled_cycles.length, number=1, run=settled_cycles.run)
+    with patch("gudgeon.plots.cycles.bearing_loads", lambda _: {"a load that does not turn": np.ones((2, 1, len(settled_cycles.place)))}):
+        numbers = [text.xyann for text in draw_bearings(still).axes[0].texts]
+    check(len({tuple(np.round(place, 3)) for place in numbers}) == 4, "the numbers of four dots in one place stand around it", str(numbers))
     drawing = draw_bearings(settled_cycles)
     force = bearing_loads(settled_cycles)["crank on the main bearing"].mean(axis=1)
     numbers = {int(text.get_text()): text.xy for text in drawing.axes[-1].texts}

@@ -360,7 +360,7 @@ class ForPapers(unittest.TestCase):
             self.assertLessEqual({"Run up", "Drehzahl", "[rpm]", "2000", "1000"}, set(said))
             self.assertIn("DejaVuSerif-", text)
         finally:
-            names.speeds_in_rpm(False)
+            names.speeds_in_rpm(None)
             plt.rcParams.update(before)
 
     def test_refusals(self) -> None:

@@ -81,13 +81,14 @@ def rungs(question: str, page: Path, wanted: set[Path]) -> str:
 
 
 def gallery() -> str:
-    """Every picture of the checkout with its question and its command, as a table; drawings last."""
+    """Every picture of the checkout with its question, its command and, where it is there, a vector file beside it, as a table; drawings last."""
     with (TOP / "data/pictures.csv").open(encoding="utf-8", newline="") as lines:
         listed = sorted(csv.DictReader(lines), key=lambda row: row["picture"].endswith(".svg"))
     rows = []
     for row in listed:
         picture = os.path.relpath(TOP / row["picture"], SOURCE)
-        rows.append(f"| [![{row['question']}]({picture})]({picture}) | **{row['question']}**<br>`{row['command'].replace('|', chr(92) + '|')}` |\n")
+        vector = f" [SVG]({Path(picture).with_suffix('.svg')})" if picture.endswith(".png") and (TOP / row["picture"]).with_suffix(".svg").exists() else ""
+        rows.append(f"| [![{row['question']}]({picture})]({picture}) | **{row['question']}**<br>`{row['command'].replace('|', chr(92) + '|')}`{vector} |\n")
     return "\n| picture | question and command |\n|---|---|\n" + "".join(rows)
 
 

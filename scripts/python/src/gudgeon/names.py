@@ -79,20 +79,21 @@ class Shown:
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
-_in_rpm = False
+_in_rpm: bool | None = None
 
 
-def speeds_in_rpm(wanted: bool) -> None:
-    """Whether pictures show crank speeds in rpm instead of rad/s."""
+def speeds_in_rpm(wanted: bool | None) -> None:
+    """Whether pictures show crank speeds in rpm instead of rad/s. None: those of runs, but keys of studies in the unit of their values."""
     global _in_rpm
     _in_rpm = wanted
 
 
 def shown_unit(name: str, unit: str, values: np.ndarray) -> tuple[str, float]:
     """The unit in which a picture shows a column or key, and the factor to this unit."""
-    if _in_rpm and unit == "rad/s" and name.endswith("crank_speed"):
+    in_rpm = "." not in name if _in_rpm is None else _in_rpm
+    if in_rpm and unit == "rad/s" and name.endswith("crank_speed"):
         return "rpm", 30 / np.pi
-    return prefixed(unit, values)
+    return prefixed(unit.replace(".", " "), values)
 
 
 def prefixed(unit: str, values: np.ndarray) -> tuple[str, float]:
@@ -112,7 +113,8 @@ def plain_unit(unit: str) -> str:
     """A unit in typographic form; empty for a number without unit."""
     if unit in ("-", "1", ""):
         return ""
-    return unit.replace("^2", "²").replace("^3", "³").replace("degrees", "deg")
+    unit = re.sub(r"(?<=[a-z])\^?([23])(?!\d)", lambda power: "²³"[int(power[1]) - 2], unit)
+    return unit.replace(".", " ").replace("degrees", "deg")
 
 
 @lru_cache

@@ -48,7 +48,7 @@ def add_output(parser: argparse.ArgumentParser, place: str = "beside the data", 
     paper.add_argument("--label", action="append", type=_replacement, metavar="OLD=NEW", default=[], help="other words for a text of the picture; repeatable")
     paper.add_argument("--size", type=_size, metavar="WxH", help="width and height in cm: 8.5x6")
     paper.add_argument("--font", type=_font, metavar="NAME[,SIZE]", help="font, and its size in points (default: DejaVu Sans,8)")
-    paper.add_argument("--rpm", action=_Rpm, nargs=0, help="crank speeds in rpm")
+    paper.add_argument("--rpm", action=_Rpm, help="crank speeds in rpm or rad/s (default: in rpm, but keys of studies as they are given)")
 
 
 def _replacement(text: str) -> tuple[str, str]:
@@ -75,13 +75,13 @@ def _font(text: str) -> str:
     return text
 
 
-class _Rpm(argparse.Action):
-    """Show crank speeds in rpm in all pictures that are drawn from now on."""
+class _Rpm(argparse.BooleanOptionalAction):
+    """Show crank speeds in rpm, or in rad/s, in all pictures that are drawn from now on."""
 
     def __call__(self, parser: object, namespace: argparse.Namespace, values: object, option: str | None = None) -> None:
         from gudgeon import names
 
-        names.speeds_in_rpm(True)
+        names.speeds_in_rpm(not (option or "").startswith("--no-"))
 
 
 def add_results(parser: argparse.ArgumentParser) -> None:

@@ -18,6 +18,7 @@ import argparse
 
 import pandas as pd
 
+from gudgeon import language
 from gudgeon.commands import add_output, add_results, number, save
 from gudgeon.cycles import orders, whole_cycles, work
 from gudgeon.plots import cycles as pictures
@@ -40,6 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     results, name = located(options.case, options.results, not options.no_run)
     out = options.out or results.directory
+    language.current.keep(name)
     cycles = whole_cycles(results[name], options.settle, options.cycles)
     columns = chosen(cycles, options.columns)
     tables = {column: orders(cycles, column) for column in columns}

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import matplotlib.pyplot as plt
 import numpy as np
-from gudgeon.names import shown_unit
+from gudgeon.names import plain_unit, shown_unit
 from gudgeon.plots import style
 from gudgeon.plots.quantity import shade_uncertified
 from gudgeon.plots.style import (
@@ -37,8 +37,9 @@ def values_of(run: Run, column: str) -> np.ndarray:
 
 
 def available(run: Run) -> list[str]:
-    """The default columns that a run has."""
-    return [name for name in DEFAULT if name in run or f"{name}_x" in run]
+    """The default columns that a run has and that vary."""
+    there = [name for name in DEFAULT if name in run or f"{name}_x" in run]
+    return [name for name in there if np.ptp(values_of(run, name)) > 0] or there
 
 
 def plot_column(axis: Axes, runs: Sequence[Run], column: str, over: str = "crank_angle", cycle: int | None = None) -> None:
@@ -64,6 +65,7 @@ def plot_column(axis: Axes, runs: Sequence[Run], column: str, over: str = "crank
             mark_jumps(axis, run, column, x, factor * column_values)
         if cycle is not None and over != "time":
             axis.xaxis.set_major_locator(MultipleLocator(90))
+    shown = plain_unit(shown)
     axis.set_ylabel(f"{column.replace('_', ' ')}\n[{shown}]" if shown else column.replace("_", " "))
 
 

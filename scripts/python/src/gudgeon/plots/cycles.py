@@ -4,6 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from gudgeon._heat import heat_release
 from gudgeon.cycles import Cycles, bearing_loads, orders, spectrum
+from gudgeon.names import Shown, plain_unit, shown_unit
 from gudgeon.plots.style import BLACK, BLUE, GREY, ORANGE, VERMILION, WIDTH
 from gudgeon.results import Run, numbered
 from matplotlib.axes import Axes
@@ -13,53 +14,66 @@ from matplotlib.ticker import MaxNLocator
 HEIGHT = 1.7  # height of a row [inch]
 
 
-def label(cycles: Cycles, column: str) -> str:
-    """Name and unit of a column, as an axis label."""
-    unit = cycles.run.units.get(column, "")
-    return column.replace("_", " ") + (f" [{unit}]" if unit and unit != "-" else "")
+def shown(cycles: Cycles, column: str) -> Shown:
+    """A column as an axis shows it: name, unit, factor to this unit."""
+    unit, factor = shown_unit(column, cycles.run.units.get(column, ""), cycles[column])
+    return Shown(column.replace("_", " "), plain_unit(unit), factor)
 
 
 def draw_means(cycles: Cycles, columns: list[str]) -> Drawing:
-    """Each column over the cycle: single cycles as thin lines, their mean, and a band of one standard deviation on both sides."""
+    """Each column over the cycle: single cycles as thin lines, their mean, and a band of one standard deviation on both sides. Cycles that
+    repeat within a line's width are one line."""
     drawing, axes = plt.subplots(len(columns), 1, figsize=(WIDTH, 0.5 + HEIGHT * len(columns)), sharex=True, squeeze=False)
     order = np.argsort(cycles.place)
     angle = np.degrees(cycles.place[order])
+    repeats = all(cycles[column].std(axis=0).max() < 0.003 * np.ptp(cycles[column]) for column in columns)
     for axis, column in zip(axes[:, 0], columns):
-        values = cycles[column][:, order]
+        as_shown = shown(cycles, column)
+        values = as_shown.factor * cycles[column][:, order]
         mean, scatter = values.mean(axis=0), values.std(axis=0)
-        for k in range(min(cycles.number, 40)):
-            axis.plot(angle, values[k], color=GREY, linewidth=0.25, alpha=0.6, label="single cycles" if k == 0 else None)
-        axis.fill_between(angle, mean - scatter, mean + scatter, color=ORANGE, alpha=0.45, linewidth=0, label="standard deviation")
+        if not repeats:
+            for k in range(min(cycles.number, 40)):
+                axis.plot(angle, values[k], color=GREY, linewidth=0.25, alpha=0.6, label="single cycles" if k == 0 else None)
+            axis.fill_between(angle, mean - scatter, mean + scatter, color=ORANGE, alpha=0.45, linewidth=0, label="standard deviation")
         axis.plot(angle, mean, color=BLUE, label="mean")
-        axis.set_ylabel(label(cycles, column))
+        axis.set_ylabel(as_shown.label)
     axes[-1, 0].set_xlabel("crank angle within the cycle [deg]")
     axes[-1, 0].set_xticks(np.arange(0, np.degrees(cycles.length) + 1, 90))
-    drawing.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    if not repeats:
+        drawing.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     what = "a revolution" if cycles.length < 7 else f"{cycles.length / (2 * np.pi):g} revolutions"
-    drawing.suptitle(f"{cycles.run.name}: {cycles.number} {'cycle' if cycles.number == 1 else 'cycles'} of {what}")
+    how = ", which repeat" if repeats and cycles.number > 1 else ""
+    drawing.suptitle(f"{cycles.run.name}: {cycles.number} {'cycle' if cycles.number == 1 else 'cycles'} of {what}{how}")
+    drawing.align_ylabels()
     return drawing
 
 
 def draw_orders(cycles: Cycles, columns: list[str], highest: float) -> Drawing:
     """Amplitudes by order, and the amplitude density by frequency, of each column."""
     drawing, axes = plt.subplots(len(columns), 2, figsize=(WIDTH, 0.5 + HEIGHT * len(columns)), squeeze=False)
+    scatters = False
     for (left, right), column in zip(axes, columns):
         table = orders(cycles, column)
         table = table[(table["order"] > 0) & (table["order"] <= highest)]
         width = 0.7 * (table["order"].iloc[1] - table["order"].iloc[0]) if len(table) > 1 else 0.5
-        left.bar(table["order"], table["amplitude"], width=width, color=BLUE)
-        if cycles.number > 1:
-            left.errorbar(table["order"], table["amplitude"], yerr=table["scatter"], fmt="none", ecolor=VERMILION, elinewidth=0.7)
-        left.set_ylabel(label(cycles, column))
+        as_shown = shown(cycles, column)
+        amplitude, scatter = as_shown.factor * table["amplitude"], as_shown.factor * table["scatter"]
+        left.bar(table["order"], amplitude, width=width, color=BLUE)
+        if scatter.max() > 0.003 * amplitude.max():
+            left.errorbar(table["order"], amplitude, yerr=scatter, fmt="none", ecolor=VERMILION, elinewidth=0.7)
+            scatters = True
+        left.set_ylabel(as_shown.label)
         left.set_ylim(bottom=0)
         frequency, density = spectrum(cycles, column)
-        shown = (frequency > 0) & (density > 0)
-        right.loglog(frequency[shown], density[shown], color=BLACK, linewidth=0.6)
-        if shown.any():
-            top = density[shown].max()
+        density = as_shown.factor * density
+        there = (frequency > 0) & (density > 0)
+        right.loglog(frequency[there], density[there], color=BLACK, linewidth=0.6)
+        if there.any():
+            top = density[there].max()
             right.set_ylim(top * 1e-6, top * 3)
-    axes[0, 0].set_title("amplitude by order" + (" (bars: scatter from cycle to cycle)" if cycles.number > 1 else ""))
-    axes[0, 1].set_title("amplitude density [unit/√Hz]")
+        right.set_ylabel(f"[{as_shown.unit or '1'}/√Hz]")
+    axes[0, 0].set_title("amplitude by order" + (" (bars: scatter from cycle to cycle)" if scatters else ""))
+    axes[0, 1].set_title("amplitude density")
     axes[-1, 0].set_xlabel("order: cycles in a revolution")
     axes[-1, 1].set_xlabel("frequency [Hz]")
     drawing.suptitle(cycles.run.name)
@@ -86,16 +100,14 @@ def draw_bearings(cycles: Cycles) -> Drawing:
         for mark in marks:
             angle, size = np.arctan2(y[mark], x[mark]), np.hypot(x[mark], y[mark]) / 1e3
             axis.plot(angle, size, "o", color=VERMILION, markersize=2.5)
-            aside = angle
             near = [other for other, its in turned if np.hypot(x[its] - x[mark], y[its] - y[mark]) < 0.2 * np.hypot(x, y).max()]
-            while any(abs(np.angle(np.exp(1j * (aside - other)))) < 1.3 for other in near):
-                aside += 1.4
+            aside = max(angle + np.array([0, 0.7, -0.7, 1.4, -1.4, 2.1, -2.1, np.pi]), key=lambda way: min((min(1.3, abs(np.angle(np.exp(1j * (way - other))))) for other in near), default=1.3))
             turned.append((aside, mark))
             axis.annotate(
                 f"{round(np.degrees(cycles.place[mark])) % round(np.degrees(cycles.length))}", (angle, size), fontsize=6, ha="center", va="center",
                 xytext=(9 * np.sin(aside), 9 * np.cos(aside)), textcoords="offset points", color=VERMILION,
             )
-        axis.set_title(name.replace(", ", ",\n") + ("" if ", " in name else "\n") + " [kN]", pad=6)
+        axis.set_title(f"{name if ', ' in name else f'{name}, in fixed axes'} [kN]".replace(", ", ",\n"), pad=6)
         axis.set_theta_zero_location("N")   # x, or the outward axis of the rod, points upwards and y to the right, as in the other pictures
         axis.set_theta_direction(-1)
         axis.set_xticks(np.radians([0, 90, 180, 270]))

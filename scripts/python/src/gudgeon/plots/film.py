@@ -44,7 +44,7 @@ def pressure_fields(run: Run, fields: list[pd.DataFrame], name: str) -> Drawing:
         if "film_fraction" in field:
             empty = grid_of(field.assign(pressure=field["film_fraction"]))[2]
             left.contour(degrees, 1e3 * places, empty, levels=[0.999], colors=VERMILION, linewidths=0.8)
-        mesh = left.pcolormesh(degrees, 1e3 * places, mega, cmap="viridis", vmin=0, vmax=top, shading="gouraud")
+        mesh = left.pcolormesh(degrees, 1e3 * places, mega, cmap="viridis", vmin=0, vmax=top, shading="gouraud", rasterized=True)
         left.contour(degrees, 1e3 * places, mega, levels=top * np.array([0.02, 0.25, 0.5, 0.75]), colors="white", linewidths=0.4)
         drawing.colorbar(mesh, ax=left, pad=0.01)
         left.axvline(degrees[np.argmin(thickness)], color="white", linewidth=0.6, linestyle=":")

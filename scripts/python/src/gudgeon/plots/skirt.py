@@ -44,7 +44,7 @@ def draw_faces(drawing: Drawing, axes: list[list[Axes]], fields: list[pd.DataFra
             half = field[field["side"] == side].pivot(index="height", columns="angle", values="pressure")
             angles = np.concatenate([-half.columns.to_numpy()[::-1], half.columns.to_numpy()])
             pressures = 1e-6 * np.hstack([half.to_numpy()[:, ::-1], half.to_numpy()])
-            mesh = axis.pcolormesh(angles, 1e3 * half.index.to_numpy(), pressures, cmap="viridis", vmin=0, vmax=top, shading="gouraud")
+            mesh = axis.pcolormesh(angles, 1e3 * half.index.to_numpy(), pressures, cmap="viridis", vmin=0, vmax=top, shading="gouraud", rasterized=True)
             axis.grid(False)
             axis.xaxis.set_major_locator(MultipleLocator(30))
             axis.set_title(f"{'−y' if side < 0 else '+y'}, {pressures.max():.2g} MPa", loc="left")

@@ -1,12 +1,14 @@
 """Style of all pictures: sizes for print, colours that colour-blind readers can distinguish (Okabe and Ito), legends, files."""
 
 import math
+import warnings
 from collections.abc import Iterable
 from pathlib import Path
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 from gudgeon import language
+from gudgeon.results import MissingResult
 from matplotlib import font_manager
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
@@ -134,7 +136,12 @@ def save(drawing: Drawing, directory: Path, stem: str, formats: Iterable[str]) -
     for form in formats:
         path = directory / f"{stem}.{form}"
         dateless = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}.get(form)
-        drawing.savefig(path, metadata=dateless)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("error", "constrained_layout not applied", UserWarning)
+            try:
+                drawing.savefig(path, metadata=dateless)
+            except UserWarning:
+                raise MissingResult(f"{stem}: {drawing.get_figwidth() * 2.54:.1f} x {drawing.get_figheight() * 2.54:.1f} cm are too few for its parts: give a larger --size") from None
         paths.append(path)
     plt.close(drawing)
     return paths

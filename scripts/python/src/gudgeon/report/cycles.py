@@ -87,8 +87,9 @@ def strongest(cycles: Cycles, columns: list[str]) -> pd.DataFrame:
     for column in columns:
         found = orders(cycles, column)
         most = found[(found["order"] > 0) & (found["order"] <= HIGHEST)].nlargest(4, "amplitude")
-        row = {"column": cycle_pictures.label(cycles, column), "mean": number(cycles[column].mean())}
-        row |= {f"strongest {k + 1}": f"{line.order:g}: {number(line.amplitude)}" for k, line in enumerate(most.itertuples())}
+        shown = cycle_pictures.shown(cycles, column)
+        row = {"column": shown.label, "mean": number(shown.factor * cycles[column].mean())}
+        row |= {f"strongest {k + 1}": f"{line.order:g}: {number(shown.factor * line.amplitude)}" for k, line in enumerate(most.itertuples())}
         rows.append(row)
     return pd.DataFrame(rows)
 
