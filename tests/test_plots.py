@@ -354,13 +354,18 @@ class ForPapers(unittest.TestCase):
                 path.with_name("x.summary.csv").write_text("quantity,value,unit\nstatus,done,\n")
                 words = ["--title", "Run up", "--label", "crank speed=Drehzahl", "--size", "8.5x6", "--font", "DejaVu Serif,10", "--rpm", "--format", "svg"]
                 self.assertEqual(cli.main(["columns", str(path), *words]), 0)
+                both = ["--columns", "crank_speed,crank_angle", "--over", "time", "-o", f"{work}/both.svg"]
+                self.assertEqual(cli.main(["--language", "pt", "columns", str(path), *both]), 0)
+                portuguese = Path(work, "both.svg").read_text()
                 text = path.with_name("x_columns.svg").read_text()
             self.assertIn('width="240.944882pt" height="170.07874pt"', text)   # 8.5 cm and 6 cm, of 72 points an inch
             said = re.findall("<!-- (.*?) -->", text)   # texts of the picture, which are drawn as paths
             self.assertLessEqual({"Run up", "Drehzahl", "[rpm]", "2000", "1000"}, set(said))
             self.assertIn("DejaVuSerif-", text)
+            self.assertLessEqual({"velocidade da manivela", "ângulo da manivela", "tempo [ms]"}, set(re.findall("<!-- (.*?) -->", portuguese)))
         finally:
             names.speeds_in_rpm(None)
+            language.use("en")
             plt.rcParams.update(before)
 
     def test_refusals(self) -> None:

@@ -46,7 +46,8 @@ def main(words: list[str] | None = None) -> int:
     if not words or words[0] in ("-h", "--help"):
         print(usage())
         return 0
-    what, *rest = words
+    before = next((i for i, word in enumerate(words) if word in WHAT), 0)   # --language pt may stand before WHAT
+    what, *rest = words[before], *words[:before], *words[before + 1 :]
     if what not in WHAT:
         print(f"gudgeon-plot: {what}: must be one of {', '.join(WHAT)}", file=sys.stderr)
         return 2

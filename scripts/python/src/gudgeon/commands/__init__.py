@@ -32,6 +32,13 @@ def number(least: float, *, itself: bool = True, whole: bool = False) -> Callabl
     return convert
 
 
+class Names(argparse.Action):
+    """Takes names apart that blanks or commas separate."""
+
+    def __call__(self, parser: object, namespace: argparse.Namespace, values: object, option: str | None = None) -> None:
+        setattr(namespace, self.dest, [name for word in values for name in word.split(",") if name])
+
+
 def _folder(text: str) -> Path:
     if Path(text).suffix[1:] in FORMATS:
         raise argparse.ArgumentTypeError(f"{text}: give a folder, since several files are written")

@@ -10,14 +10,14 @@ A vector's name, such as pin_force, stands for the magnitude of pin_force_x and 
 import argparse
 
 from gudgeon import language
-from gudgeon.commands import add_output, add_results, save
+from gudgeon.commands import Names, add_output, add_results, save
 from gudgeon.plots import columns
 from gudgeon.results import located
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("runs", nargs="+", metavar="RUN", help="case file, trace, or name of a run in results/")
-    parser.add_argument("--columns", nargs="+", metavar="NAME", help="columns without units, or all")
+    parser.add_argument("--columns", nargs="+", action=Names, metavar="NAME", help="columns without units, or all")
     parser.add_argument("--over", choices=("crank_angle", "time"), default="crank_angle", help="(default: crank_angle)")
     parser.add_argument("--cycle", type=int, metavar="N", help="only this cycle, counted from 0; -1 is the last whole one")
     add_results(parser)

@@ -7,14 +7,14 @@
 import argparse
 
 from gudgeon import language
-from gudgeon.commands import add_output, add_results, number, save
+from gudgeon.commands import Names, add_output, add_results, number, save
 from gudgeon.plots import compare
 from gudgeon.results import located
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("runs", nargs=2, metavar="RUN", help="case file, trace, or name of a run in results/")
-    parser.add_argument("--columns", nargs="+", metavar="NAME", help="columns to compare, without units (default: speeds and film thickness)")
+    parser.add_argument("--columns", nargs="+", action=Names, metavar="NAME", help="columns to compare, without units (default: speeds and film thickness)")
     parser.add_argument("--agreement", type=number(0, itself=False), metavar="SHARE", default=compare.AGREEMENT,
                         help="runs agree as long as they differ by less than this share of the range (default: %(default)g)")
     add_results(parser)

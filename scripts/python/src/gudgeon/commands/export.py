@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from gudgeon.commands import add_results
+from gudgeon.commands import Names, add_results
 from gudgeon.results import MissingResult, located
 
 MARKS = {"comma": (";", ","), "point": (",", ".")}
@@ -18,7 +18,7 @@ MARKS = {"comma": (";", ","), "point": (",", ".")}
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("runs", nargs="+", metavar="RUN", help="case file, trace, or name of a run in results/")
     parser.add_argument("--decimal", choices=tuple(MARKS), default="comma", help="mark of decimals; columns are separated by ; or , (default: comma)")
-    parser.add_argument("--columns", nargs="+", metavar="NAME", help="columns of the trace, without units (default: all)")
+    parser.add_argument("--columns", nargs="+", action=Names, metavar="NAME", help="columns of the trace, without units (default: all)")
     parser.add_argument("-o", "--out", type=Path, metavar="DIR", help="folder for the files (default: beside the data)")
     add_results(parser)
 

@@ -19,7 +19,7 @@ import argparse
 import pandas as pd
 
 from gudgeon import language
-from gudgeon.commands import add_output, add_results, number, save
+from gudgeon.commands import Names, add_output, add_results, number, save
 from gudgeon.cycles import orders, whole_cycles, work
 from gudgeon.plots import cycles as pictures
 from gudgeon.report.cycles import COLUMNS, chosen
@@ -28,7 +28,7 @@ from gudgeon.results import located
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("case", metavar="RUN", help="case file, trace, or name of a run in results/")
-    parser.add_argument("--columns", nargs="+", metavar="COLUMN",
+    parser.add_argument("--columns", nargs="+", action=Names, metavar="COLUMN",
                         help=f"columns to analyse, without units (default: {' '.join(COLUMNS)}, those that vary)")
     parser.add_argument("--settle", type=number(0), metavar="REVOLUTIONS",
                         help="revolutions that are left out at the start (default: half of the run)")

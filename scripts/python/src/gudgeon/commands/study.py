@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 
 from gudgeon import language
-from gudgeon.commands import Refused, add_output, save
+from gudgeon.commands import Names, Refused, add_output, save
 from gudgeon.plots import contact_laws as contact_study
 from gudgeon.plots import figures, studies
 from gudgeon.results import MissingResult, default_folder
@@ -35,7 +35,7 @@ FLORES_CLEARANCE = 100e-6  # m
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("runs", nargs="*", type=Path, metavar="NAME.runs.csv", help="results of any study")
     parser.add_argument("--picture", action="append", choices=tuple(PICTURES), help="picture of the shipped studies; repeatable")
-    parser.add_argument("--columns", nargs="+", metavar="COLUMN",
+    parser.add_argument("--columns", nargs="+", action=Names, metavar="COLUMN",
                         help=f"columns of a given study to draw, without their units (default: those of its statistics, or else {' '.join(COLUMNS)})")
     parser.add_argument("--results", type=Path, metavar="DIR", help="of the shipped studies (default: results/studies)")
     parser.add_argument("--numbers", action="store_true", help="only print the numbers of the shipped studies, in Markdown")

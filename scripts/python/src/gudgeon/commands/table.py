@@ -12,7 +12,7 @@ import argparse
 from pathlib import Path
 
 import gudgeon
-from gudgeon.commands import Refused, add_results, number
+from gudgeon.commands import Names, Refused, add_results, number
 from gudgeon.results import MissingResult, file_of
 
 KINDS = {"md": "markdown", "csv": "csv", "html": "html"}
@@ -20,7 +20,7 @@ KINDS = {"md": "markdown", "csv": "csv", "html": "html"}
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("runs", nargs="+", metavar="RUN", help="case file, trace, name of a run in results/; or NAME.runs.csv of a study")
-    parser.add_argument("--rows", nargs="+", metavar="NAME", help="rows of the summary, columns of a study; also patterns: 'crank_pin_*'")
+    parser.add_argument("--rows", nargs="+", action=Names, metavar="NAME", help="rows of the summary, columns of a study; also patterns: 'crank_pin_*'")
     parser.add_argument("--digits", type=number(1, whole=True), default=3, metavar="N", help="(default: 3)")
     parser.add_argument("--format", choices=tuple(KINDS), default="md", help="of what is printed (default: md)")
     parser.add_argument("-o", "--out", type=Path, metavar="FILE", help="write a file instead")
