@@ -44,6 +44,7 @@ contains
     call check%equal_text(table%difference, '', 'a key has the same meaning in all laws of a group')
     call test_values(check)
     call test_forms(check)
+    call test_elements(check)
     call test_texts(check)
     call test_resolved(check)
     call test_syntax(check)
@@ -137,6 +138,28 @@ contains
     call parse_case(whole//'&case title='''//repeat('x', 3000)//''' /', 'x', none, c, error)
     call check%that(len(c%title) == 3000, 'long lines')
   end subroutine test_forms
+
+  !> One number of a list by its name, and what is none.
+  subroutine test_elements(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: shaft = whole//'&crankshaft inertia = 1, 2, 3 stiffness = 5 /'//n, &
+      given = bodies//joint//contact//'&integrator revolutions = 2 /'//n
+    call resolves(check, given, [character(len=40) :: 'mechanism.rod_com[2]=1 mm', 'mechanism.crank_com(1)=0.002'], &
+      'rod_com = 0.0, 0.001', 'crank_com = 0.002, 0.0')
+    call resolves(check, shaft, [character(len=40) :: 'crankshaft.inertia[1]=4', 'crankshaft.inertia[2]=5'], &
+      'inertia = 4.0, 5.0, 3.0', 'stiffness = 5.0')
+    call resolves(check, shaft, [character(len=40) :: 'crankshaft.inertia=6, 7', 'crankshaft.inertia[3]=8'], &
+      'inertia = 6.0, 7.0, 8.0', 'stiffness = 5.0')
+    call refused_with(check, 'mechanism.rod_com[3]=1', &
+      'x.nml: --set mechanism.rod_com[3]=1: &mechanism rod_com[3]: has the numbers rod_com[1] to rod_com[2]')
+    call refused_with(check, 'mechanism.rod_com[2=1', &
+      'x.nml: --set mechanism.rod_com[2=1: &mechanism rod_com[2: has the numbers rod_com[1] to rod_com[2]')
+    call refused_with(check, 'mechanism.rod_com[1]=1, 2', 'x.nml: --set mechanism.rod_com[1]=1, 2: takes 1 value, not 2')
+    call refused_with(check, 'joint.clearance[1]=1', &
+      'x.nml: --set joint.clearance[1]=1: &joint clearance[1]: clearance is no list of numbers')
+    call refused_with(check, 'output.columns[1]=time', &
+      'x.nml: --set output.columns[1]=time: &output columns[1]: columns is no list of numbers')
+  end subroutine test_elements
 
   !> Paths of files that another file names, replaced parts of texts, and lines.
   subroutine test_texts(check)

@@ -151,6 +151,11 @@ def parameters(fmi: int, folder: str) -> None:
         unit.unit.fmi2GetRealStatus(unit.unit.component, 2, ctypes.byref(value))
         check(abs(value.value - 0.02) < 1e-12, f"last successful time {value.value}")
     unit.free()
+    inertias = [f"crankshaft.inertia[{n}]" for n in range(1, 7)]
+    four = gudgeon.fmu(gudgeon.read(TOP / "cases" / "cylinders" / "four_dry.nml"), Path(folder) / "shaft.fmu", fmi, ["time", "crank_angle"])
+    shaft = Unit(four, fmi, folder, 0.01, [(inertias[2], 3e-3)])
+    check([shaft.get(name)[0] for name in inertias] == [0.004, 0.002, 0.003, 0.002, 0.002, 0.12], "a list of six numbers has six parameters")
+    shaft.free()
     messages: list[str] = []
     wrong = [("joint.clearance", -1.0)]
     try:

@@ -100,7 +100,12 @@ module test_notes
     mistake_t('gas/measured', 'cylinder_pressure.pressure_offset=-2e4', 'is compressed with the exponent 1.49, usually 1.15 to '// &
       '1.45: pressure_offset, offset_deg, compression_ratio or unit?'), &
     mistake_t('gas/measured', 'initial.crank_speed=-250', 'crank_speed < 0 turns the engine backwards?'), &
-    mistake_t('sim_IV', 'drive.kind=constant_speed drive.torque=1', '&drive torque has no effect with kind = ''constant_speed''')]
+    mistake_t('sim_IV', 'drive.kind=constant_speed drive.torque=1', '&drive torque has no effect with kind = ''constant_speed'''), &
+    mistake_t('film/heat', 'integrator.end_time=0.01', 'end_time = 0.01 s has no effect with &run until = ''periodic'''), &
+    mistake_t('sim_I', 'initial.crank_speed=0 output.interval=1e-4 integrator.end_time=0.1 mechanism.gravity=9.81 '// &
+      'mechanism.gravity_angle_deg=90', '&initial eccentricity: the pin starts in the middle of its bearing, but at rest it '// &
+      'lies on it; under the weight alone eccentricity = 0, 1.98e-5')]
+
 
 contains
 

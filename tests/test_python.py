@@ -136,6 +136,15 @@ def cases() -> None:
     shared = case_of("bearings/big_end_heat").set({"crank_pin.lubrication.temperature": 365})
     check(shared.crank_pin.lubrication.oil == shared.lubrication.oil and shared.check() == [], "a group of one joint begins with the values for all joints")
     refuses(gudgeon.CaseError, "write crank_pin.lubrication.temperature", lambda: setattr(shared.lubrication, "temperature", 350.0))
+    masses = case_of("sim_I").set({"mechanism.crank_com[2]": 1e-3})
+    check(masses["mechanism.crank_com"] == (0.0, 1e-3) == gudgeon.Case.from_text(masses.to_nml())["mechanism.crank_com"], "one number of a list")
+    masses["mechanism.crank_com[1]"] = "2 mm"
+    check(masses["mechanism.crank_com[1]"] == 2e-3 and masses["mechanism.crank_com[2]"] == 1e-3, "with a unit, the other one stays")
+    shaft = case_of("cylinders/four_dry").set({"crankshaft.inertia[2]": 3e-3})
+    check(shaft["crankshaft.inertia"] == (0.004, 0.003, 0.002, 0.002, 0.002, 0.12) and shaft.check() == [], "of six numbers")
+    refuses(KeyError, "no key mechanism.crank_com[3]", lambda: masses["mechanism.crank_com[3]"])
+    refuses(KeyError, "no key joint.clearance[1]", lambda: masses.set({"joint.clearance[1]": 1e-5}))
+    refuses(gudgeon.CaseError, "crankshaft.inertia: number 1 must be given before", lambda: case_of("sim_I").set({"crankshaft.inertia[2]": 1.0}))
     key = gudgeon.keys["contact.restitution"]
     check(key.bounds == (0, 1, True, True) or key.bounds[:2] == (0, 1), f"bounds: {key.bounds}")
     long = [k.name for k in gudgeon.keys.values() if len(k.meaning) >= 250 or len(", ".join(k.words)) > 500]
@@ -411,6 +420,9 @@ def sweeps() -> None:
         alone = case.set({name: table[name][row] for name in design}).run(columns="none")
         check(alone.summary["max_pin_force"] == table["max_pin_force"][row], f"row {row} has the bits of a run alone")
     check(gudgeon.sweep(case, design, workers=1).equals(table), "threads change nothing")
+    table = gudgeon.sweep(case, {"mechanism.rod_com[2]": [0.0, 2e-3]})
+    alone = case.set({"mechanism.rod_com": (case["mechanism.rod_com[1]"], 2e-3)}).run(columns="none")
+    check(alone.summary["max_pin_force"] == table["max_pin_force"][1] != table["max_pin_force"][0], "one number of a list is swept")
     table = gudgeon.sweep(case, {"joint.clearance": [1e-5, -1.0, 2e-5]}, reduce=lambda run: {"top": run["piston_position"].max()})
     check(list(table["status"] == "done") == [True, False, True] and "must be > 0" in table["status"][1], "a wrong row says why")
     check(table["top"][2] > 0.1, "reduce has the rows of the run")

@@ -110,6 +110,21 @@ for quantity in 'min_film_thickness m' 'max_penetration m' 'max_pin_force N'; do
   done
 done
 
+# one number of a list
+study element <<'END'
+&study case = 'base.nml' /
+&parameter key = 'mechanism.rod_com[2]', from = -1 mm, to = 1 mm, count = 3 /
+END
+run sweep -o "$work/element" "$work/element.nml"
+check "a study of one number of a list, status $status" [ "$status" = 0 ]
+run -o "$work/element" -s 'mechanism.rod_com[2]=1.000000000E-03' "$work/base.nml"
+check "its rows are those of the cases" [ "$(field "$work/element/base.summary.csv" max_pin_force)" = \
+  "$(named "$work/element/element.runs.csv" 3 'max_pin_force[N]')" ]
+check "its values differ" [ "$(named "$work/element/element.runs.csv" 1 'max_pin_force[N]')" != \
+  "$(named "$work/element/element.runs.csv" 3 'max_pin_force[N]')" ]
+sed "s/from.*/values = 0, 1 \/\n\&parameter key = 'mechanism.rod_com(2)', values = 1, 2 \//" "$work/element.nml" >"$work/twice.nml"
+refused "the same number twice" 3 "twice.nml: mechanism.rod_com(2): is varied twice, also as mechanism.rod_com\\[2\\]" "$work/twice.nml"
+
 # wear: columns of the worn surfaces, where a run may have any
 cp cases/wear/flores.nml "$work/rubbing.nml"
 study worn <<'END'

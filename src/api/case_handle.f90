@@ -68,8 +68,9 @@ contains
     call parse_values(text, self%path, [character(len=1) ::], self%values, all_groups=.true.)
   end subroutine read
 
-  !> Set GROUP.KEY to a value as a case file has it. Without a value, a key has its default again. GROUP alone is added, or removed
-  !> if the value is 'none'. Error: no such key, or a text that is no value of it; the case is then unchanged.
+  !> Set GROUP.KEY, or a number GROUP.KEY[2] of it, to a value as a case file has it. Without a value, a key has its default again.
+  !> GROUP alone is added, or removed if the value is 'none'. Error: no such key, or a text that is no value of it; the case is then
+  !> unchanged.
   subroutine set(self, key, value, has_value, status)
     class(case_handle_t), intent(inout) :: self
     character(len=*), intent(in) :: key, value
@@ -131,6 +132,11 @@ contains
       if (schema%kind > integer_kind .or. element < 1 .or. element > schema%count) then
         call self%refuse(trim(schema%group)//'.'//trim(schema%name)//' has no number '//integer_text(element - 1)// &
           ', counted from 0', status)
+        return
+      end if
+      if (schema%is_list .and. element > given%whole + 1) then
+        call self%refuse(trim(schema%group)//'.'//trim(schema%name)//': number '//integer_text(element - 1)// &
+          ' must be given before', status)
         return
       end if
       if (.not. is_allowed(value, schema%kind)) then
@@ -295,15 +301,15 @@ contains
     end function leads_out
   end subroutine refuse_files
 
-  !> The value of GROUP.KEY as a case has it: with the defaults of the selected laws if the case is valid, otherwise as given. For a
-  !> GROUP, 'present' or 'none'.
+  !> The value of GROUP.KEY, or of GROUP.KEY[2], as a case has it: with the defaults of the selected laws if the case is valid,
+  !> otherwise as given. For a GROUP, 'present' or 'none'.
   subroutine get(self, key, value, status)
     class(case_handle_t), intent(inout) :: self
     character(len=*), intent(in) :: key
     character(len=:), allocatable, intent(out) :: value
     integer, intent(out) :: status
     type(error_t), allocatable :: error
-    integer :: group, place, dot
+    integer :: group, place, element, dot
     value = ''
     group = find_group(self%values%groups, lowercase(key))
     if (group > 0) then
@@ -312,16 +318,16 @@ contains
       return
     end if
     dot = index(key, '.', back=.true.)
-    call self%values%find(lowercase(key(:max(0, dot - 1))), lowercase(key(dot + 1:)), '', place, error)
+    call self%values%find(lowercase(key(:max(0, dot - 1))), lowercase(key(dot + 1:)), '', place, error, element)
     call self%keep(error, status)
     if (allocated(error)) return
     call self%check(status)
     if (status /= 0) then
-      value = value_text(self%values%keys(place), self%values%values(place))
+      value = value_text(self%values%keys(place), self%values%values(place), element)
     else if (allocated(self%varied)) then
-      value = value_text(self%values%keys(place), self%varied%values%values(place))
+      value = value_text(self%values%keys(place), self%varied%values%values(place), element)
     else
-      value = value_text(self%values%keys(place), self%resolved%values(place))
+      value = value_text(self%values%keys(place), self%resolved%values(place), element)
     end if
     status = 0
   end subroutine get
@@ -347,7 +353,7 @@ contains
     class(case_handle_t), intent(in) :: self
     integer, intent(in) :: key
     is_given = .false.
-    if (key >= 1 .and. key <= size(self%values%keys)) is_given = self%values%values(key)%given(1) .and. &
+    if (key >= 1 .and. key <= size(self%values%keys)) is_given = any(self%values%values(key)%given) .and. &
       self%values%is_present(find_group(self%values%groups, trim(self%values%keys(key)%group)))
   end function is_given
 

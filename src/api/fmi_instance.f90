@@ -1,7 +1,7 @@
 !> An instance of a functional mock-up unit, as FMI 2.0 and 3.0 see it. Its case is in the folder of its resources. Value
 !> references: outputs have the indices of the columns from 0 on (0 is the time), inputs 1000 and their index in `inputs` from 0 on,
-!> 5000 whether a step ends at a contact, parameters 10000 + 2 k + e for element e = 0, 1 of key k, from 0 on. The run is built when
-!> the first output is asked for, or at the end of the initialisation, and again if a parameter changes before that.
+!> 5000 whether a step ends at a contact, parameters 10000 + 16 k + e for number e of key k, both from 0 on (`most_reals` is 16).
+!> The run is built when the first output is asked for or the initialisation ends, and again if a parameter changes before that.
 module fmi_instance
   use, intrinsic :: iso_c_binding, only: c_ptr, c_null_ptr, c_loc, c_f_pointer, c_associated
   use, intrinsic :: iso_fortran_env, only: int64
@@ -11,6 +11,7 @@ module fmi_instance
   use case_schema, only: real_kind, integer_kind
   use model_parameters, only: logical_kind
   use scene_inputs, only: inputs
+  use value_reader, only: most_reals
   use case_handle, only: case_handle_t
   use run_handle, only: run_handle_t, begin_run, copy_run
   use text_lock, only: lock_texts, unlock_texts
@@ -161,8 +162,8 @@ contains
     value = 0
     status = fmi_ok
     if (reference >= of_parameters) then
-      key = (reference - of_parameters)/2 + 1
-      call self%case%number(key, mod(reference, 2) + 1, value, status)
+      key = (reference - of_parameters)/most_reals + 1
+      call self%case%number(key, mod(reference - of_parameters, most_reals) + 1, value, status)
       if (status /= 0) call refuse(self, reference, status)
       return
     else if (reference == at_contacts) then
@@ -220,7 +221,7 @@ contains
     integer :: key
     kind_of = real_kind
     if (reference == at_contacts) kind_of = logical_kind
-    key = (reference - of_parameters)/2 + 1
+    key = (reference - of_parameters)/most_reals + 1
     if (reference >= of_parameters .and. key <= size(self%case%values%keys)) kind_of = self%case%values%keys(key)%kind
   end function kind_of
 
@@ -243,9 +244,9 @@ contains
     integer :: place, key
     status = fmi_ok
     if (reference >= of_parameters .and. .not. self%is_running) then
-      key = (reference - of_parameters)/2 + 1
+      key = (reference - of_parameters)/most_reals + 1
       call lock_texts()
-      call self%case%set_number(key, mod(reference, 2) + 1, value, status)
+      call self%case%set_number(key, mod(reference - of_parameters, most_reals) + 1, value, status)
       call unlock_texts()
       if (status /= 0) self%message = self%case%message
       if (status /= 0) status = fmi_error

@@ -299,15 +299,15 @@ contains
     has_places = find_group(values%groups, trim(places(in_order(2))%name)//'.'//name) > 0
   end function has_places
 
-  !> Apply an override GROUP.KEY=VALUE to the values; texts need no quotes. GROUP=none removes everything that the file and earlier
-  !> overrides have set in that group.
+  !> Apply an override GROUP.KEY=VALUE, or GROUP.KEY[2]=VALUE for a number of a list, to the values; texts need no quotes.
+  !> GROUP=none removes everything that the file and earlier overrides have set in that group.
   subroutine apply_override(values, override, line, error)
     type(case_values_t), intent(inout) :: values
     character(len=*), intent(in) :: override
     integer, intent(in) :: line   !! for the order of messages
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: at, group, key, text
-    integer :: dot, equals, place, i
+    integer :: dot, equals, place, element, i
     at = values%file//': --set '//printable(override, 60)//': '
     equals = index(override, '=')
     dot = index(override(:max(0, equals - 1)), '.', back=.true.)
@@ -335,12 +335,12 @@ contains
     end if
     group = trim(adjustl(lowercase(override(:dot - 1))))
     key = trim(adjustl(lowercase(override(dot + 1:equals - 1))))
-    call values%find(group, key, at, place, error)
+    call values%find(group, key, at, place, error, element)
     if (allocated(error)) return
     call enter_group(values, group, '.'//key, at, error)
     if (allocated(error)) return
     text = trim(adjustl(override(equals + 1:)))
-    call values%assign_text(place, text, .false., at, error)
+    call values%assign_text(place, element, text, .false., at, error)
     values%values(place)%line = line
     if (allocated(error) .and. lowercase(text) == 'none') &
       error%message = error%message//'; --set '//group//'=none takes the group out'

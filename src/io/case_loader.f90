@@ -85,9 +85,7 @@ contains
       do k = 1, size(keys)
         associate (own => values%values(values%place_of(group, trim(keys(k)))), &
                    shared => values%values(values%place_of('mechanism', trim(keys(k)))))
-          if (own%given(1)) cycle
-          own%reals = shared%reals
-          if (index(keys(k), 'crank_') == 1 .and. .not. has_crank(i)) own%reals = 0
+          where (.not. own%given) own%reals = merge(0.0_dp, shared%reals, index(keys(k), 'crank_') == 1 .and. .not. has_crank(i))
         end associate
       end do
       call load_model(values, group, into%cylinders(i))

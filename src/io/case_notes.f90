@@ -46,6 +46,10 @@ contains
     call note_rod(c, to)
     call to%note_sizes()
     call note_drive(c, to)
+    call note_end(c, to)
+    do i = 1, n_places
+      call note_rest(c, in_order(i), to)
+    end do
     if (allocated(c%notes)) deallocate (c%notes)
     if (to%notes /= '') c%notes = to%notes(:len(to%notes) - 1)
   end subroutine note_case
@@ -58,6 +62,41 @@ contains
       'kind = ''constant_speed'': the drive supplies the moment that holds the speed (crank_moment); with kind = ''free'' '// &
       'the torque acts')
   end subroutine note_drive
+
+  !> A new end of the run that the file's `until` overrules.
+  subroutine note_end(c, to)
+    type(case_t), intent(in) :: c
+    type(remarks_t), intent(inout) :: to
+    character(len=*), parameter :: ends(3) = [character(len=17) :: 'revolutions', 'crank_revolutions', 'end_time']
+    integer :: i, place
+    if (.not. c%run%is_until_periodic()) return
+    do i = 1, size(ends)
+      place = to%values%place_of('integrator', trim(ends(i)))
+      if (.not. (to%values%values(place)%is_override .and. to%values%is_said(place))) cycle
+      call to%remark('integrator', trim(ends(i)), &
+        'has no effect with &run until = ''periodic'', which ends the run when the motion repeats: --set run.until=end', '')
+    end do
+  end subroutine note_end
+
+  !> A pin that floats in the middle of its bearing though nothing moves yet.
+  subroutine note_rest(c, place, to)
+    type(case_t), intent(in) :: c
+    integer, intent(in) :: place   !! index in `places`
+    type(remarks_t), intent(inout) :: to
+    real(dp), parameter :: resting = 0.99_dp   !! of the clearance: a film has no thickness 0
+    character(len=:), allocatable :: name
+    real(dp) :: speed, angle, at(2)
+    speed = c%initial%crank_speed
+    if (c%drive%ramp_time > 0) speed = c%drive%ramp_from
+    name = name_prefix(place)//'eccentricity'
+    if (abs(speed) > 0 .or. c%initial%from /= '' .or. .not. c%joints(place)%has_clearance()) return
+    if (to%is_given('initial', name) .or. .not. abs(c%mechanism%gravity) > 0) return
+    angle = c%mechanism%gravity_angle_deg*pi/180
+    at = resting*c%joints(place)%clearance*places(place)%sense*[cos(angle), sin(angle)]
+    where (abs(at) < 1e-12_dp*maxval(abs(at))) at = 0
+    call to%add_line('&initial '//name//': the pin starts in the middle of its bearing, but at rest it lies on it; '// &
+      'under the weight alone '//name//' = '//short_text(at(1))//', '//short_text(at(2)))
+  end subroutine note_rest
 
   !> Bore of the cylinder [m]; 0: not known.
   pure real(dp) function bore_of(c)

@@ -4,7 +4,7 @@ module case_remarks
   use case_schema, only: find_group, shown_group
   use case_values, only: case_values_t
   use number_text, only: short_text
-  use text_tools, only: replaced
+  use text_tools, only: integer_text, replaced
   use unit_hints, only: likely_unit
   use value_reader, only: n_values, read_bounds, is_default
   implicit none
@@ -75,7 +75,7 @@ contains
     real(dp) :: least, most
     associate (key => self%values%keys(place), value => self%values%values(place))
       element = 0
-      if (key%usual == '' .or. .not. value%given(1)) return
+      if (key%usual == '' .or. .not. any(value%given)) return
       if (.not. (self%values%is_present(find_group(self%values%groups, trim(key%group))) .and. self%values%is_used(place))) return
       call read_bounds(trim(key%usual), least, most)
       do element = 1, n_values(key, value)
@@ -111,7 +111,7 @@ contains
     self%is_noted(place) = .true.
     associate (key => self%values%keys(place))
       line = shown_group(trim(key%group))//' '//trim(key%name)
-      if (element > 1) line = line//'(2)'
+      if (element > 1) line = line//'['//integer_text(element)//']'
       line = line//' = '//trim(self%values%values(place)%written(element))
       if (key%unit /= '' .and. .not. self%values%values(place)%has_unit) line = line//' '//trim(key%unit)
       call self%add_line(line//text)
@@ -159,7 +159,7 @@ contains
     character(len=*), intent(in) :: others   !! GROUP.KEY of other keys, separated by blanks
     integer :: place
     place = self%values%place_of(group, name)
-    if (self%is_noted(place) .or. .not. self%values%values(place)%given(1)) return
+    if (self%is_noted(place) .or. .not. any(self%values%values(place)%given)) return
     if (.not. self%any_remarkable(others)) call self%note(place, ' '//text, 1)
   end subroutine remark
 
@@ -183,6 +183,6 @@ contains
   logical function is_given(self, group, name)
     class(remarks_t), intent(in) :: self
     character(len=*), intent(in) :: group, name
-    is_given = self%values%values(self%values%place_of(group, name))%given(1)
+    is_given = any(self%values%values(self%values%place_of(group, name))%given)
   end function is_given
 end module case_remarks

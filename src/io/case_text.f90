@@ -127,17 +127,24 @@ contains
     if (key%unit /= '') line = line//'  ! '//trim(key%unit)
   end function resolved_line
 
-  !> The value of a key as it is written in a case.
-  function value_text(key, value) result(text)
+  !> The value of a key as it is written in a case, or one number of a list.
+  function value_text(key, value, element) result(text)
     type(key_t), intent(in) :: key
     type(value_t), intent(in) :: value
+    integer, intent(in), optional :: element   !! 0: all
     character(len=:), allocatable :: text
-    integer :: element
+    integer :: first, last, i
     select case (key%kind)
     case (real_kind)
-      text = real_literal(value%reals(1))
-      do element = 2, n_values(key, value)
-        text = text//', '//real_literal(value%reals(element))
+      first = 1
+      last = n_values(key, value)
+      if (present(element)) then
+        if (element > 0) first = element
+        if (element > 0) last = element
+      end if
+      text = real_literal(value%reals(first))
+      do i = first + 1, last
+        text = text//', '//real_literal(value%reals(i))
       end do
     case (integer_kind)
       text = integer_text(value%whole)

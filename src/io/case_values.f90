@@ -12,7 +12,7 @@ module case_values
   use problem_list, only: problem_list_t, behind_file, missing_key
   use number_text, only: short_text
   use value_reader, only: value_t, set_to_default, n_values, convert, find_decimal_comma, is_default, unit_of, has_unit, &
-    most_reals, is_within, read_bounds
+    most_reals, is_within, read_bounds, read_integer
   implicit none
   private
   public :: case_values_t, value_t
@@ -168,8 +168,13 @@ contains
   logical function is_said(self, place)
     class(case_values_t), intent(in) :: self
     integer, intent(in) :: place
-    is_said = self%values(place)%given(1)
-    if (is_said) is_said = .not. is_default(self%keys(place), self%values(place), 1)
+    integer :: element
+    is_said = .false.
+    do element = 1, most_reals
+      if (.not. self%values(place)%given(element)) cycle
+      is_said = .not. is_default(self%keys(place), self%values(place), element)
+      if (is_said) return
+    end do
   end function is_said
 
   !> Index of a key in the table; 0 if there is none.
@@ -182,18 +187,29 @@ contains
     if (at > 0) place_of = find_key(self%keys, self%groups(at), key)
   end function place_of
 
-  !> The index of a key, or an error that lists what exists instead. `at` names file and line.
-  subroutine find(self, group, key, at, place, error)
+  !> The index of a key, or an error that lists what exists instead. `at` names file and line. With `element` the name may be that
+  !> of a number of a list, KEY[2] or KEY(2): its index, 0 without one.
+  subroutine find(self, group, key, at, place, error, element)
     class(case_values_t), intent(in) :: self
     character(len=*), intent(in) :: group, key, at
     integer, intent(out) :: place
     type(error_t), allocatable, intent(out) :: error
+    integer, intent(out), optional :: element
     character(len=name_length), allocatable :: names(:)
     character(len=:), allocatable :: text, near
-    integer :: i
+    integer :: i, bracket
     near = ''
-    place = self%place_of(group, key)
-    if (place > 0) return
+    bracket = len(key) + 1
+    if (present(element)) then
+      element = 0
+      if (scan(key, '[(') > 1) bracket = scan(key, '[(')
+    end if
+    place = self%place_of(group, trim(key(:bracket - 1)))
+    if (place > 0) then
+      if (bracket < len(key)) call find_element(self%keys(place), key(bracket + 1:), element, text)
+      if (allocated(text)) call fail(error, at//shown_group(group)//' '//printable(key, 40)//': '//text, status_case_file)
+      return
+    end if
     if (find_group(self%groups, group) == 0) then
       names = [character(len=name_length) :: (self%groups(i)%name, i=1, size(self%groups))]
       near = nearest_word(group, names)
@@ -210,6 +226,18 @@ contains
     if (near /= '' .and. i == 0) text = text//'; did you mean '//near//'?'
     call fail(error, at//text//allowed(names), status_case_file)
   end subroutine find
+
+  !> The index of a number of a list from what stands behind its bracket, such as `2]`; `wanted` says what is allowed instead.
+  pure subroutine find_element(key, text, element, wanted)
+    type(key_t), intent(in) :: key
+    character(len=*), intent(in) :: text
+    integer, intent(out) :: element
+    character(len=:), allocatable, intent(out) :: wanted
+    call read_integer(text(:max(0, len(text) - 1)), element, wanted)
+    if (allocated(wanted) .or. verify(text(len(text):), ')]') > 0 .or. element < 1 .or. element > key%count) &
+      wanted = 'has the numbers '//trim(key%name)//'[1] to '//trim(key%name)//'['//integer_text(key%count)//']'
+    if (key%kind /= real_kind .or. key%count == 1) wanted = trim(key%name)//' is no list of numbers'
+  end subroutine find_element
 
   !> The names of the keys of a group.
   pure subroutine list_keys(self, group, names)
@@ -265,7 +293,7 @@ contains
     logical, intent(in) :: is_override
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: wanted, name
-    integer :: i, k, element, total, first
+    integer :: i, k, element, total, first, before
     first = max(1, index)
     associate (key => self%keys(place), value => self%values(place))
       name = at//shown_group(trim(key%group))//' '//trim(key%name)
@@ -287,6 +315,7 @@ contains
         return
       end if
       element = first
+      before = merge(value%whole, 0, index > 0)
       if (is_override .and. .not. value%is_override) value%replaces = self%is_said(place)
       if (key%count > most_reals) value%text = ''
       do i = 1, size(tokens)
@@ -308,6 +337,7 @@ contains
           element = element + 1
         end do
       end do
+      if (key%is_list) value%whole = max(value%whole, before)   ! a list keeps the numbers behind this one
     end associate
   end subroutine assign
 
@@ -328,11 +358,11 @@ contains
     wanted = 'a unit for '//trim(merge('both numbers or for neither', 'all numbers or for none    ', size(tokens) == 2))
   end subroutine compare_units
 
-  !> Give the key at `place` the values in a text, as an override. A key that is a text takes it unchanged; without `is_plain` it
-  !> may also be in quotes.
-  subroutine assign_text(self, place, text, is_plain, at, error)
+  !> Give the key at `place` the values in a text, or its number `element` one value, as an override. A key that is a text takes it
+  !> unchanged; without `is_plain` it may also be in quotes.
+  subroutine assign_text(self, place, element, text, is_plain, at, error)
     class(case_values_t), intent(inout) :: self
-    integer, intent(in) :: place
+    integer, intent(in) :: place, element   !! element: 0: all
     character(len=*), intent(in) :: text, at
     logical, intent(in) :: is_plain
     type(error_t), allocatable, intent(out) :: error
@@ -344,10 +374,13 @@ contains
     else
       call read_values(text, tokens, message)
     end if
+    if (element > 0 .and. .not. allocated(message)) then
+      if (sum(tokens%repeat) > 1) message = 'takes 1 value, not '//integer_text(sum(tokens%repeat))
+    end if
     if (allocated(message)) then
       call fail(error, at//message, status_case_file)
     else
-      call self%assign(place, 0, tokens, at, .true., error)
+      call self%assign(place, element, tokens, at, .true., error)
     end if
   end subroutine assign_text
 
@@ -511,7 +544,7 @@ contains
   pure logical function is_given(self, group, name) result(given)
     class(case_values_t), intent(in) :: self
     character(len=*), intent(in) :: group, name
-    given = self%values(self%place_of(group, name))%given(1)
+    given = any(self%values(self%place_of(group, name))%given)
   end function is_given
 
   !> Name of the group in which a law of the joint at a place is given.

@@ -379,7 +379,8 @@ contains
       'CASE.nml is a case file, or - for standard input.'//n//n// &
       '  -o, --out DIR             folder for the results (default: results)'//n// &
       '  -s, --set GROUP.KEY=VALUE change a value of the case; repeatable, the last one counts. A new end of the run'//n// &
-      '                            (revolutions, crank_revolutions or end_time) replaces the one in the file'//n// &
+      '                            (revolutions, crank_revolutions or end_time) replaces the one in the file, but for'//n// &
+      '                            until = ''periodic'', which needs --set run.until=end. GROUP.KEY[2]: a number of a list'//n// &
       '      --set GROUP=none      remove a group from the case; a later --set of one of its keys starts an empty group'//n// &
       '  -a, --accuracy LEVEL      draft, standard or reference: about 3, 5 or 8 digits of a motion without impacts. Sets'//n// &
       '                            method auto, contact entry root and the tolerance 1e-4, 1e-6 or 1e-10; --set has'//n// &

@@ -64,7 +64,8 @@ contains
     call list%add('stiffness', self%stiffness, 'contact stiffness of a corner of the skirt, > 0; lubricated: 0, rigid faces', &
       'N/m^exponent', '>= 0', default='0.0', usual='1e5 to 1e13')
     call list%add('piston_com', self%piston_com, &
-      'centre of mass of the piston from the pin, along and across the piston (pin offset)', 'm', default='0.0', usual='0 to 0.5')
+      'centre of mass of the piston from the pin, along and across the piston; across > 0: pin offset towards -y, the side '// &
+      'that is pressed after firing where crank_speed is > 0', 'm', default='0.0', usual='0 to 0.5')
     call list%add('half_angle_deg', self%half_angle_deg, 'lubricated: half width of each face of the skirt around the piston', &
       'degrees', '> 5 and <= 85', default='45.0', usual='30 to 60')
     call list%add('barrel', self%barrel, 'lubricated: relief of the skirt at half its length from its widest place', 'm', '>= 0', &

@@ -5,7 +5,7 @@ module study_case
   use number_text, only: short_text
   use case_definition, only: case_t
   use model_parameters, only: integer_kind, word_kind
-  use case_schema, only: find_group
+  use case_schema, only: key_t, find_group
   use case_values, only: case_values_t
   use case_file, only: complete_case
   use own_groups, only: enter_group
@@ -23,6 +23,7 @@ module study_case
     type(case_t) :: case                             !! case of the present run
     type(case_values_t) :: values                    !! its values, and all defaults
     integer, allocatable, private :: places(:)       !! indices of the parameters in the table of keys
+    integer, allocatable, private :: elements(:)     !! numbers of lists that they are; 0: the whole key
     logical, allocatable, private :: groups(:)       !! groups that contain a parameter
     logical, allocatable :: is_number(:)             !! whether each parameter is one number, real or whole
     logical, allocatable :: is_whole(:)              !! whether each parameter is one whole number
@@ -34,6 +35,7 @@ module study_case
     procedure :: load
     procedure :: remove_units
     procedure :: convert
+    procedure, private :: key
     procedure :: check
   end type study_case_t
 
@@ -47,29 +49,34 @@ contains
     character(len=*), intent(in) :: path, keys(:), at
     type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: key
-    integer :: i, dot
+    integer :: i, k, dot
 
     self%values = values
     call complete_case(self%values, path, self%case, error)
     if (allocated(error)) return
     allocate (self%groups(size(values%groups)), source=.false.)
-    allocate (self%places(size(keys)), self%is_number(size(keys)), self%is_whole(size(keys)))
+    allocate (self%places(size(keys)), self%elements(size(keys)), self%is_number(size(keys)), self%is_whole(size(keys)))
     self%values%values%is_override = .false.   ! the base case takes the place of the file, the parameters that of the overrides
     do i = 1, size(keys)
       key = trim(keys(i))
       dot = index(key, '.', back=.true.)
-      call values%find(key(:dot - 1), key(dot + 1:), at, self%places(i), error)
+      call values%find(key(:dot - 1), key(dot + 1:), at, self%places(i), error, self%elements(i))
+      do k = 1, merge(0, i - 1, allocated(error))
+        if (self%places(k) /= self%places(i)) cycle
+        if (self%elements(k) == self%elements(i) .or. self%elements(k)*self%elements(i) == 0) &
+          call fail(error, at//key//': is varied twice, also as '//trim(keys(k)), status_case_file)
+      end do
       if (.not. allocated(error)) call enter_group(self%values, key(:dot - 1), key(dot:), at, error)
       if (allocated(error)) return
       associate (schema => values%keys(self%places(i)))
         self%varies_words = self%varies_words .or. schema%kind == word_kind
-        self%is_number(i) = schema%kind <= integer_kind .and. schema%count == 1
+        self%is_number(i) = schema%kind <= integer_kind .and. (schema%count == 1 .or. self%elements(i) > 0)
         self%is_whole(i) = self%is_number(i) .and. schema%kind == integer_kind
         self%groups(find_group(values%groups, trim(schema%group))) = .true.
       end associate
       associate (value => self%values%values(self%places(i)))
         value%replaces = self%values%is_said(self%places(i))
-        value%given(1) = .true.
+        value%given(max(1, self%elements(i))) = .true.
         value%is_override = .true.
       end associate
     end do
@@ -132,7 +139,7 @@ contains
     do i = 1, size(texts)
       if (.not. self%is_number(i)) cycle
       text = trim(texts(i))
-      call convert_list(text, self%values%keys(self%places(i)), wanted)
+      call convert_list(text, self%key(i), wanted)
       texts(i) = text
     end do
   end subroutine remove_units
@@ -146,20 +153,31 @@ contains
     type(error_t), allocatable, intent(out) :: error
     type(token_t) :: token
     character(len=:), allocatable :: wanted
-    associate (place => self%places(i))
+    integer :: element
+    element = max(1, self%elements(i))
+    associate (value => self%values%values(self%places(i)))
       if (self%is_number(i)) then
         token%text = text
-        call convert_list(token%text, self%values%keys(place), wanted)
+        call convert_list(token%text, self%key(i), wanted)
         if (allocated(wanted)) wanted = wanted(index(wanted, ': ') + 2:)   ! without the text itself
-        if (.not. allocated(wanted)) &
-          call read_value(self%values%keys(place), token, self%values%values(place), 1, wanted)
-        self%values%values(place)%written(1) = text
+        if (.not. allocated(wanted)) call read_value(self%key(i), token, value, element, wanted)
+        value%written(element) = text
         if (allocated(wanted)) call fail(error, wanted, status_case_file)
       else
-        call self%values%assign_text(place, text, .true., '', error)
+        call self%values%assign_text(self%places(i), 0, text, .true., '', error)
       end if
     end associate
   end subroutine convert
+
+  !> The key of parameter i; one number if it is that of a list.
+  pure type(key_t) function key(self, i)
+    class(study_case_t), intent(in) :: self
+    integer, intent(in) :: i
+    key = self%values%keys(self%places(i))
+    if (self%elements(i) == 0) return
+    key%count = 1
+    key%is_list = .false.
+  end function key
 
   !> Check the ranges of the values set last and the rules between them, and put the notes on them into the case. An error concerns
   !> this run, not the study: the first one.

@@ -136,7 +136,7 @@ contains
     end associate
   end subroutine take_units
 
-  !> A key of cases, given as GROUP.KEY; a key of texts if there is none.
+  !> A key of cases, given as GROUP.KEY, or a number of a list, as GROUP.KEY[2]; a key of texts if there is none.
   type(key_t) function key_of_case(name) result(key)
     character(len=*), intent(in) :: name
     type(key_table_t) :: table
@@ -146,8 +146,9 @@ contains
     dot = index(name, '.', back=.true.)
     group = find_group(table%groups, name(:max(0, dot - 1)))
     if (group == 0) return
-    place = find_key(table%keys, table%groups(group), name(dot + 1:))
+    place = find_key(table%keys, table%groups(group), name(dot + 1:scan(name//'[', '[(') - 1))
     if (place > 0) key = table%keys(place)
+    if (scan(name, '[(') > 0) key%count = 1
   end function key_of_case
 
   !> Set the values of &study.

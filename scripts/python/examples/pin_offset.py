@@ -16,7 +16,6 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 MASS = 0.2  # of the piston of the template [kg]
-ALONG = 0.004  # centre of mass of the piston along its axis [m]
 
 engine = gudgeon.template("slap").set(integrator={"revolutions": 6}, output={"columns": ["time", "crank_angle"]})
 
@@ -30,7 +29,7 @@ def hardest(run: gudgeon.Run) -> dict[str, float]:
 
 def slap(offset: float) -> float:
     """The same for a pin offset [m]."""
-    return hardest(engine.set({"guide.piston_com": (ALONG, offset)}).run())["slap"]
+    return hardest(engine.set({"guide.piston_com[2]": offset}).run())["slap"]
 
 
 def main(picture: str | None = None) -> dict[str, float]:
@@ -39,7 +38,7 @@ def main(picture: str | None = None) -> dict[str, float]:
     print(f"offset {1e3 * best.x:.2f} mm: hardest slap {1e3 * best.fun:.1f} mJ; without offset {1e3 * centred:.1f} mJ")
     if picture:
         offsets = np.linspace(-1.2e-3, 1.2e-3, 25)
-        table = gudgeon.sweep(engine, {"guide.piston_com": [(ALONG, float(x)) for x in offsets]}, reduce=hardest)
+        table = gudgeon.sweep(engine, {"guide.piston_com[2]": offsets}, reduce=hardest)
         axis = plt.figure(figsize=(6, 3.4), layout="constrained").gca()
         axis.plot(1e3 * offsets, 1e3 * table.slap, "o-")
         axis.plot(1e3 * best.x, 1e3 * best.fun, "s", label=f"best: {1e3 * best.x:.2f} mm")

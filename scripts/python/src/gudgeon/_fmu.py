@@ -23,7 +23,7 @@ from .case import Case, read
 from .run import _Owner
 from .stepper import Inputs
 
-INPUTS, AT_CONTACTS, PARAMETERS = 1000, 5000, 10000  # first value references; see src/api/fmi_instance.f90
+INPUTS, AT_CONTACTS, PARAMETERS, OF_A_KEY = 1000, 5000, 10000, 16  # first value references, and those of each key; see src/api/fmi_instance.f90
 ALL_INPUTS = ("drive.torque", "drive.crank_speed", "cylinder_pressure")
 NO_PARAMETERS = {"output", "run"}  # groups whose values the master's experiment replaces
 ENDS = {"integrator.revolutions", "integrator.crank_revolutions", "integrator.end_time"}
@@ -183,7 +183,7 @@ class _Description:
             values = case[name] if key.count > 1 else (case[name],)
             for element, value in enumerate(values):
                 label = f"{name}[{element + 1}]" if key.count > 1 else name
-                self._add(label, PARAMETERS + 2 * key.index + element, key.meaning, "parameter", "fixed", key.unit, value, key)
+                self._add(label, PARAMETERS + OF_A_KEY * key.index + element, key.meaning, "parameter", "fixed", key.unit, value, key)
 
     def _add(
         self, name: str, reference: int, meaning: str, causality: str, variability: str, unit: str, start: float | int | None,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from math import inf
 
@@ -18,7 +18,8 @@ class Key:
     """A key of case files.
 
     `kind` is one of `KINDS`; `limits` is the text of the program, such as ``'> 0 and <= 1'``; `usual` are sizes in real machines;
-    `laws` are those words of the key `choice` that have the key, or empty if all have it.
+    `laws` are those words of the key `choice` that have the key, or empty if all have it. A number of a list is a key too:
+    ``keys["guide.piston_com[2]"]``, counted from 1.
     """
 
     group: str
@@ -36,6 +37,7 @@ class Key:
     is_path: bool
     meaning: str
     index: int
+    element: int = 0  # of a key of several numbers, counted from 0
 
     @property
     def bounds(self) -> tuple[float, float, bool, bool]:
@@ -102,7 +104,13 @@ class Keys(Mapping[str, Key]):
         return {f"{key.group}.{key.name}": key for group in groups().values() for key in group.keys}
 
     def __getitem__(self, name: str) -> Key:
-        return self._all()[name]
+        found = re.fullmatch(r"(.+)\[([1-9]\d*)\]", name)
+        if found is None or found[1] not in self._all():
+            return self._all()[name]
+        key = self._all()[found[1]]
+        if key.count == 1 or int(found[2]) > key.count:
+            raise KeyError(name)
+        return replace(key, name=f"{key.name}[{found[2]}]", count=1, element=int(found[2]) - 1)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._all())

@@ -125,7 +125,7 @@ class Case(Groups):
         key = _find(name)
         value = getattr(value, "tolist", lambda: value)()  # of NumPy
         if isinstance(value, (int, float)) and not isinstance(value, bool) and key.kind in ("real", "integer") and key.count == 1:
-            self._ask(library().case_set_number(self._handle, key.index, 0, value))
+            self._ask(library().case_set_number(self._handle, key.index, key.element, value))
         else:
             self._ask(library().case_set(self._handle, name.encode(), None if value is None else _write(key, value).encode()))
 
