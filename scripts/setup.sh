@@ -51,13 +51,15 @@ gudgeon_python() {   # install the packages of these lists, and gudgeon itself a
   .venv/bin/python -c 'import pathlib, sysconfig
 pathlib.Path(sysconfig.get_path("purelib"), "gudgeon.pth").write_text(str(pathlib.Path("scripts/python/src").resolve()) + "\n")' || return 1
   printf '#!/bin/sh\nexec "%s" -m gudgeon "$@"\n' "$PWD/.venv/bin/python" >.venv/bin/gudgeon-plot && chmod +x .venv/bin/gudgeon-plot
-  command -v gudgeon-plot >/dev/null 2>&1 || gudgeon_link gudgeon-plot
+  gudgeon_file=$(command -v gudgeon-plot) || { gudgeon_link gudgeon-plot; return 0; }
+  [ "$(readlink -f "$gudgeon_file")" = "$(readlink -f .venv/bin/gudgeon-plot)" ] ||
+    echo "setup: gudgeon-plot on the PATH is $gudgeon_file, not of this clone; this one is $PWD/.venv/bin/gudgeon-plot" >&2
 }
 
 # fpm 0.12 still links the objects of source files that have been moved or removed, without a message. Therefore all programs are
 # built again if a source file of the last set-up is gone.
 gudgeon_sources() {
-  gudgeon_list=$(find src tests scripts -name '*.f90' | sort)
+  gudgeon_list=$(find src tests scripts -name '*.f90' -o -path 'src/*.c' | sort)
   [ "$gudgeon_list" = "$(cat build/sources 2>/dev/null)" ] && return 0
   for gudgeon_file in $(cat build/sources 2>/dev/null || echo none); do
     [ -f "$gudgeon_file" ] || { rm -rf build/gfortran_* scripts/bench/build/gfortran_* tests/build/gfortran_*; break; }

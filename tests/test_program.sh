@@ -77,7 +77,7 @@ check "gudgeon plot has the exit status of gudgeon-plot" [ $? = 7 ]
 check "gudgeon plot passes its arguments: $said" [ "$said" = "<$work/bin/gudgeon-plot><columns><a  b ><><-o><x>" ]
 PATH="$work/refused" "$gudgeon" plot columns 2>"$work/err"
 check "gudgeon plot without gudgeon-plot" [ $? = 2 ]
-check "gudgeon plot says how to install it: $(cat "$work/err")" grep -q "^gudgeon: plot: .*pip install 'gudgeon\[plots\]'" "$work/err"
+check "gudgeon plot says how to install it: $(cat "$work/err")" grep -q "^gudgeon: plot: .*pip install './scripts/python\[plots\]'" "$work/err"
 
 # help, version, template
 run --help

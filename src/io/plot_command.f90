@@ -46,8 +46,8 @@ contains
     end do
     places(size(places)) = c_null_ptr
     unused = c_execvp(arguments(1)%bytes, places)   ! returns only if it fails
-    call fail(error, 'plot: '//program//' is not on the PATH: install it by pip install ''gudgeon[plots]'' or, in a checkout, '// &
-      'by scripts/setup.sh --python', status_command_line)
+    call fail(error, 'plot: '//program//' is not on the PATH: in a checkout, pip install ''./scripts/python[plots]'' or '// &
+      'scripts/setup.sh --python installs it', status_command_line)
   end subroutine become_plot
 
   !> Argument i of the program, with its blanks.
