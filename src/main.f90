@@ -16,11 +16,12 @@ program gudgeon
   use run_progress, only: progress_wanted, tell, say
   use text_tools, only: printable
   use posix_files, only: fill_standard_descriptors, signal_set_t, hold_interrupts, interrupted, ignore_write_signals
-  use posix_calls, only: c_exit
+  use posix_processes, only: end_program
   use version_number, only: program_version
   implicit none
   type(command_line_t) :: options
   type(error_t), allocatable :: error
+  type(signal_set_t) :: before   ! the signals that are held when it begins
   integer :: status
 
   status = status_ok
@@ -43,10 +44,10 @@ program gudgeon
   else if (options%sweep) then
     call run_studies(options, status)
   else
-    call hold_interrupts()
+    call hold_interrupts(before)
     call run_cases(options, status)
   end if
-  call c_exit(status)   ! without output
+  call end_program(status)
 
 contains
 
@@ -93,7 +94,6 @@ contains
     integer, intent(out) :: status
     character(len=:), allocatable :: line
     type(error_t), allocatable :: error
-    type(signal_set_t) :: before
     logical :: show_progress
     integer :: i
     call hold_interrupts(before)

@@ -29,7 +29,7 @@ module test_notes
   type :: mistake_t
     character(len=22) :: file = ''
     character(len=200) :: changes = ''   !! separated by blanks
-    character(len=130) :: note = ''
+    character(len=150) :: note = ''
   end type mistake_t
 
   type(mistake_t), parameter :: mistakes(*) = [ &

@@ -21,7 +21,7 @@ openmp = "*"
 [library]
 source-dir = "src"
 TOML
-said=$(fpm build --directory "$folder" --no-prune --flag "$flags" 2>&1) &&
+said=$(fpm build --directory "$folder" --no-prune --flag "$flags" --c-flag -fPIC 2>&1) &&
   modules=$(dirname "$(find "$folder/build" -name scene_builder.mod | head -n 1)") &&
   objects=$(find "$folder/build" -name '*.o' ! -name '*main.f90.o') &&
   said=$(gfortran $flags -shared -fopenmp -I "$modules" -J "$folder" tests/state_watcher.f90 tests/event_watcher.f90 \

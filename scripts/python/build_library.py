@@ -67,7 +67,7 @@ source-dir = "src"
 
 
 def sources() -> Path:
-    """The Fortran sources: of the checkout, or of the source distribution."""
+    """The sources: of the checkout, or of the source distribution."""
     inside = HERE / "fortran"
     return inside if inside.is_dir() else HERE.parent.parent / "src"
 
@@ -84,12 +84,12 @@ def build(folder: Path) -> Path:
     names = sorted(path for path in sources().iterdir() if path.is_dir())
     for path in names:
         (folder / "src" / path.name).symlink_to(path, target_is_directory=True)
-    listed = "\n".join(sorted(str(path) for path in sources().rglob("*.f90")))
+    listed = "\n".join(sorted(str(path) for path in [*sources().rglob("*.f90"), *sources().rglob("*.c")]))
     listing = folder / "sources.txt"
     if not listing.is_file() or listing.read_text() != listed:  # fpm would link objects of files that are gone
         shutil.rmtree(folder / "build", ignore_errors=True)
         listing.write_text(listed)
-    run(["fpm", "build", "--directory", str(folder), "--flag", COMPILE], folder)
+    run(["fpm", "build", "--directory", str(folder), "--flag", COMPILE, "--c-flag", "-O2 -fPIC"], folder)
     objects = found_objects(folder)
     library = folder / "libgudgeon.so"
     if library.is_file() and all(os.path.getmtime(path) < library.stat().st_mtime for path in [*objects, __file__]):
@@ -131,9 +131,9 @@ def page(program: Path, words: tuple[str, ...]) -> str:
 
 
 def found_objects(folder: Path) -> list[str]:
-    """The objects of the last build."""
-    newest = max((folder / "build").rglob("*.o"), key=os.path.getmtime).parent
-    return sorted(str(path) for path in newest.glob("*.o"))
+    """The objects of the last build: fpm has a folder for those of Fortran and one for those of C."""
+    newest = [max((folder / "build").rglob(kind), key=os.path.getmtime).parent.glob(kind) for kind in ("*.f90.o", "*.c.o")]
+    return sorted(str(path) for paths in newest for path in paths)
 
 
 def run(command: list[str], folder: Path) -> None:

@@ -1,11 +1,7 @@
-!> Thin bindings for Linux to calls of the C library that Fortran does not offer. Error numbers are returned and not stored, so that
+!> Files and folders by the calls of POSIX that Fortran does not offer; see posix.c. Error numbers are returned, not stored, so that
 !> they are safe in several threads.
 module posix_files
-  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_short, c_null_char, c_ptr, &
-    c_size_t, c_loc, c_f_pointer, c_associated
-  use posix_calls, only: file_status_t, poll_t, c_open, c_read, c_realpath, c_write, c_fsync, c_ftruncate, c_flock, &
-    c_fallocate, c_stat, c_lstat, c_fstat, c_poll, c_close, c_rename, c_unlink, c_mkdir, c_rmdir, &
-    c_opendir, c_readdir, c_closedir, c_isatty, c_errno_location, c_strerror_r
+  use, intrinsic :: iso_c_binding, only: c_char, c_int, c_long, c_null_char, c_ptr, c_size_t, c_loc, c_f_pointer, c_associated
   use posix_signals, only: signal_set_t, hold_interrupts, restore_interrupts, interrupted, ignore_write_signals
   implicit none
   private
@@ -16,29 +12,129 @@ module posix_files
   public :: error_no_entry, error_interrupted, error_locked, error_is_directory, error_no_space, &
     error_broken_pipe, error_not_regular, error_is_link
 
-  !> Error numbers of Linux, and two of this module: the file is neither a regular file nor a folder, and a symbolic link that must
-  !> not be followed.
-  integer, parameter :: error_no_entry = 2, error_interrupted = 4, error_locked = 11, error_no_access = 13, error_exists = 17, &
-    error_not_directory = 20, error_is_directory = 21, error_invalid = 22, error_no_space = 28, error_broken_pipe = 32, &
-    error_no_call = 38, error_not_supported = 95, error_not_regular = -1, error_is_link = -2
+  !> Error numbers that are the same on every system, and three of this module: the file is neither a regular file nor a folder, a
+  !> symbolic link that must not be followed, and a file that another program is writing.
+  integer, parameter :: error_no_entry = 2, error_interrupted = 4, error_no_access = 13, error_exists = 17, &
+    error_not_directory = 20, error_is_directory = 21, error_no_space = 28, error_broken_pipe = 32, &
+    error_not_regular = -1, error_is_link = -2, error_locked = -3
 
-  !> Flags of open, as far as they are equal on all processors.
-  integer(c_int), parameter :: read_only = 0, write_only = 1, read_and_write = 2, o_creat = 64, o_excl = 128, o_append = 1024, &
-    o_nonblock = 2048, o_cloexec = 524288, to_read = read_only, to_append = ior(write_only, o_append)
+  !> Ways of opening, and kinds of files: see posix.c.
+  integer, parameter :: to_read_as_is = 0, to_read = 1, to_append = 2, to_create = 3, to_read_and_write = 4
+  integer, parameter :: kind_regular = 1, kind_folder = 2
 
   integer, parameter :: longest_name = 255   !! bytes of a name in a folder
+  integer(c_int), parameter :: folder_mode = 511   !! rwxrwxrwx, before the umask
 
-  !> Kinds of files, as in their mode.
-  integer, parameter :: kind_mask = 61440, kind_folder = 16384, kind_regular = 32768, kind_link = 40960
-  integer(c_int), parameter :: lock_exclusive = 2, lock_without_waiting = 4
-  integer(c_int), parameter :: file_mode = 438, folder_mode = 511   !! rw-rw-rw-, rwxrwxrwx, before the umask
+  interface
+    integer(c_int) function c_error() bind(c, name='posix_error') result(number)
+      import :: c_int
+    end function c_error
+    subroutine c_error_text(number, text, size) bind(c, name='posix_error_text')
+      import :: c_int, c_char, c_size_t
+      integer(c_int), value :: number
+      character(kind=c_char), intent(out) :: text(*)
+      integer(c_size_t), value :: size
+    end subroutine c_error_text
+    integer(c_int) function c_open(path, way) bind(c, name='posix_open') result(descriptor)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), value :: way
+    end function c_open
+    integer(c_int) function c_kind(descriptor, path) bind(c, name='posix_kind') result(kind_of)
+      import :: c_char, c_int
+      integer(c_int), value :: descriptor
+      character(kind=c_char), intent(in) :: path(*)
+    end function c_kind
+    integer(c_int) function c_is_name(path, descriptor) bind(c, name='posix_is_name') result(answer)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), value :: descriptor
+    end function c_is_name
+    integer(c_int) function c_lock(descriptor) bind(c, name='posix_lock') result(answer)
+      import :: c_int
+      integer(c_int), value :: descriptor
+    end function c_lock
+    integer(c_int) function c_synchronise(descriptor) bind(c, name='posix_synchronise') result(status)
+      import :: c_int
+      integer(c_int), value :: descriptor
+    end function c_synchronise
+    integer(c_int) function c_has_input(descriptor, milliseconds) bind(c, name='posix_has_input') result(answer)
+      import :: c_int
+      integer(c_int), value :: descriptor, milliseconds
+    end function c_has_input
+    type(c_ptr) function c_next_name(folder) bind(c, name='posix_next_name') result(name)
+      import :: c_ptr
+      type(c_ptr), value :: folder
+    end function c_next_name
+    type(c_ptr) function c_opendir(path) bind(c, name='opendir') result(folder)
+      import :: c_char, c_ptr
+      character(kind=c_char), intent(in) :: path(*)
+    end function c_opendir
+    integer(c_int) function c_closedir(folder) bind(c, name='closedir') result(status)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: folder
+    end function c_closedir
+    integer(c_long) function c_read(descriptor, buffer, count) bind(c, name='read') result(done)
+      import :: c_int, c_ptr, c_size_t, c_long
+      integer(c_int), value :: descriptor
+      type(c_ptr), value :: buffer
+      integer(c_size_t), value :: count
+    end function c_read
+    integer(c_long) function c_write(descriptor, buffer, count) bind(c, name='write') result(done)
+      import :: c_int, c_ptr, c_size_t, c_long
+      integer(c_int), value :: descriptor
+      type(c_ptr), value :: buffer
+      integer(c_size_t), value :: count
+    end function c_write
+    integer(c_long) function c_seek(descriptor, offset, from) bind(c, name='lseek') result(place)
+      import :: c_int, c_long
+      integer(c_int), value :: descriptor, from
+      integer(c_long), value :: offset
+    end function c_seek
+    integer(c_int) function c_truncate(descriptor, length) bind(c, name='ftruncate') result(status)
+      import :: c_int, c_long
+      integer(c_int), value :: descriptor
+      integer(c_long), value :: length
+    end function c_truncate
+    integer(c_int) function c_close(descriptor) bind(c, name='close') result(status)
+      import :: c_int
+      integer(c_int), value :: descriptor
+    end function c_close
+    integer(c_int) function c_rename(from, to) bind(c, name='rename') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: from(*), to(*)
+    end function c_rename
+    integer(c_int) function c_unlink(path) bind(c, name='unlink') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+    end function c_unlink
+    integer(c_int) function c_mkdir(path, mode) bind(c, name='mkdir') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+      integer(c_int), value :: mode
+    end function c_mkdir
+    integer(c_int) function c_rmdir(path) bind(c, name='rmdir') result(status)
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: path(*)
+    end function c_rmdir
+    integer(c_int) function c_isatty(descriptor) bind(c, name='isatty') result(answer)
+      import :: c_int
+      integer(c_int), value :: descriptor
+    end function c_isatty
+    type(c_ptr) function c_realpath(path, resolved) bind(c, name='realpath') result(answer)
+      import :: c_char, c_ptr
+      character(kind=c_char), intent(in) :: path(*)
+      character(kind=c_char), intent(out) :: resolved(*)
+    end function c_realpath
+  end interface
 
 contains
+
 
   !> Open the standard input of the program, which may be a pipe or a terminal: see `wait_for_input`.
   subroutine open_standard_input(descriptor, status)
     integer, intent(out) :: descriptor, status
-    descriptor = c_open('/dev/stdin'//c_null_char, ior(read_only, o_cloexec), 0_c_int)
+    descriptor = c_open('/dev/stdin'//c_null_char, to_read_as_is)
     status = outcome(descriptor)
   end subroutine open_standard_input
 
@@ -55,7 +151,7 @@ contains
       if (status == 0) then
         call lock_file(descriptor, status)
         if (status == 0) then
-          if (is_file(path, descriptor)) return
+          if (c_is_name(path//c_null_char, descriptor) == 1) return
         end if
       else if (status == error_exists) then
         call open_file(path, to_append, descriptor, status)
@@ -74,7 +170,7 @@ contains
   subroutine create_file(path, descriptor, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: descriptor, status
-    descriptor = c_open(path//c_null_char, ior(ior(read_and_write, o_cloexec), ior(o_creat, o_excl)), file_mode)
+    descriptor = c_open(path//c_null_char, to_create)
     status = outcome(descriptor)
   end subroutine create_file
 
@@ -84,17 +180,22 @@ contains
     character(len=*), intent(in) :: path
     integer, intent(in) :: way
     integer, intent(out) :: descriptor, status
-    type(file_status_t) :: file
+    integer, parameter :: is_none = 0, is_link = 2
     integer :: ignored
-    descriptor = c_open(path//c_null_char, ior(way, ior(o_nonblock, o_cloexec)), 0_c_int)
+    descriptor = c_open(path//c_null_char, way)
     status = outcome(descriptor)
     if (status /= 0) return
-    select case (kind_of(file, c_fstat(descriptor, file)))
+    select case (c_kind(descriptor, c_null_char))
     case (kind_regular)
       if (way == to_read) return
-      if (is_file(path, descriptor)) return
-      status = error_no_entry
-      if (kind_of(file, c_lstat(path//c_null_char, file)) == kind_link) status = error_is_link
+      select case (c_is_name(path//c_null_char, descriptor))
+      case (is_none)
+        status = error_no_entry
+      case (is_link)
+        status = error_is_link
+      case default
+        return
+      end select
     case (kind_folder)
       status = error_is_directory
     case default
@@ -104,45 +205,21 @@ contains
     descriptor = -1
   end subroutine open_file
 
-  !> Lock an open file for this opening of it, until it is closed or the program ends. `status` is `error_locked` if another opening
+  !> Lock an open file against other programs, until it is closed or the program ends. `status` is `error_locked` if another program
   !> holds the lock; on a file system without locks there is none, and `status` is 0.
   subroutine lock_file(descriptor, status)
     integer, intent(in) :: descriptor
     integer, intent(out) :: status
-    status = outcome(c_flock(descriptor, ior(lock_exclusive, lock_without_waiting)))
-    if (status /= error_locked) status = 0
+    status = merge(error_locked, 0, c_lock(descriptor) == 1)
   end subroutine lock_file
-
-  !> Whether `path` is the name of this open file itself, and not of a link to it.
-  logical function is_file(path, descriptor) result(answer)
-    character(len=*), intent(in) :: path
-    integer, intent(in) :: descriptor
-    type(file_status_t) :: named, opened
-    answer = .false.
-    if (c_lstat(path//c_null_char, named) /= 0) return
-    if (c_fstat(descriptor, opened) /= 0) return
-    answer = all(named%halves(:4) == opened%halves(:4))   ! device and number
-  end function is_file
 
   !> Length of a file in bytes; negative if it does not exist.
   integer(c_long) function file_length(path) result(length)
     character(len=*), intent(in) :: path
-    type(file_status_t) :: file
-    length = -1
-    if (c_stat(path//c_null_char, file) == 0) length = transfer(file%halves(13:14), length)
+    logical :: exists
+    inquire (file=path, exist=exists, size=length)
+    if (.not. exists) length = -1
   end function file_length
-
-  !> The kind of a file; 0 if it cannot be determined. The place of the mode depends on the processor: it is where the root folder
-  !> is a folder.
-  integer function kind_of(file, status) result(kind_bits)
-    type(file_status_t), intent(in) :: file
-    integer(c_int), intent(in) :: status   !! of the call that has filled `file`
-    type(file_status_t) :: root
-    kind_bits = 0
-    if (status /= 0) return
-    if (c_stat('/'//c_null_char, root) /= 0) return
-    kind_bits = iand(file%halves(merge(5, 7, iand(root%halves(5), kind_mask) == kind_folder)), kind_mask)
-  end function kind_of
 
   !> One call of read: `done` bytes of `buffer` are filled, 0 at the end of the file.
   subroutine read_bytes(descriptor, buffer, done, status)
@@ -166,8 +243,7 @@ contains
   subroutine synchronise_file(descriptor, status)
     integer, intent(in) :: descriptor
     integer, intent(out) :: status
-    status = outcome(c_fsync(descriptor))
-    if (any(status == [error_invalid, error_no_call, error_not_supported])) status = 0
+    status = outcome(c_synchronise(descriptor))
   end subroutine synchronise_file
 
   !> Wait until the names in the folder of `path` are on its disk. Does not wait if the file system does not offer it, or if the
@@ -176,8 +252,7 @@ contains
     character(len=*), intent(in) :: path   !! path of a file in the folder
     integer, intent(out) :: status
     integer :: descriptor, ignored
-    descriptor = c_open('./'(:merge(0, 2, index(path, '/') > 0))//path(:index(path, '/', back=.true.))//c_null_char, &
-                        ior(read_only, o_cloexec), 0_c_int)
+    descriptor = c_open('./'(:merge(0, 2, index(path, '/') > 0))//path(:index(path, '/', back=.true.))//c_null_char, to_read_as_is)
     status = outcome(descriptor)
     if (status == error_no_access) status = 0
     if (descriptor < 0) return
@@ -185,15 +260,15 @@ contains
     call close_file(descriptor, ignored)
   end subroutine synchronise_folder
 
-  !> Reserve disk space for the first `length` bytes of an open file; no effect if the file system does not support it. `status` is
-  !> `error_no_space` if there is not enough space.
+  !> Reserve disk space for the first `length` bytes of an empty open file: blanks, which what is written next replaces.
   subroutine reserve_file(descriptor, length, status)
     integer, intent(in) :: descriptor
-    integer(c_long), intent(in) :: length
+    integer, intent(in) :: length
     integer, intent(out) :: status
-    integer(c_int), parameter :: keep_length = 1
-    status = outcome(c_fallocate(descriptor, keep_length, 0_c_long, length))
-    if (status /= error_no_space) status = 0
+    integer(c_int), parameter :: from_start = 0
+    integer :: done
+    call write_all(descriptor, repeat(' ', length), done, status)
+    if (c_seek(descriptor, 0_c_long, from_start) /= 0 .and. status == 0) status = error_not_regular
   end subroutine reserve_file
 
   !> Write a text in as many calls as necessary: `done` bytes of it before an error.
@@ -218,7 +293,7 @@ contains
     integer, intent(in) :: descriptor
     integer(c_long), intent(in) :: length
     integer, intent(out) :: status
-    status = outcome(c_ftruncate(descriptor, length))
+    status = outcome(c_truncate(descriptor, length))
   end subroutine truncate_file
 
   subroutine close_file(descriptor, status)
@@ -244,15 +319,13 @@ contains
   subroutine make_directory(path, status)
     character(len=*), intent(in) :: path
     integer, intent(out) :: status
-    type(file_status_t) :: file
     integer :: i
     do i = 2, len(path)
       if (path(i:i) == '/') status = c_mkdir(path(:i - 1)//c_null_char, folder_mode)
     end do
     status = outcome(c_mkdir(path//c_null_char, folder_mode))
     if (status /= error_exists) return
-    status = 0
-    if (kind_of(file, c_stat(path//c_null_char, file)) /= kind_folder) status = error_not_directory
+    status = merge(0, error_not_directory, c_kind(-1_c_int, path//c_null_char) == kind_folder)
   end subroutine make_directory
 
   !> Remove a folder, if it is empty.
@@ -266,7 +339,6 @@ contains
   subroutine list_folder(path, names)
     character(len=*), intent(in) :: path
     character(len=longest_name), allocatable, intent(out) :: names(:)
-    integer, parameter :: before_name = 19   !! bytes before d_name in the struct dirent of 64-bit Linux
     character(kind=c_char), pointer :: entry(:)
     character(len=longest_name), allocatable :: found(:)
     character(len=longest_name) :: name
@@ -277,13 +349,13 @@ contains
     n = 0
     folder = c_opendir(path//c_null_char)
     do while (c_associated(folder))
-      at = c_readdir(folder)
+      at = c_next_name(folder)
       if (.not. c_associated(at)) exit
-      call c_f_pointer(at, entry, [before_name + longest_name])
+      call c_f_pointer(at, entry, [longest_name])
       name = ''
       do i = 1, longest_name
-        if (entry(before_name + i) == c_null_char) exit
-        name(i:i) = entry(before_name + i)
+        if (entry(i) == c_null_char) exit
+        name(i:i) = entry(i)
       end do
       if (name == '.' .or. name == '..') cycle
       if (n == size(found)) found = [found, found]   ! more room
@@ -305,10 +377,7 @@ contains
   subroutine wait_for_input(descriptor, milliseconds, has_input)
     integer, intent(in) :: descriptor, milliseconds
     logical, intent(out) :: has_input
-    integer(c_short), parameter :: is_readable = 1   !! POLLIN
-    type(poll_t) :: file
-    file = poll_t(descriptor, is_readable, 0_c_short)
-    has_input = c_poll(file, 1_c_long, milliseconds) > 0
+    has_input = c_has_input(descriptor, milliseconds) == 1
   end subroutine wait_for_input
 
   !> The system's text for an error number.
@@ -319,8 +388,8 @@ contains
     if (number == error_not_regular) text = 'not a regular file'
     if (number == error_is_link) text = 'a symbolic link'
     if (number < 0) return
-    text = 'unknown error'
-    if (c_strerror_r(number, buffer, len(buffer, c_size_t)) == 0) text = buffer(:index(buffer, c_null_char) - 1)
+    call c_error_text(number, buffer, len(buffer, c_size_t))
+    text = buffer(:index(buffer, c_null_char) - 1)
   end function error_text
 
   !> If the program was started without standard input, output or error, open them on /dev/null. Otherwise the first result file
@@ -330,7 +399,7 @@ contains
     integer(c_int), parameter :: last_standard = 2
     integer(c_int) :: unused
     do
-      descriptor = c_open('/dev/null'//c_null_char, read_and_write, 0_c_int)
+      descriptor = c_open('/dev/null'//c_null_char, to_read_and_write)
       if (descriptor < 0 .or. descriptor > last_standard) exit
     end do
     if (descriptor > last_standard) unused = c_close(descriptor)
@@ -339,10 +408,7 @@ contains
   !> 0 after success, else the error number of the last call.
   integer function outcome(returned) result(status)
     integer, intent(in) :: returned
-    integer(c_int), pointer :: number
     status = 0
-    if (returned >= 0) return
-    call c_f_pointer(c_errno_location(), number)
-    status = number
+    if (returned < 0) status = c_error()
   end function outcome
 end module posix_files

@@ -1,85 +1,54 @@
-!> Processes, as thin bindings for Linux: copies of this program that work beside it and write into a pipe.
+!> Copies of this program that work beside it and write into a pipe; see posix.c.
 module posix_processes
-  use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_long, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_int
   implicit none
   private
-  public :: fork_worker, wait_for_worker, ask_to_end, leave_worker, open_pipe, available_processors
-
-  integer(c_int), parameter :: signal_kill = 9, signal_terminate = 15, die_with_parent = 1, o_cloexec = 524288
+  public :: fork_worker, wait_for_worker, ask_to_end, leave_worker, open_pipe, available_processors, end_program
 
   interface
-    integer(c_int) function c_fork() bind(c, name='fork') result(process)
+    integer(c_int) function c_fork() bind(c, name='posix_fork') result(process)
       import :: c_int
     end function c_fork
-    integer(c_int) function c_waitpid(process, status, options) bind(c, name='waitpid') result(found)
+
+    !> Wait for the end of a copy: the signal that killed it, 0 if it has left by itself.
+    integer(c_int) function wait_for_worker(process) bind(c, name='posix_wait') result(killed_by)
       import :: c_int
-      integer(c_int), value :: process, options
-      integer(c_int), intent(out) :: status
-    end function c_waitpid
-    integer(c_int) function c_kill(process, number) bind(c, name='kill') result(status)
-      import :: c_int
-      integer(c_int), value :: process, number
-    end function c_kill
-    integer(c_int) function c_getppid() bind(c, name='getppid') result(process)
-      import :: c_int
-    end function c_getppid
-    integer(c_int) function c_getpid() bind(c, name='getpid') result(process)
-      import :: c_int
-    end function c_getpid
-    integer(c_int) function c_prctl(option, value) bind(c, name='prctl') result(status)
-      import :: c_int, c_long
-      integer(c_int), value :: option
-      integer(c_long), value :: value
-    end function c_prctl
-    integer(c_int) function c_pipe(ends, flags) bind(c, name='pipe2') result(status)
-      import :: c_int
-      integer(c_int), intent(out) :: ends(2)
-      integer(c_int), value :: flags
-    end function c_pipe
-    integer(c_int) function c_affinity(process, length, mask) bind(c, name='sched_getaffinity') result(status)
-      import :: c_int, c_int64_t, c_size_t
       integer(c_int), value :: process
-      integer(c_size_t), value :: length
-      integer(c_int64_t), intent(out) :: mask(*)
-    end function c_affinity
+    end function wait_for_worker
+
+    !> Send a copy the signal that asks it to end.
+    subroutine ask_to_end(process) bind(c, name='posix_ask_to_end')
+      import :: c_int
+      integer(c_int), value :: process
+    end subroutine ask_to_end
+
+    !> End the program without a word of Fortran's.
+    subroutine end_program(status) bind(c, name='exit')
+      import :: c_int
+      integer(c_int), value :: status
+    end subroutine end_program
+
     subroutine c_exit_now(status) bind(c, name='_exit')
       import :: c_int
       integer(c_int), value :: status
     end subroutine c_exit_now
+    integer(c_int) function c_pipe(ends) bind(c, name='pipe') result(status)
+      import :: c_int
+      integer(c_int), intent(out) :: ends(2)
+    end function c_pipe
   end interface
 
 contains
 
-  !> Copy this process. In the copy `process` is 0; here it is its number, or negative if there can be no copy. The copy is killed
-  !> when this process ends, in whatever way. OpenMP uses one thread in it: the threads of this process are not copied.
+  !> Copy this process. In the copy `process` is 0; here it is its number, or negative if there can be no copy. The copy ends soon
+  !> after this process, in whatever way that ends: see `interrupted`. OpenMP uses one thread in it: the threads of this process are
+  !> not copied.
   subroutine fork_worker(process)
     !$ use omp_lib, only: omp_set_num_threads
     integer, intent(out) :: process
-    integer(c_int) :: parent, unused
-    parent = c_getpid()
     process = c_fork()
-    if (process /= 0) return
-    unused = c_prctl(die_with_parent, int(signal_kill, c_long))
-    if (c_getppid() /= parent) call c_exit_now(1_c_int)   ! it ended before
-    !$ call omp_set_num_threads(1)
+    !$ if (process == 0) call omp_set_num_threads(1)
   end subroutine fork_worker
-
-  !> Wait for the end of a copy: the signal that killed it, 0 if it has left by itself.
-  integer function wait_for_worker(process) result(killed_by)
-    integer, intent(in) :: process
-    integer(c_int) :: status
-    do
-      if (c_waitpid(process, status, 0_c_int) == process) exit
-    end do
-    killed_by = iand(status, 127)
-  end function wait_for_worker
-
-  !> Send a copy the signal that asks it to end.
-  subroutine ask_to_end(process)
-    integer, intent(in) :: process
-    integer(c_int) :: unused
-    unused = c_kill(process, signal_terminate)
-  end subroutine ask_to_end
 
   !> End this process, which is a copy, at once.
   subroutine leave_worker()
@@ -90,15 +59,13 @@ contains
   subroutine open_pipe(ends, is_open)
     integer, intent(out) :: ends(2)
     logical, intent(out) :: is_open
-    is_open = c_pipe(ends, o_cloexec) == 0
+    is_open = c_pipe(ends) == 0
   end subroutine open_pipe
 
   !> Number of processors that this program may use.
   integer function available_processors() result(number)
-    integer(c_int64_t) :: mask(128)
-    integer(c_int) :: unused
-    mask = 0
-    unused = c_affinity(0_c_int, int(8*size(mask), c_size_t), mask)
-    number = max(1, sum(popcnt(mask)))
+    !$ use omp_lib, only: omp_get_num_procs
+    number = 1
+    !$ number = omp_get_num_procs()
   end function available_processors
 end module posix_processes

@@ -85,7 +85,7 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer :: status
     if (self%descriptor < 0) return
-    call reserve_file(self%descriptor, int(length, c_long), status)
+    call reserve_file(self%descriptor, length, status)
     self%is_reserved = status == 0
     if (status /= 0) call fail_with_file(self%path, status, error)
   end subroutine reserve
@@ -101,15 +101,20 @@ contains
   !> discarded data; `tell_error` reports it.
   impure elemental subroutine synchronise(self)
     class(result_file_t), intent(inout) :: self
-    integer :: status
     if (self%descriptor < 0) return
     call self%flush()
-    status = 0
-    if (self%is_reserved) call truncate_file(self%descriptor, self%written, status)   ! release the unused reserved space
-    self%is_reserved = .false.
-    if (self%status == 0) call synchronise_file(self%descriptor, status)
-    if (self%status == 0) self%status = status
+    if (self%is_reserved) call release(self)
+    if (self%status == 0) call synchronise_file(self%descriptor, self%status)
   end subroutine synchronise
+
+  !> Release the reserved space that has not been used.
+  subroutine release(self)
+    type(result_file_t), intent(inout) :: self
+    integer :: status
+    call truncate_file(self%descriptor, self%written, status)
+    self%is_reserved = .false.
+    if (self%status == 0) self%status = status
+  end subroutine release
 
   !> Whether a write has failed.
   pure elemental logical function has_failed(self) result(failed)
@@ -131,6 +136,7 @@ contains
     integer :: status, ignored
     if (self%descriptor < 0) return
     call self%flush()
+    if (self%is_reserved) call release(self)
     if (self%status == 0 .or. self%written > 0 .and. .not. self%whole_only) then
       call rename_file(self%path//'.part', self%path, status)
       if (self%status == 0) self%status = status
@@ -157,6 +163,7 @@ contains
     integer :: ignored
     if (self%descriptor < 0) return
     call self%flush()
+    if (self%is_reserved) call release(self)
     call close_file(self%descriptor, ignored)
     self%descriptor = -1
     if (.not. self%written > 0) call remove_file(self%path//'.part', ignored)

@@ -65,6 +65,7 @@ contains
     character(len=:), allocatable, intent(out) :: line
     type(error_t), allocatable, intent(out) :: error
     type(study_tasks_t), allocatable :: tasks
+    type(signal_set_t) :: again
     real(dp) :: began   ! [s]
     integer :: jobs
 
@@ -74,7 +75,7 @@ contains
     call read_sweep(path, options, tasks%sweep, error)
     if (.not. (allocated(error) .or. options%quiet)) call tell_notes(tasks%sweep%base%case)
     if (.not. allocated(error) .and. options%check) call check_rows(tasks%sweep, line, error)
-    call hold_interrupts()
+    call hold_interrupts(again)
     if (allocated(error) .or. options%check) return
     call prepare_folder(options, tasks, error)
     if (allocated(error)) return
