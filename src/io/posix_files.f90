@@ -26,43 +26,43 @@ module posix_files
   integer(c_int), parameter :: folder_mode = 511   !! rwxrwxrwx, before the umask
 
   interface
-    integer(c_int) function c_error() bind(c, name='posix_error') result(number)
+    integer(c_int) function c_error() bind(c, name='system_error') result(number)
       import :: c_int
     end function c_error
-    subroutine c_error_text(number, text, size) bind(c, name='posix_error_text')
+    subroutine c_error_text(number, text, size) bind(c, name='system_error_text')
       import :: c_int, c_char, c_size_t
       integer(c_int), value :: number
       character(kind=c_char), intent(out) :: text(*)
       integer(c_size_t), value :: size
     end subroutine c_error_text
-    integer(c_int) function c_open(path, way) bind(c, name='posix_open') result(descriptor)
+    integer(c_int) function c_open(path, way) bind(c, name='system_open') result(descriptor)
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), value :: way
     end function c_open
-    integer(c_int) function c_kind(descriptor, path) bind(c, name='posix_kind') result(kind_of)
+    integer(c_int) function c_kind(descriptor, path) bind(c, name='system_kind') result(kind_of)
       import :: c_char, c_int
       integer(c_int), value :: descriptor
       character(kind=c_char), intent(in) :: path(*)
     end function c_kind
-    integer(c_int) function c_is_name(path, descriptor) bind(c, name='posix_is_name') result(answer)
+    integer(c_int) function c_is_name(path, descriptor) bind(c, name='system_is_name') result(answer)
       import :: c_char, c_int
       character(kind=c_char), intent(in) :: path(*)
       integer(c_int), value :: descriptor
     end function c_is_name
-    integer(c_int) function c_lock(descriptor) bind(c, name='posix_lock') result(answer)
+    integer(c_int) function c_lock(descriptor) bind(c, name='system_lock') result(answer)
       import :: c_int
       integer(c_int), value :: descriptor
     end function c_lock
-    integer(c_int) function c_synchronise(descriptor) bind(c, name='posix_synchronise') result(status)
+    integer(c_int) function c_synchronise(descriptor) bind(c, name='system_synchronise') result(status)
       import :: c_int
       integer(c_int), value :: descriptor
     end function c_synchronise
-    integer(c_int) function c_has_input(descriptor, milliseconds) bind(c, name='posix_has_input') result(answer)
+    integer(c_int) function c_has_input(descriptor, milliseconds) bind(c, name='system_has_input') result(answer)
       import :: c_int
       integer(c_int), value :: descriptor, milliseconds
     end function c_has_input
-    type(c_ptr) function c_next_name(folder) bind(c, name='posix_next_name') result(name)
+    type(c_ptr) function c_next_name(folder) bind(c, name='system_next_name') result(name)
       import :: c_ptr
       type(c_ptr), value :: folder
     end function c_next_name

@@ -6,18 +6,18 @@ module posix_processes
   public :: fork_worker, wait_for_worker, ask_to_end, leave_worker, open_pipe, available_processors, end_program
 
   interface
-    integer(c_int) function c_fork() bind(c, name='posix_fork') result(process)
+    integer(c_int) function c_fork() bind(c, name='system_fork') result(process)
       import :: c_int
     end function c_fork
 
     !> Wait for the end of a copy: the signal that killed it, 0 if it has left by itself.
-    integer(c_int) function wait_for_worker(process) bind(c, name='posix_wait') result(killed_by)
+    integer(c_int) function wait_for_worker(process) bind(c, name='system_wait') result(killed_by)
       import :: c_int
       integer(c_int), value :: process
     end function wait_for_worker
 
     !> Send a copy the signal that asks it to end.
-    subroutine ask_to_end(process) bind(c, name='posix_ask_to_end')
+    subroutine ask_to_end(process) bind(c, name='system_ask_to_end')
       import :: c_int
       integer(c_int), value :: process
     end subroutine ask_to_end
