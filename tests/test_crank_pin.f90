@@ -63,7 +63,7 @@ contains
       call check%relative(value_of('contact_time_fraction')*trace%report%figures%time, contact_time(piston_pin), 1e-9_dp, &
         'time in contact at the piston pin')
     end associate
-    call check%that(index(lines_for_user(case, trace%report, 0.0_dp, 'x', ''), '; crank pin: ') > 0, &
+    call check%that(index(lines_for_user(case, trace%report, 0.0_dp, 'x', ''), new_line('a')//'  crank pin: ') > 0, &
       'the line of the run has the crank pin')
 
     call run_and_summarise(alone, trace, case, table)

@@ -1,4 +1,5 @@
-!> What the user is told about a run that has ended: the physics in one line, its cost in another one, and the notes on its results.
+!> What the user is told about a run that has ended: the physics in one line and one for each further bearing, its cost, and the notes on its
+!> results.
 module run_line
   use kinds, only: dp
   use constants, only: two_pi
@@ -28,7 +29,7 @@ contains
     real(dp), intent(in) :: wall_time      !! [s]
     character(len=*), intent(in) :: path   !! path of the results without suffix
     character(len=*), intent(in) :: remark !! text about the certificate, or empty
-    character(len=:), allocatable :: text, notes
+    character(len=:), allocatable :: text, bearing, others, notes
     integer :: i
     associate (s => report%statistics, f => report%figures)
       text = 'ended early'
@@ -36,13 +37,14 @@ contains
       text = printable(case%name, 200)//': '//text//'; '//short_text(abs(f%crank_travel)/two_pi, digits)//' revolutions in '// &
         quantity_text(f%time, 's')
       if (report%periods%is_on .and. report%status == 'done') text = text//', '//period_text(report%periods)
+      others = ''
       do i = 1, n_places
         associate (place => in_order(i))
           if (i > 1 .and. .not. case%joints(place)%has_bearing() .or. case%has_numbers(place)) cycle
-          text = text//'; '
-          if (i > 1) text = text//trim(places(place)%title)//': '
-          text = text//pin_text(case%joints(place), f%pin(place), case%integrator%relative_tolerance, report, place)
-          if (.not. report%periods%is_on .and. is_driven(case)) text = text//settling_text(case%joints(place), f%pin(place))
+          bearing = pin_text(case%joints(place), f%pin(place), case%integrator%relative_tolerance, report, place)
+          if (.not. report%periods%is_on .and. is_driven(case)) bearing = bearing//settling_text(case%joints(place), f%pin(place))
+          if (i == 1) text = text//'; '//bearing
+          if (i > 1) others = others//newline//'  '//trim(places(place)%title)//': '//bearing
         end associate
       end do
       text = text//bearings_text(report)
@@ -53,7 +55,7 @@ contains
       if (allocated(report%histories)) text = text//histories_text(report%histories, allocated(case%load))
       if (report%exponent%is_known) text = text//'; Lyapunov exponent '//short_text(report%exponent%mean, digits)//' per revolution'
       if (remark /= '') text = text//'; '//remark
-      text = text//newline//'  '//printable(path, 1000)//'.csv; '//integer_text(s%accepted)//' steps, '// &
+      text = text//others//newline//'  '//printable(path, 1000)//'.csv; '//integer_text(s%accepted)//' steps, '// &
         integer_text(s%evaluations)//' evaluations, '//short_text(wall_time, digits)//' s'
       if (f%max_energy > 0) text = text//'; relative energy residual '//short_text(relative_residual(report), 2)
       if (any(f%pin%heat%is_known)) text = text//'; relative heat residual '//short_text(f%heat_residual(), 2)
@@ -180,8 +182,17 @@ contains
     logical :: is_known
     call report%value_of(name, value, is_known)
     text = ''
-    if (is_known .and. abs(value - of_run) > remarkable*abs(of_run)) text = ' ('//quantity_text(value, unit)//' in the last cycle)'
+    if (is_known .and. abs(value - of_run) > remarkable*abs(of_run)) text = ' ('//size_text(value, unit)//' in the last cycle)'
   end function cycle_text
+
+  !> A size with its unit; the thickness of a film in um, so that bearings can be compared.
+  function size_text(size, unit) result(text)
+    real(dp), intent(in) :: size             !! in `unit`
+    character(len=*), intent(in) :: unit     !! m: a thickness
+    character(len=:), allocatable :: text
+    text = quantity_text(size, unit)
+    if (unit == 'm' .and. size >= 1e-9_dp .and. size < 1e-3_dp) text = short_text(1e6_dp*size, digits)//' um'
+  end function size_text
 
   !> Text about one pin. The error of a table of the film is told if it is larger than the relative tolerance of the run.
   function pin_text(joint, pin, tolerance, report, place) result(text)
@@ -198,7 +209,7 @@ contains
       if (pin%min_film_thickness < 0) then
         text = text//'penetration up to '//quantity_text(-pin%min_film_thickness, 'm')//', '
       else if (allocated(joint%film) .and. pin%min_film_thickness < huge(1.0_dp)) then   ! there was a state in the model
-        text = text//'film of at least '//quantity_text(pin%min_film_thickness, 'm')// &
+        text = text//'film of at least '//size_text(pin%min_film_thickness, 'm')// &
           cycle_text(report, name_prefix(place)//'cycle_min_film_thickness', 'm', pin%min_film_thickness)//', '
         if (joint%film%table_of /= '' .and. joint%film%table_error > tolerance) &
           text = text//'its table good to '//short_text(100*joint%film%table_error, 2)//' %, '
