@@ -375,6 +375,28 @@ class ForPapers(unittest.TestCase):
             self.assertIn(said, message.getvalue())
 
 
+class WarmFilm(unittest.TestCase):
+    """A film whose temperature jumps: its settled value, and the least thickness of each cycle in place of the curve."""
+
+    def test_picture(self) -> None:
+        angle = np.radians(np.arange(0, 1081, 10.0))
+        least = np.array([3.0, 2.0, 2.5])   # of each revolution, at 180 degrees
+        cycle = np.minimum((angle / (2 * np.pi) + 1e-9).astype(int), 2)
+        values = {"time[s]": angle / 100, "crank_angle[rad]": angle, "film_temperature[K]": np.array([363.15, 375.15, 373.15])[cycle],
+                   "film_thickness[m]": 1e-6 * (least[cycle] + 1 + np.cos(angle))}
+        with tempfile.TemporaryDirectory() as work, contextlib.redirect_stdout(io.StringIO()):
+            path = Path(work) / "x.csv"
+            pd.DataFrame(values).to_csv(path, index=False)
+            path.with_name("x.summary.csv").write_text("quantity,value,unit\nstatus,done,\ntemperature_jumps,2,1\ncycle_mean_film_temperature,373.15,K\n")
+            drawing = columns.draw([load_run(path)], ["film_temperature", "film_thickness"], "time")
+        warm, thickness = drawing.axes
+        said = {text.get_text() for text in warm.texts}
+        self.assertEqual(said, {"settled: 100.0 °C", "jump 1", "jump 2"})
+        np.testing.assert_allclose(thickness.lines[0].get_ydata(), least)
+        np.testing.assert_allclose(thickness.lines[0].get_xdata(), 10 * np.radians([180, 540, 900]))
+        plt.close(drawing)
+
+
 class OnePage(unittest.TestCase):
     """The short report: case, answers, losses and plots, all on the page."""
 
