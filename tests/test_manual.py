@@ -185,7 +185,7 @@ def check_built(program: Path) -> None:
 
 def check_printed(built: Path) -> None:
     """The contents of the PDF have the pages where its sections begin; the font has the letters of the equations; numbers of the text are typeset."""
-    import hooks   # in .venv
+    import hooks  # in .venv
     from fontTools.ttLib import TTFont
 
     text = (built / "print.html").read_text(encoding="utf-8")
