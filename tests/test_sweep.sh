@@ -54,6 +54,14 @@ sed 's/0.04mm/40 K/' "$work/units.nml" >"$work/kelvin.nml"
 refused "a unit of another kind" 3 "kelvin.nml:2: &parameter to = 40 K: K is a temperature; clearance is a length (m, km" "$work/kelvin.nml"
 sed "s/200 rad/200 rda/" "$work/units.nml" >"$work/rda.nml"
 refused "a unit that there is not" 3 "rda.nml:3: &parameter values = 200 rda/s: unknown unit; did you mean rad/s?" "$work/rda.nml"
+
+study short <<'END'
+&study case = 'base.nml', settle_cycles = 40 /
+&parameter key = 'joint.clearance', values = 10 um /
+END
+refused "a study that leaves nothing of its runs" 3 "short.nml: &study settle_cycles = 40: the case makes 4 revolutions, no whole one is left" \
+  -s drive.kind=constant_speed "$work/short.nml"
+
 study tables <<'END'
 &study case = 'base.nml', table = 'tables.csv' /
 END
@@ -123,6 +131,7 @@ check "its rows are those of the cases" [ "$(field "$work/element/base.summary.c
 check "its values differ" [ "$(named "$work/element/element.runs.csv" 1 'max_pin_force[N]')" != \
   "$(named "$work/element/element.runs.csv" 3 'max_pin_force[N]')" ]
 sed "s/from.*/values = 0, 1 \/\n\&parameter key = 'mechanism.rod_com(2)', values = 1, 2 \//" "$work/element.nml" >"$work/twice.nml"
+refused "an override of a key of which one number is varied" 2 "the study varies mechanism.rod_com" -s mechanism.rod_com=0.05,0 "$work/element.nml"
 refused "the same number twice" 3 "twice.nml: mechanism.rod_com(2): is varied twice, also as mechanism.rod_com\\[2\\]" "$work/twice.nml"
 
 # wear: columns of the worn surfaces, where a run may have any

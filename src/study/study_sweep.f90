@@ -1,9 +1,12 @@
 !> A study that has been read and checked.
 module study_sweep
   use kinds, only: dp
+  use constants, only: two_pi
   use error_handling, only: error_t, fail, status_command_line, status_case_file, status_integration
   use text_tools, only: printable, integer_text, lowercase
   use checksums, only: checksum_t
+  use number_text, only: short_text
+  use scene_builder, only: simulated_time
   use version_number, only: program_version
   use study_statistics, only: statistic_t, read_statistics
   use trace_columns, only: column_list_t, choose_columns
@@ -22,6 +25,7 @@ module study_sweep
   private
   public :: sweep_t, read_sweep, check_rows, study_checksum
 
+  real(dp), parameter :: rounding = 1e-6_dp      !! of a number of revolutions that end_time gives
   integer, parameter :: most_checked = 100000   !! largest number of runs of a design that a check tests
 
   !> A study with its design and its base case.
@@ -78,6 +82,7 @@ contains
         return
       end do
       call check_values(sweep, error)
+      if (.not. allocated(error)) call refuse_too_short(sweep, error)
       if (allocated(error)) return
       call choose_rows(options, at, sweep, error)
       if (allocated(error)) return
@@ -96,6 +101,27 @@ contains
       sweep%has_strobes = study%strobe_columns /= ''
     end associate
   end subroutine read_sweep
+
+  !> Refuse a study whose runs all end before their statistics begin: the crank is held at its speed, no parameter changes that or
+  !> the length of a run, and `settle_cycles` leaves no whole revolution of it.
+  subroutine refuse_too_short(sweep, error)
+    type(sweep_t), intent(in) :: sweep
+    type(error_t), allocatable, intent(out) :: error
+    character(len=*), parameter :: groups(*) = [character(len=11) :: 'integrator.', 'initial.', 'drive.', 'run.']
+    real(dp) :: revolutions
+    integer :: i, k
+    associate (case => sweep%base%case, settle => sweep%study%settle_cycles)
+      if (case%drive%kind /= 'constant_speed') return
+      do i = 1, size(groups)
+        if (any([(index(sweep%design%keys(k), trim(groups(i))) == 1, k=1, size(sweep%design%keys))])) return
+      end do
+      revolutions = simulated_time(case)*abs(case%initial%crank_speed)/two_pi
+      if (revolutions > settle + 1 - rounding .or. settle == 0) return
+      call fail(error, printable(sweep%study%file, 200)//': &study settle_cycles = '//integer_text(settle)//': the case makes '// &
+        short_text(revolutions)//' revolutions, no whole one is left: more &integrator revolutions in '// &
+        printable(sweep%study%case, 200), status_case_file)
+    end associate
+  end subroutine refuse_too_short
 
   !> The runs that are wanted: all, or those of --rows.
   subroutine choose_rows(options, at, sweep, error)
@@ -159,7 +185,7 @@ contains
     character(len=:), allocatable :: said, name
     integer :: i, k, dot, place
     do i = 1, size(settings)
-      name = lowercase(settings(i)(:index(settings(i), '=') - 1))
+      name = lowercase(settings(i)(:scan(settings(i), '=[(') - 1))
       dot = index(name, '.', back=.true.)
       place = 0
       if (dot > 0) place = values%place_of(trim(adjustl(name(:dot - 1))), trim(adjustl(name(dot + 1:))))
@@ -171,7 +197,7 @@ contains
       associate (key => values%keys(place))
         name = trim(key%group)//'.'//trim(key%name)
       end associate
-      if (.not. any([(lowercase(trim(keys(k))) == name, k=1, size(keys))])) cycle
+      if (.not. any([(lowercase(keys(k)(:scan(keys(k)//'[', '[(') - 1)) == name, k=1, size(keys))])) cycle
       said = '--accuracy '//options%accuracy
       if (i > size(settings) - size(options%overrides)) said = '--set '//printable(trim(settings(i)), 60)
       call fail(error, said//': the study varies '//name, status_command_line)
