@@ -89,6 +89,8 @@ module test_notes
     mistake_t('sim_IV', 'friction.v1=10', 'v1 = 10 m/s: usually 1e-6 to 1: mm/s?'), &
     mistake_t('sim_I', 'initial.eccentricity=2e-4,0', 'eccentricity = 2e-4 m is 10 of clearance = 2e-5 m, usually up to 1.2'), &
     mistake_t('joints/piston_slap', 'guide.piston_inertia=500', 'usually 0.01 to 9: kg mm^2?'), &
+    mistake_t('joints/rings', 'rings.asperities.roughness=5e-6', 'roughness = 5e-6 m is 1.67 of the least crown of the '// &
+      'rings, 3e-6 m, usually up to 0.4'), &
     mistake_t('bearings/small_engine', 'joint.clearance=1.8e-5', &
       'is 0.002 of bearing_radius = 0.009009 m, usually 0.0001 to 0.0015: the diametral clearance?'), &
     mistake_t('bearings/small_engine', 'crank_pin.joint.bearing_radius=0.03003', &

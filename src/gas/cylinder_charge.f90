@@ -96,14 +96,15 @@ contains
   subroutine parameters(self, list)
     class(charge_case_t), intent(inout) :: self
     class(parameter_list_t), intent(inout) :: list
-    call list%add('gas_constant', self%gas_constant, 'specific gas constant; air 287, R134a 81.5, R600a 143, nitrogen 297', &
+    call list%add('gas_constant', self%gas_constant, &
+      'specific gas constant; air 287, R134a 81.5, R290 189, R600a 143, nitrogen 297', &
       'J/(kg K)', '> 0', example='287.0', usual='50 to 4200')
     call list%add('temperature', self%temperature, 'temperature of the fresh gas: of an engine where its cylinder closes, of a '// &
       'compressor in the suction chamber', 'K', '> 0', example='350.0', usual='230 to 500')
     call list%add('leak_area', self%leak_area, 'effective area of the gap past the rings to the crankcase', 'm^2', '>= 0', &
       default='0.0', usual='1e-9 to 1e-4')
     call list%add('heat_capacity_ratio', self%heat_capacity_ratio, &
-      'ratio of the heat capacities of the gas of a compressor with &valve; air 1.4, R134a 1.11, R600a 1.09', &
+      'ratio of the heat capacities of the gas of a compressor with &valve; air 1.4, R134a 1.11, R290 1.13, R600a 1.09', &
       range='>= 0 and <= 10', default='0.0', usual='1.05 to 1.67')
   end subroutine parameters
 

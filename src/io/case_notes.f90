@@ -280,11 +280,14 @@ contains
     end associate
   end subroutine note_guide
 
-  !> Rings of one cylinder of several.
+  !> Surfaces so rough that rings run on them for the whole stroke; rings of one cylinder of several.
   subroutine note_rings(c, to)
     type(case_t), intent(in) :: c
     type(remarks_t), intent(inout) :: to
-    if (.not. (allocated(c%rings%rings) .and. allocated(c%cylinders))) return
+    if (.not. allocated(c%rings%rings)) return
+    if (allocated(c%rings%asperities)) call to%expect('rings.asperities', 'roughness', c%rings%asperities%roughness, &
+      minval(c%rings%rings%crown), 0.0_dp, 0.4_dp, 'is # of the least crown of the rings, @ m', '')
+    if (.not. allocated(c%cylinders)) return
     if (size(c%cylinders) > 1) call to%add_line('&ring: these are the rings of the full cylinder; the others have none, so '// &
       'that FMEP has the rings of one cylinder over the displacement of all')
   end subroutine note_rings
