@@ -60,6 +60,9 @@ def variants_of_made_cases(template: dict) -> None:
     skirt = settings_of(variants_of({**dry, "guide": {"kind": "lubricated"}, "guide.lubrication": {"cavitation": "reynolds"}, "guide.asperities": {}}, template))
     check(skirt["no model of the guide"] == ("guide=none", "guide.lubrication=none", "guide.asperities=none"), "the film of a skirt goes with its guide")
     check(skirt["film of the skirt: cavitation gumbel"] == ("guide.lubrication.cavitation=gumbel",), "the other condition of rupture in the film of a skirt")
+    check(skirt["elastic faces of the skirt"] == ("guide.stiffness=5e7",) and "rigid faces of the skirt" not in skirt, "elastic faces can be added")
+    elastic = settings_of(variants_of({**dry, "guide": {"kind": "lubricated", "stiffness": 5e7}, "guide.lubrication": {"cavitation": "reynolds"}, "guide.asperities": {}}, template))
+    check(elastic["rigid faces of the skirt"] == ("guide.stiffness=0",) and "elastic faces of the skirt" not in elastic, "elastic faces can be taken out")
     check("guide.kind=clearance" in skirt["skirt with dry corners"], "dry corners instead of the film of the skirt")
     rings = dry | {"ring_1": {"model": "closed_form", "crown_offset": 0.0}, "ring_2": {"model": "film", "crown_offset": 0.0}}
     check(settings_of(variants_of(rings | {"rings.asperities": {}}, template))["piston rings: film"] == ("ring_1.model=film", "ring_2.model=film"), "films of all rings")

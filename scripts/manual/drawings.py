@@ -368,6 +368,42 @@ def skirt_film() -> str:
     return d.svg("Gaps between skirt and bore, and the film on one face")
 
 
+def skirt_springs() -> str:
+    """An elastic face on the side of +y: a panel on springs at its ends, which its film presses towards the piston."""
+    keys = keys_of("joints/skirt.nml")
+    top, bottom = (keys[f"guide.{name}"][0] for name in ("skirt_top", "skirt_bottom"))
+    d = Drawing(430, 330, (60, 120), 4.6)
+    body, free, wall = 14.0, 40.0, 52.0
+    bent = {top: 4.0, -bottom: 9.0}   # deflections of the ends
+    d.lines((top, 0), (top, body), (-bottom, body), (-bottom, 0), fill=LIGHT)
+    face = [(z, free - w) for z, w in bent.items()]
+    d.lines(*face, (-bottom, wall), (top, wall), close=True, fill=OIL, stroke="none")
+    d.lines((top, free), (-bottom, free), stroke=GREY, dash="7 4", width=1)
+    d.lines(*face, width=3)
+    d.hatch((-bottom - 5, wall), (top + 6, wall), -1)
+    for z, w in bent.items():
+        z += -3 if z > 0 else 3   # the springs are drawn a little inside the ends
+        end = free - w - 2
+        turns = [(z + (1.6 if k % 2 else -1.6), body + 2 + (end - body - 4) * (k + 0.5) / 8) for k in range(8)]
+        d.lines((z, body), (z, body + 2), *turns, (z, end), (z, free - w), width=1.4)
+        d.text((z, body + 6), "$K$", BLUE, dy=24)
+    for z, w, name in ((top, bent[top], "$ζ_t$"), (-bottom, bent[-bottom], "$ζ_b$")):
+        out = 3 if z > 0 else -3
+        d.lines((z, free), (z + 2 * out, free), stroke=GREY, width=0.8)
+        d.lines((z, free - w), (z + 2 * out, free - w), stroke=GREY, width=0.8)
+        d.arrow((z + 1.3 * out, free), (z + 1.3 * out, free - w), BLUE)
+        d.text((z + 2 * out, free - w / 2), name, BLUE, dy=2 if z > 0 else 14)
+    for k in range(1, 6):
+        z = -bottom + (top + bottom) * k / 6
+        d.arrow((z, wall - 1), (z, wall - 1 - 6 * sin(pi * k / 6)), RED, width=1)
+    d.text(((top - bottom) / 2, wall), "$p$", RED, anchor="start", dx=10)
+    d.text(((top - bottom) / 2, body / 2), "piston", size=14)
+    d.text((top, wall), "$z_t$", anchor="start", dx=14)
+    d.text((-bottom, wall), "$z_b$", anchor="start", dx=14)
+    d.axes((-bottom - 2, wall + 12), 7)
+    return d.svg("A face of the skirt on its two springs")
+
+
 def offset_axis() -> str:
     """The offset is drawn larger, the same crank and rod at both dead centres."""
     keys = keys_of("drive/offset_crank.nml")
@@ -536,7 +572,7 @@ def film() -> str:
     return d.svg("Gap and pressure of a film, unrolled from its thickest place")
 
 
-DRAWINGS = (mechanism, joint, forces, skirt, skirt_film, offset_axis, floating_pin, crank_train, supply, film)
+DRAWINGS = (mechanism, joint, forces, skirt, skirt_film, skirt_springs, offset_axis, floating_pin, crank_train, supply, film)
 
 
 def main() -> None:

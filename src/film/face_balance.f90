@@ -173,12 +173,12 @@ contains
     call refine(n, m, along, round, source + rate(1)*by_rate(:, :, 1) + rate(2)*by_rate(:, :, 2), p, full)
   end subroutine guess_yielding
 
-  !> `balance` of a face that gives way on two springs, with the rates v of these: the sources are those of a face at rest and v times
-  !> those of the rates, and each spring, whose own force is in its load, resists with a drag,
+  !> `balance` of a face that gives way on two springs, with the rates v of these: the sources are those of a face at rest and v
+  !> times those of the rates, and each spring, whose own force is in its load, resists with a drag,
   !>
   !>     drag v_k = load_k + sum of weight_k p
   !>
-  !> Pressures are linear in v while the part that is full stays, and while that which is cut off does.
+  !> Pressures are linear in v while the part that is full stays, or that which is cut off.
   pure subroutine balance_yielding(n, m, along, round, source, by_rate, weight, load, drag, cuts_suction, full, rate, p)
     integer, intent(in) :: n, m
     real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1)
@@ -261,8 +261,8 @@ contains
     rate = [a(2, 2)*b(1) - a(1, 2)*b(2), a(1, 1)*b(2) - a(2, 1)*b(1)]/(a(1, 1)*a(2, 2) - a(1, 2)*a(2, 1))
   end function balanced_rate
 
-  !> The rates for which the springs balance where suction is cut off, by Newton's method with steps that are halved until the balance
-  !> is better: it is linear while the nodes without suction stay.
+  !> The rates for which the springs balance where suction is cut off, by Newton's method with steps that are halved until the
+  !> balance is better: it is linear while the nodes without suction stay.
   pure function cut_rate(n, weight, part, load, drag) result(rate)
     integer, intent(in) :: n
     real(dp), intent(in) :: weight(n, 2), part(3, n), load(2), drag

@@ -10,8 +10,8 @@
 !> H(h) is the mean gap of rough surfaces. Where the film ruptures p = 0: by Reynolds' condition (no suction; a ruptured node
 !> into which oil flows is full again), or by cutting negative pressures off (Gumbel).
 !>
-!> An elastic face is a rigid panel on two springs at its ends, whose deflections w_t, w_b >= 0 take it away from the wall, linear in
-!> between: a panel has a motion like that of the piston, but for U. Springs and film have no mass,
+!> An elastic face is a rigid panel on two springs at its ends, whose deflections w_t, w_b >= 0 take it away from the wall, linear
+!> in between: a panel has a motion like that of the piston, but for U. Springs and film have no mass,
 !>
 !>     Int (p + p_a) cos(phi) N_k dA = K w_k + K tau w_k',   N_t = (z - z_b)/l, N_b = 1 - N_t
 !>
@@ -155,8 +155,8 @@ module face_film
       real(dp), intent(out) :: p(0:self%around + 1, 0:self%along)
     end subroutine find_yielding
 
-    !> Slopes of the loads of an elastic face and of the rates of its springs, by the motion of the piston and both deflections, from
-    !> those of the loads by the motion of its panel.
+    !> Slopes of the loads of an elastic face and of the rates of its springs, by the motion of the piston and both deflections,
+    !> from those of the loads by the motion of its panel.
     pure module subroutine panel_slopes(self, side, stiffness, own, of_loads, of_rates)
       class(face_film_t), intent(in) :: self
       integer, intent(in) :: side

@@ -238,7 +238,8 @@ contains
       if (case%has_loose_guide()) text = 'clearance '//quantity_text(guide%bore_clearance, 'm', digits)// &
         ' around a piston of '//quantity_text(guide%piston_radius, 'm', digits)//' radius'
       if (case%has_skirt_corners()) text = text//'; contact '//trim(guide%contact%name)
-      if (guide%is_lubricated()) text = text//', with a film at the skirt'
+      if (guide%is_lubricated()) text = text//', with a film at the '//trim(merge('elastic skirt', 'skirt        ', &
+        guide%stiffness > 0))
       if (allocated(guide%friction) .and. .not. guide%is_lubricated()) text = text//'; friction '//trim(guide%friction%name)
     end associate
   end function guide_text

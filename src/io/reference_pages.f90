@@ -32,7 +32,7 @@ module reference_pages
     'combustion.duration_deg=40'
 
   !> Kinds of scenes that together have every column.
-  type(scene_kind_t), parameter :: kinds(22) = [ &
+  type(scene_kind_t), parameter :: kinds(23) = [ &
     scene_kind_t('Every scene', 'drive.kind=constant_speed'), &
     scene_kind_t('Joint with clearance (the last three columns only with `&contact`)', play//contact), &
     scene_kind_t('Contact with `geometry = ''conformal''`', play//contact//'contact.geometry=conformal'), &
@@ -55,6 +55,9 @@ module reference_pages
       'guide.bore_clearance=1e-4 guide.skirt_top=0.02 guide.skirt_bottom=0.02 guide.piston_radius=0.035 '// &
       'guide.piston_inertia=1e-3 guide.stiffness=1e8 guide.coefficient=0'), &
     scene_kind_t('Film of the skirt (`kind = ''lubricated''`)', 'guide.kind=lubricated '// &
+      'guide.bore_clearance=1e-4 guide.skirt_top=0.02 guide.skirt_bottom=0.02 guide.piston_radius=0.035 '// &
+      'guide.piston_inertia=1e-3 guide.lubrication.viscosity=0.008 guide.asperities.roughness=1e-6'), &
+    scene_kind_t('Elastic faces of the skirt (`stiffness` > 0)', 'guide.kind=lubricated guide.stiffness=5e7 '// &
       'guide.bore_clearance=1e-4 guide.skirt_top=0.02 guide.skirt_bottom=0.02 guide.piston_radius=0.035 '// &
       'guide.piston_inertia=1e-3 guide.lubrication.viscosity=0.008 guide.asperities.roughness=1e-6'), &
     scene_kind_t('Gas', engine), &

@@ -96,15 +96,19 @@ contains
         'less leak_area')
     end subroutine note_gas
 
-    !> A lubricated skirt that runs on its asperities.
+    !> A lubricated skirt that runs on its asperities, or whose faces bend more than there is room.
     subroutine note_skirt()
       real(dp), parameter :: least_ratio = 3   ! of the film to the roughness
-      real(dp) :: thickness
+      real(dp) :: thickness, deflection
       logical :: is_known
       call report%value_of('cycle_min_skirt_film_thickness', thickness, is_known)
       if (is_known) is_known = thickness < least_ratio*case%skirt_film%asperities%roughness
       if (is_known) call add_line('the skirt runs on its asperities, its least film is '//quantity_text(thickness, 'm')// &
         ': more &guide barrel or another barrel_height')
+      call report%value_of('cycle_max_deflection', deflection, is_known)
+      if (is_known) is_known = deflection > case%guide%bore_clearance
+      if (is_known) call add_line('the faces of the skirt bend by up to '//quantity_text(deflection, 'm')// &
+        ', more than bore_clearance: more &guide stiffness')
     end subroutine note_skirt
 
     !> No period was found, and errors of the integration may be the reason.

@@ -61,8 +61,8 @@ contains
       'm', '> 0', default='0.0', usual='2e-3 to 1')
     call list%add('piston_inertia', self%piston_inertia, &
       'moment of inertia of the piston about its centre of mass', 'kg m^2', '> 0', default='0.0', usual='1e-9 to 1e4')
-    call list%add('stiffness', self%stiffness, 'contact stiffness of a corner of the skirt, > 0; lubricated: 0, rigid faces', &
-      'N/m^exponent', '>= 0', default='0.0', usual='1e5 to 1e13')
+    call list%add('stiffness', self%stiffness, 'contact stiffness of a corner of the skirt, > 0; lubricated: of the '// &
+      'spring at each end of each face, in N/m; 0: rigid faces', 'N/m^exponent', '>= 0', default='0.0', usual='1e5 to 1e13')
     call list%add('piston_com', self%piston_com, &
       'centre of mass of the piston from the pin, along and across the piston; across > 0: pin offset towards -y, the side '// &
       'that is pressed after firing where crank_speed is > 0', 'm', default='0.0', usual='0 to 0.5')

@@ -1,5 +1,5 @@
-!> Element of the guide: film between both faces of the skirt and the bore, with the contact of their asperities, where the faces are
-!> elastic with the deflections of their ends as states. See `face_film`.
+!> Element of the guide: film between both faces of the skirt and the bore, with the contact of their asperities. Elastic faces have
+!> the deflections of their ends as states. See `face_film`.
 module skirt_film
   use kinds, only: dp
   use constants, only: degree

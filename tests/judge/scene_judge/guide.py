@@ -59,6 +59,7 @@ class Guide:
             self.widest = n("guide.barrel_height") - along if n("guide.barrel_height") <= 2 else sum(self.height) / 2
             self.barrel = n("guide.barrel") * 4 / (self.height[0] - self.height[1])**2
             self.has_profile = bool(run.text("guide.profile_table"))
+            self.spring = n("guide.stiffness")
             return
         case = {key.replace("guide.", "contact."): value for key, value in run.case.items() if key.startswith("guide.")}
         case |= {"contact.law": run.case["guide.contact_law"], "contact.geometry": ["hertz_sphere"],
@@ -86,6 +87,8 @@ class Guide:
             return get["guide_friction_force"] * v
         total = get.get("ring_friction_force", 0.0) * v - self.viscous * v**2
         if self.has_film:
+            if self.spring:   # with the rate of the energy of the springs
+                return total - get["skirt_power"]
             return total + get["skirt_friction_force"] * v + get["skirt_force"] * row.offset_rate_y + get["skirt_moment"] * row.tilt_rate
         for k in range(1, 5):
             rate, along = self.rates(k, row)
@@ -112,10 +115,13 @@ class Guide:
         get, v = row.get, row.com_velocity[0]
         for k in range(1, 1 + 4 * (not self.has_profile)):
             z = self.height[(k - 1) % 2]
-            gap = self.clearance + self.barrel * (z - self.widest)**2 - math.copysign(1.0, 2.5 - k) * (row.offset_y + z * row.tilt)
-            checks.take("gap at an end of the skirt", abs(get[f"guide_{k}_gap"] - gap), 1e-14 * (self.clearance + abs(z * row.tilt)), t)
+            bent = get[f"guide_{k}_deflection"] if self.spring else 0.0
+            gap = self.clearance + self.barrel * (z - self.widest)**2 - math.copysign(1.0, 2.5 - k) * (row.offset_y + z * row.tilt) + bent
+            checks.take("gap at an end of the skirt", abs(get[f"guide_{k}_gap"] - gap), 1e-14 * (self.clearance + abs(z * row.tilt) + abs(bent)), t)
+            checks.take("the wall draws an end of the skirt", max(0.0, -bent), 100 * self.tolerance * self.clearance + 1e-300, t)
         parts = get["skirt_force"] * row.offset_rate_y, get["skirt_moment"] * row.tilt_rate, get["skirt_friction_force"] * v
-        checks.take("power of the skirt", abs(get["skirt_power"] + math.fsum(parts)), SUM * sum(map(abs, parts)) + 1e-300, t)
+        if not self.spring:   # else the energy balance tells
+            checks.take("power of the skirt", abs(get["skirt_power"] + math.fsum(parts)), SUM * sum(map(abs, parts)) + 1e-300, t)
         if get["skirt_asperity_force"] <= 0:   # else their elastic energy is in it
             checks.take("the film of the skirt gives power", max(0.0, -get["skirt_power"]), SUM * sum(map(abs, parts)), t)
 

@@ -80,6 +80,7 @@ class Bodies:
     shaft: tuple[float, float, float] | None = None   # elastic crankshaft: flywheel's inertia, stiffness, damping
     engine: Engine | None = None          # other cylinders, or stations of the crankshaft
     axis_offset: float = 0.0              # y of the cylinder axis
+    skirt_spring: float = 0.0             # stiffness of the ends of the faces of a lubricated skirt
 
     @classmethod
     def of(cls, run: Run) -> Bodies:
@@ -92,6 +93,8 @@ class Bodies:
                    n("joint.bearing_radius") - n("joint.clearance"),
                    *((n("guide.piston_inertia"), run.pair("guide.piston_com")) if run.has_loose_guide else ()))
         found.axis_offset = n("mechanism.axis_offset")
+        if run.text("guide.kind") == "lubricated":
+            found.skirt_spring = n("guide.stiffness")
         if "elastic_rod.section_area" in run.case:
             found.elastic = ElasticRod(run)
         if Engine.is_in(run):
@@ -165,6 +168,8 @@ class Row:
         arm = b.elastic.from_big_end(self.shape_state, self.shape_rates)[0] if b.elastic else self.rod_arm
         places = self.crank_arm, (self.big_end[0] + arm[0], self.big_end[1] + arm[1]), (self.x + self.com[0], self.offset_y)
         strain = [moving[1]]
+        if b.skirt_spring:
+            strain += [0.5 * b.skirt_spring * self.get[f"guide_{k}_deflection"]**2 for k in range(1, 5)]
         if b.shaft:
             kinetic.append(0.5 * b.shaft[0] * self.get["flywheel_speed"]**2)
             strain.append(0.5 * b.shaft[1] * self.get["crankshaft_twist"]**2)

@@ -325,6 +325,7 @@ TEXTS = {
     "energy residual": "resíduo de energia",
     "Energy residual of the ideal joint's run": "Resíduo de energia da simulação com junta ideal",
     "Gaps of the skirt's corners (below 0: penetration)": "Folgas dos cantos da saia (abaixo de 0: penetração)",
+    "Deflections of the skirt's faces": "Deflexões das faces da saia",
     "Forces on the skirt's corners": "Forças nos cantos da saia",
     "top, +y": "topo, +y",
     "bottom, +y": "base, +y",

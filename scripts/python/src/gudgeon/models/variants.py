@@ -103,6 +103,10 @@ def rungs(case: Case) -> list[Variant]:
     if SKIRT[0] in case:
         other = "gumbel" if case[SKIRT[0]].get("cavitation") == "reynolds" else "reynolds"
         found.append(Variant("exchanged", f"film of the skirt: cavitation {other}", (f"{SKIRT[0]}.cavitation={other}",)))
+        if case["guide"].get("stiffness"):
+            found.append(Variant("taken out", "rigid faces of the skirt", ("guide.stiffness=0",)))
+        else:
+            found.append(Variant("added", "elastic faces of the skirt", ("guide.stiffness=5e7",), "springs of 5e7 N/m", fuller=True))
         dry = ("guide.kind=clearance", "guide.stiffness=5e7", "guide.restitution=0.4", "guide.coefficient=0.05", *(f"{name}=none" for name in SKIRT))
         found.append(Variant("exchanged", "skirt with dry corners", dry, "stiffness 5e7 N/m, restitution 0.4, friction 0.05"))
     rings = [name for name in case if name.startswith("ring_")]

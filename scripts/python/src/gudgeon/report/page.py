@@ -215,6 +215,7 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
 
     for quantity, title, unit, factor in (
         ("gap", "Gaps of the skirt's corners (below 0: penetration)", "µm", 1e6),
+        ("deflection", "Deflections of the skirt's faces", "µm", 1e6),
         ("force", "Forces on the skirt's corners", "kN", 1e-3),
     ):
         curves = [
