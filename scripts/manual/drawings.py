@@ -404,6 +404,61 @@ def skirt_springs() -> str:
     return d.svg("A face of the skirt on its two springs")
 
 
+def ring_film() -> str:
+    """Rings of the case joints/piston in their grooves; the face of the last one, with its crown 25 times as wide as it is, and its film."""
+    keys = keys_of("joints/piston.nml")
+    height, crown = keys["ring.height"][0], keys["ring.crown"][0]
+    d = Drawing(790, 390, (30, 200), 1)
+    wall, land, deep = 190.0, 172.0, 34.0   # points
+    grooves = (105, 65, 25)
+    outline = [(140, 30), (140, land)]
+    for middle in grooves:
+        outline += [(middle + 7, land), (middle + 7, land - deep), (middle - 7, land - deep), (middle - 7, land)]
+    d.lines(*outline, (-20, land), (-30, wall - 9), (-80, wall - 4), (-140, wall - 9), (-140, 30), fill=STEEL)
+    for number, middle in enumerate(grooves, start=1):
+        d.lines((middle + 4, land - deep + 8), (middle + 4, wall - 3), (middle - 1.5, wall), (middle - 7, wall - 3), (middle - 7, land - deep + 8), close=True, fill=LIGHT)
+        d.text((middle, land - deep), f"$ {number}$", dx=-12)
+    d.hatch((-160, wall), (165, wall), -1)
+    d.lines((-160, 30), (165, 30), stroke=GREY, dash="7 4", width=1)
+    d.text((160, 110), "gas")
+    d.text((-80, 110), "skirt")
+    d.text((-162, 110), "crankcase")
+    wall, long = 640.0, 230.0
+    wide, least = 25e-3 * long / height, 16.0   # crown in um, height in mm
+    top, bottom = long / 2, -long / 2
+    peak = 0.18   # of the crown, of half the height: crown_offset upwards
+
+    def face(share: float) -> Point:
+        return share * top, wall - least - wide * crown * (share - peak) ** 2
+
+    shares = [i / 24 - 1 for i in range(49)]
+    d.lines(*[face(s) for s in shares], (top, wall), (bottom, wall), close=True, fill=OIL, stroke="none")
+    d.lines(*[face(s) for s in shares], (top, 430), (bottom, 430), close=True, fill=LIGHT)
+    d.hatch((bottom - 50, wall), (top + 50, wall), -1)
+    d.lines(*[(s * top, wall + 18 + 62 * max(0.0, sin(pi * (s + 0.12) / 1.12)) ** 1.6) for s in shares if s >= -0.12], stroke=RED, width=2)
+    d.text((0.55 * top, wall + 95), "$p$", RED)
+    d.lines((peak * top, wall - 150), (peak * top, wall), stroke=GREY, dash="7 4", width=1)
+    d.lines((0, 430), (0, 540), stroke=GREY, dash="7 4", width=1)
+    d.arrow((0, 505), (peak * top, 505), width=1)
+    d.text((peak * top / 2, 505), "$x_0$", dx=-14)
+    d.arrow((peak * top, wall - least - 30), (peak * top, wall - least), width=1)
+    d.text((peak * top, wall - least - 38), "$h_r$", dy=-6)
+    d.arrow((bottom, 446), (top, 446), width=1, both=True)
+    d.text((-0.45 * top, 446), "$b$", dx=12)
+    low, crest = face(peak - 1), wall - least
+    d.lines((peak * top, crest), (bottom, crest), stroke=GREY, dash="3 3", width=1)
+    d.arrow(low, (low[0], crest), width=1, both=True)
+    d.text((low[0], (low[1] + crest) / 2), "$a$", dy=-5)
+    for x, name, y in ((top + 26, "$g_above$", 540), (bottom - 26, "$g_below$", 500), (0, "$g_behind$", 378)):
+        d.text((x, y), name, RED)
+    d.arrow((0.45 * top, 385), (0.45 * top, 428), BLUE)
+    d.text((0.45 * top, 380), "$W′$", BLUE, anchor="end")
+    d.arrow((top + 8, 470), (top + 44, 470), BLUE)
+    d.text((top + 44, 470), "$U$", BLUE, dx=14)
+    d.axes((bottom - 45, 385), 34)
+    return d.svg("Rings in their grooves, and the film on the face of one")
+
+
 def offset_axis() -> str:
     """The offset is drawn larger, the same crank and rod at both dead centres."""
     keys = keys_of("drive/offset_crank.nml")
@@ -572,7 +627,7 @@ def film() -> str:
     return d.svg("Gap and pressure of a film, unrolled from its thickest place")
 
 
-DRAWINGS = (mechanism, joint, forces, skirt, skirt_film, skirt_springs, offset_axis, floating_pin, crank_train, supply, film)
+DRAWINGS = (mechanism, joint, forces, skirt, skirt_film, ring_film, skirt_springs, offset_axis, floating_pin, crank_train, supply, film)
 
 
 def main() -> None:
