@@ -289,7 +289,8 @@ contains
     !> What the springs miss [N].
     pure real(dp) function miss(rate, pressure)
       real(dp), intent(in) :: rate(2), pressure(n)
-      miss = norm2(load - drag*rate + matmul(max(pressure, 0.0_dp), weight))
+      miss = norm2(load - drag*rate + [dot_product(max(pressure, 0.0_dp), weight(:, 1)), &
+        dot_product(max(pressure, 0.0_dp), weight(:, 2))])
     end function miss
   end function cut_rate
 

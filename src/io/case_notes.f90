@@ -72,7 +72,8 @@ contains
     if (.not. c%run%is_until_periodic()) return
     do i = 1, size(ends)
       place = to%values%place_of('integrator', trim(ends(i)))
-      if (.not. (to%values%values(place)%is_override .and. to%values%is_said(place))) cycle
+      if (.not. to%values%values(place)%is_override) cycle
+      if (.not. to%values%is_said(place)) cycle
       call to%remark('integrator', trim(ends(i)), &
         'has no effect with &run until = ''periodic'', which ends the run when the motion repeats: --set run.until=end', '')
     end do
