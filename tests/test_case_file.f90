@@ -60,6 +60,8 @@ contains
     call test_ends_of_runs(check)
     call test_groups_taken_out(check)
     call test_decimal_commas(check)
+    call test_index_of_an_override(check)
+    call test_typography(check)
     call test_hints(check)
     call test_several_errors(check)
     call test_likely_words(check)
@@ -357,7 +359,7 @@ contains
     call refused_with(check, 'combustion.cycle=two_stroke', 'x.nml: &combustion port_opens_deg: required with cycle = '// &
                       '''two_stroke'' (degrees)', fire)
     call refused_on(check, whole//fire, [character(len=40) :: 'combustion.cycle=two_stroke', 'combustion.port_opens_deg=19'], &
-      'x.nml: &combustion start_deg = 340: must be >= 341, where the cylinder closes (degrees)')
+      'x.nml:8: &combustion start_deg = 340: must be >= 341, where the cylinder closes (degrees)')
     call refused_on(check, whole//fire, [character(len=40) :: 'combustion.cycle=two_stroke', 'combustion.port_opens_deg=20', &
       'combustion.duration_deg=41'], 'x.nml: &combustion duration_deg = 41: must be <= 40: '// &
       'the cylinder opens at 380 (degrees)')
@@ -407,19 +409,20 @@ contains
     call refused(check, bodies//run//contact, 'x.nml: &joint kind: '//no_play)
     call refused(check, bodies//run//'&lubrication viscosity=1 /', 'x.nml: &joint kind: '//no_play)
     call refused(check, bodies//run//'&joint clearance=1e-5 /', &
-                 'x.nml: &joint clearance = 1e-5: needs kind = ''clearance''; the default is ideal (m)')
+                 'x.nml:6: &joint clearance = 1e-5: needs kind = ''clearance''; the default is ideal (m)')
     call refused(check, bodies//run//'&joint kind=''clearance'' /'//contact, &
                  'x.nml: &joint clearance: required with kind = ''clearance'' (m)'//n// &
                  'x.nml: &joint bearing_radius: required with kind = ''clearance'' (m)')
     call refused(check, bodies//run//'&joint kind=''clearance'' clearance=1e-5 /'//contact, &
                  'x.nml: &joint bearing_radius: required with kind = ''clearance'' (m)')
     call refused(check, bodies//run//joint, &
-                 'x.nml: &joint kind = clearance: needs contact or lubrication: without them no force would act on the pin')
+                 'x.nml:6: &joint kind = clearance: needs contact or lubrication: without them no force would act on the pin')
     call refused_with(check, 'joint.bearing_radius=5e-4', &
-                      'x.nml: &joint clearance = 5e-4: must be < bearing_radius = 0.0005: the pin''s radius is the difference (m)')
+                      'x.nml:5: &joint clearance = 5e-4: '// &
+                      'must be < bearing_radius = 0.0005: the pin''s radius is the difference (m)')
     call refused(check, bodies//run//'&joint kind=''clearance'' clearance=1e-5 bearing_radius=0.01 bearing_length=21 /'// &
                  '&lubrication law=''finite_bearing'' viscosity=0.01 /', &
-                 'x.nml: &joint bearing_length = 21: must be <= 1000 times the diameter with this film; that of a long '// &
+                 'x.nml:6: &joint bearing_length = 21: must be <= 1000 times the diameter with this film; that of a long '// &
                  'bearing is law = ''pinkus_sternlicht'' (m): millimetres?')
     call refused_with(check, 'friction.coefficient=0.1', no_speeds(len(n) + 1:))
     call refused_with(check, 'friction.v1=0.001', 'x.nml: &friction v1 = 0.001: must be >= v0 = 0.01 (m/s)', &
@@ -501,7 +504,7 @@ contains
                  'groups, for '// &
                  'example with --set contact=none')
     call refused(check, whole//'&friction law=''coulomb'' coefficient=0.1 /'//n//'&joint place=''main_bearing'' '// &
-      'kind=''clearance'' clearance=1e-4 bearing_radius=0.012 /', 'x.nml: &joint of main_bearing kind = clearance: must be '// &
+      'kind=''clearance'' clearance=1e-4 bearing_radius=0.012 /', 'x.nml:9: &joint of main_bearing kind = clearance: must be '// &
       'ideal or quasi_static: the crank turns about a fixed axis')
     call refused(check, whole//'&joint place=''crank_pin'' kind=''clearance'' clearance=1e-4 /', &
                  'x.nml: &joint of crank_pin bearing_radius: required with kind = ''clearance'' (m)')
@@ -521,7 +524,7 @@ contains
     call accepted(check, whole//second, 'a group of the crank pin alone taken out', &
                   [character(len=40) :: 'crank_pin.contact.law=hertz', 'crank_pin.contact=none'])
     call refused_on(check, whole//second, [character(len=40) :: 'contact=none', 'crank_pin.contact.law=hertz'], &
-                    'x.nml: &joint kind = clearance: needs contact or lubrication: without them no force would act on the pin')
+                    'x.nml:5: &joint kind = clearance: needs contact or lubrication: without them no force would act on the pin')
   end subroutine test_places
 
   !> Overrides of a group that the case has for all joints or for single ones: the text of the case written out by hand is what
@@ -572,7 +575,7 @@ contains
     call refused_with(check, 'integrator.revolutions=0', &
                       'x.nml: &integrator revolutions = 0: this or crank_revolutions or end_time is required, > 0')
     call refused_with(check, 'integrator.revolutions=-1', 'x.nml: &integrator revolutions = -1: must be > 0')
-    call refused_with(check, still, 'x.nml: &integrator revolutions = 2: needs crank_speed other than 0; give end_time'// &
+    call refused_with(check, still, 'x.nml:7: &integrator revolutions = 2: needs crank_speed other than 0; give end_time'// &
                       at_rest)
     call refused_on(check, bodies, [still, ends], at_rest(len(n) + 1:))
     call accepted(check, bodies, 'a run from rest', [still, ends, 'output.interval=0.01    '])
@@ -599,7 +602,7 @@ contains
   !> The last override of a key for the end of a run is used, also in the resolved case; two such keys in one place are an error.
   subroutine test_ends_of_runs(check)
     class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: both = 'x.nml: &integrator end_time = 1: must not be given together with revolutions = '
+    character(len=*), parameter :: both = '&integrator end_time = 1: must not be given together with revolutions = '
     character(len=*), parameter :: remedy = '; integrator.revolutions=0 takes that back'
     character(len=*), parameter :: timed = bodies//'&integrator end_time=0.5 /'
     call resolves(check, whole, ['integrator.end_time=1'], 'revolutions = 0.0', 'end_time = 1.0')
@@ -613,9 +616,11 @@ contains
                   'revolutions = 0.0', 'end_time = 0.25')
     call resolves(check, bodies, [character(len=30) :: 'integrator.revolutions=3', 'integrator.end_time=1', &
                                   'integrator.revolutions=0'], 'revolutions = 0.0', 'end_time = 1.0')
-    call refused_on(check, whole, [character(len=30) :: 'integrator.end_time=1', 'integrator.revolutions=1'], both//'1'//remedy)
-    call refused_on(check, timed, [character(len=30) :: 'integrator.revolutions=7', 'integrator.end_time=1'], both//'7'//remedy)
-    call refused(check, bodies//'&integrator revolutions=2.0 end_time=1 /', both//'2.0'//remedy)
+    call refused_on(check, whole, [character(len=30) :: 'integrator.end_time=1', 'integrator.revolutions=1'], &
+                    'x.nml: '//both//'1'//remedy)
+    call refused_on(check, timed, [character(len=30) :: 'integrator.revolutions=7', 'integrator.end_time=1'], &
+                    'x.nml: '//both//'7'//remedy)
+    call refused(check, bodies//'&integrator revolutions=2.0 end_time=1 /', 'x.nml:5: '//both//'2.0'//remedy)
     call refused_with(check, 'integrator.end_time=-1', 'x.nml: &integrator end_time = -1: must be > 0 (s)')
     call refused_on(check, timed, [character(len=30) :: 'integrator.end_time=0'], &
                     'x.nml: &integrator revolutions: this or crank_revolutions or end_time is required, > 0')
@@ -707,14 +712,15 @@ contains
     call resolves(check, bounded, ['integrator.revolutions=3'], 'crank_revolutions = 0.0', 'end_time = 0.0')
     call resolves(check, timed, [character(len=40) :: 'integrator.crank_revolutions=3', 'integrator.end_time=1'], &
                   'crank_revolutions = 3.0', 'end_time = 1.0')
-    call refused(check, bodies//'&integrator crank_revolutions=4 revolutions=4 /', 'x.nml: &integrator crank_revolutions = 4: '// &
+    call refused(check, bodies//'&integrator crank_revolutions=4 revolutions=4 /', &
+                 'x.nml:5: &integrator crank_revolutions = 4: '// &
                  'must not be given together with revolutions = 4; integrator.revolutions=0 takes that back')
-    call refused_on(check, turned, [character(len=40) :: still], 'x.nml: &integrator crank_revolutions = 4: needs end_time '// &
+    call refused_on(check, turned, [character(len=40) :: still], 'x.nml:5: &integrator crank_revolutions = 4: needs end_time '// &
                     'beside it with crank_speed = 0: the latest end, should the crank not make them'//at_rest)
-    call refused_on(check, bounded, [character(len=40) :: still, held], 'x.nml: &integrator crank_revolutions = 4: needs '// &
+    call refused_on(check, bounded, [character(len=40) :: still, held], 'x.nml:5: &integrator crank_revolutions = 4: needs '// &
                     'crank_speed other than 0: the crank is held at rest'//at_rest)
     call refused_on(check, bounded, [character(len=40) :: held, 'initial.crank_speed=-10'], &
-                    'x.nml: &integrator end_time = 0.5: must be >= 2.51327 s, when the held crank has made crank_revolutions (s)')
+                    'x.nml:5: &integrator end_time = 0.5: must be >= 2.51327 s, when the held crank has made crank_revolutions (s)')
     call accepted(check, bounded, 'a free crank with end_time before the end of its revolutions', [character(len=40) :: &
                   'initial.crank_speed=10'])
     call refused_on(check, turned, [character(len=40) :: 'output.interval=1e-20'], 'x.nml: &output interval = 1e-20: asks for '// &
@@ -763,7 +769,7 @@ contains
     call check%equal_text(trim(c%joints(piston_pin)%kind), 'ideal', 'a case without a joint group has an ideal joint')
     call refused_with(check, 'joint=none', 'x.nml: &joint kind: must be clearance (or quasi_static) with contact, friction or '// &
                       'lubrication: an ideal joint has no clearance; remove these groups, for example with --set contact=none')
-    call refused_with(check, 'contact=none', 'x.nml: &joint kind = clearance: needs contact or lubrication: without '// &
+    call refused_with(check, 'contact=none', 'x.nml:5: &joint kind = clearance: needs contact or lubrication: without '// &
                       'them no force would act on the pin')
     call refused_on(check, whole//film, [character(len=40) :: long, 'friction.coefficient=0.1', 'friction=none', &
                                          'friction.v0=1'], &
@@ -802,6 +808,40 @@ contains
       'two values with a comma are two values')
   end subroutine test_decimal_commas
 
+  !> One number of a list may be set on the command line, by its index.
+  subroutine test_index_of_an_override(check)
+    class(checks_t), intent(inout) :: check
+    type(case_t) :: c
+    type(error_t), allocatable :: error
+    call parse_case(whole, 'x.nml', [character(len=30) :: 'mechanism.rod_com=0.05,0.001', 'mechanism.rod_com(2) = -0.7 mm'], &
+      c, error)
+    call check%that(.not. allocated(error), 'an index in an override')
+    if (allocated(error)) return
+    call check%that(all(abs(c%mechanism%rod_com - [0.05_dp, -0.7e-3_dp]) < 1e-15_dp), 'only the number with this index is set')
+    call refused_with(check, 'mechanism.rod_com(3)=1', &
+      'x.nml: --set mechanism.rod_com(3)=1: &mechanism rod_com: takes 2 values, not 3')
+    call refused_with(check, 'joint.clearance(1)=1', 'x.nml: --set joint.clearance(1)=1: &joint clearance: takes no index')
+    call refused_with(check, 'contact.law(2)=hertz', 'x.nml: --set contact.law(2)=hertz: &contact law: takes no index')
+  end subroutine test_index_of_an_override
+
+  !> Characters of word processors and of other encodings are named; a value that cannot be read is refused once.
+  subroutine test_typography(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: general = char(226)//char(128)
+    call refused(check, '&joint kind='//general//char(152)//'ideal'//general//char(153)//' /', 'x.nml:1: &joint kind: '// &
+      general//char(152)//'ideal'//general//char(153)//' has a typographic quotation mark: write '' or "')
+    call refused(check, '&joint clearance=1e'//general//char(147)//'4 /', &
+      'x.nml:1: &joint clearance: 1e'//general//char(147)//'4 has a dash: write -')
+    call refused(check, '&drive torque='//char(226)//char(136)//char(146)//'4 /', &
+      'x.nml:1: &drive torque: '//char(226)//char(136)//char(146)//'4 has a minus sign of typography: write -')
+    call refused(check, '&joint clearance=20 '//char(181)//'m /', &
+      'x.nml:1: &joint clearance: \xB5m: not UTF-8: save the file in this encoding')
+    call refused_with(check, 'integrator.max_order=1.5', &
+      'x.nml: --set integrator.max_order=1.5: &integrator max_order = 1.5: must be a whole number')
+    call refused_with(check, 'mechanism.rod_mass=0,21', &
+      'x.nml: --set mechanism.rod_mass=0,21: &mechanism rod_mass: 0,21 has a decimal comma: write 0.21')
+  end subroutine test_typography
+
   !> A study file is not a case file; a torque without effect is reported.
   subroutine test_hints(check)
     class(checks_t), intent(inout) :: check
@@ -828,7 +868,7 @@ contains
     type(error_t), allocatable :: error
     integer :: i
     call refused_on(check, wrong, [character(len=40) :: 'joint.clearance=twenty', 'output.digits=99'], &
-      'x.nml: &mechanism rod_mass = -1: must be >= 0 (kg)'//n// &
+      'x.nml:2: &mechanism rod_mass = -1: must be >= 0 (kg)'//n// &
       'x.nml:3: &initial crank_sped: unknown key; did you mean crank_speed? (allowed: crank_angle_deg, crank_speed, '// &
       'eccentricity, '// &
       'eccentricity_rate, small_end_eccentricity, small_end_eccentricity_rate, crank_pin_eccentricity, '// &
@@ -839,11 +879,11 @@ contains
       'x.nml: &output digits = 99: must be >= 9 and <= 17'//n//'x.nml: &friction v1: required with law = ''ambrosio'' (m/s)')
     call refused_on(check, whole//'&friction coefficient=-1 v0=0 v1=1 /', &   ! values and rules
       [character(len=40) :: 'joint.clearance=20', 'mechanism.rod_length=0.05'], &
-      'x.nml: &friction coefficient = -1: must be >= 0'//n// &
+      'x.nml:8: &friction coefficient = -1: must be >= 0'//n// &
       'x.nml: &joint clearance = 20: must be < bearing_radius = 0.01: the pin''s radius is the difference (m): micrometres?'//n// &
       'x.nml: &mechanism rod_length = 0.05: must be > crank_length = 0.05 (m)')
     call refused(check, whole//'&output digits=5 /'//n//'&friction coefficient=,', &   ! a mistake in the syntax
-      'x.nml: &output digits = 5: must be >= 9 and <= 17'//n// &
+      'x.nml:8: &output digits = 5: must be >= 9 and <= 17'//n// &
       'x.nml:9: &friction coefficient: a value is missing before the comma')
     call refused(check, whole//'&kontact / &lubrikation /', &
       'x.nml:8: &kontact: unknown group; did you mean contact?'//all_groups// &

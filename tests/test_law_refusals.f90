@@ -105,26 +105,28 @@ contains
 
   contains
 
-    !> The case is refused with this message; '': it is accepted. `is_list`: the message has a line number and ends with a list of
-    !> names that may be longer.
+    !> The case is refused with this message, with a line number where a value is given; '': it is accepted. `is_list`: it ends with
+    !> a list of names that may be longer.
     subroutine refused(joint_keys, contact_keys, message, is_list)
       character(len=*), intent(in) :: joint_keys, contact_keys, message
       logical, intent(in), optional :: is_list
       type(case_t) :: case
       type(error_t), allocatable :: error
-      character(len=:), allocatable :: got
+      character(len=:), allocatable :: got, wanted
       character(len=1) :: nothing(0)
       call parse_case('&mechanism crank_length=0.05 crank_mass=1 crank_inertia=1 rod_length=0.2 rod_mass=1 rod_inertia=1 '// &
         'piston_mass=1 / &initial crank_speed=100 / &integrator revolutions=1 / &joint '//joint_keys//' / &contact '// &
         contact_keys//' /', 'x.nml', nothing, case, error)
       got = ''
       if (allocated(error)) got = error%message
+      wanted = 'x.nml: '//message
+      if (index(message(:index(message, ':')), ' = ') > 0) wanted = 'x.nml:1: '//message
       if (message == '') then
         call check%equal_text(got, '', 'taken: '//contact_keys)
       else if (present(is_list)) then
-        call check%begins_with(got, 'x.nml:1: '//message, 'refused: '//contact_keys)
+        call check%begins_with(got, wanted, 'refused: '//contact_keys)
       else
-        call check%equal_text(got, 'x.nml: '//message, 'refused: '//contact_keys)
+        call check%equal_text(got, wanted, 'refused: '//contact_keys)
       end if
     end subroutine refused
   end subroutine test_refusals

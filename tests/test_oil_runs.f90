@@ -93,7 +93,7 @@ contains
     call expect_oil(check, vg32//"viscosity_law='vogel' temperature=353.15 vogel_temperature=310", &
       'vogel_temperature = 310: must be 10 K or more below', 'a pole too near to the points')
     call expect_oil(check, 'viscosity=0.01 temperature=353.15', &
-      "temperature = 353.15: needs viscosity_law = 'walther' or 'vogel'", &
+      "temperature = 353.15: needs an oil, or viscosity_law = 'walther' or 'vogel'", &
       'a temperature without a law')
     call expect_oil(check, warm//"viscosity_law='reynolds'", 'viscosity_law', 'an unknown law')
   end subroutine refuses

@@ -44,6 +44,8 @@ refused "bad override" 3 "joint.clearance" --set joint.clearance=-1 cases/sim_I.
 refused "override without value" 2 "GROUP.KEY=VALUE" --set joint.clearance cases/sim_I.nml
 
 refused "a study without sweep" 3 "map_I.nml:[0-9]*: &study: .*gudgeon sweep cases/studies/map_I.nml" cases/studies/map_I.nml
+printf '\377\376&\000c\000a\000s\000e\000' >"$work/utf16.nml"
+refused "a file in UTF-16" 3 "utf16.nml: encoded in UTF-16 .*: save it in UTF-8" "$work/utf16.nml"
 refused "a law that acts in no joint" 3 "ticking.nml: --set friction.law=coulomb: &friction: the case has this group for piston_pin and small_end: write piston_pin.friction.law or small_end.friction.law" -s friction.law=coulomb cases/pin/ticking.nml
 refused "two ends of a run" 3 "end_time = 1: .*integrator.revolutions=0" -s integrator.revolutions=3 -s integrator.end_time=1 cases/sim_I.nml
 refused "an angle without limit" 3 "&initial crank_angle_deg = 9e29: must be >= -1e6 and <= 1e6" -s initial.crank_angle_deg=9e29 cases/sim_I.nml

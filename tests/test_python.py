@@ -126,6 +126,12 @@ def cases() -> None:
     refuses(gudgeon.CaseError, "must be a file in the folder", lambda: case.set({"drive.torque_table": "/etc/passwd"}).check())
     refuses(gudgeon.CaseError, "must be a file in the folder", lambda: case.set({"drive.torque_table": "../x.csv"}).check())
     refuses(gudgeon.CaseError, "has no folder", lambda: gudgeon.Case.from_text(case_of("drive/motor").to_nml()).check())
+    with tempfile.TemporaryDirectory() as folder:
+        odd = Path(folder) / "odd.nml"
+        odd.write_bytes("&joint clearance = 20 µm /".encode("latin-1"))
+        refuses(gudgeon.CaseError, "odd.nml:1: &joint clearance: \\xB5m: not UTF-8", lambda: gudgeon.read(odd).check())
+        odd.write_text("&joint clearance = 20 um /", encoding="utf-16")
+        refuses(gudgeon.CaseError, "odd.nml: encoded in UTF-16", lambda: gudgeon.read(odd))
     try:
         case_of("sim_I").set({"joint.clearance": -1}).check()
     except gudgeon.CaseError as error:

@@ -47,6 +47,7 @@ module case_values
     procedure :: check_range  !! range of one key
     procedure :: refuse       !! note an error of a value
     procedure :: refuse_group !! note that a group must not be given
+    procedure, private :: at
     procedure :: forbid       !! the same if a condition holds
     procedure :: demand       !! the same for a value that is missing or 0
     procedure :: place_in_file   !! line of a value
@@ -311,6 +312,7 @@ contains
       if (key%kind == real_kind) call find_decimal_comma(tokens, merge(size(tokens), key%count, key%is_list), wanted)
       if (key%kind == real_kind .and. .not. allocated(wanted)) call compare_units(tokens, name, wanted)
       if (allocated(wanted)) then
+        value%given = .true.   ! but unreadable: it is not demanded too
         call fail(error, name//': '//wanted, status_case_file)
         return
       end if
@@ -459,6 +461,7 @@ contains
     associate (key => self%keys(place), value => self%values(place))
       if (key%kind > integer_kind .or. key%required .and. value%written(1) == '') return   ! not given, or unreadable
       do element = 1, n_values(key, value)
+        if (value%given(element) .and. value%written(element) == '') cycle   ! unreadable
         if (is_within(merge(value%reals(element), real(value%whole, dp), key%kind == real_kind), key%range)) cycle
         if (is_default(key, value, element)) cycle
         call self%refuse(trim(key%group), trim(key%name), 'must be '//trim(key%range), element)
@@ -479,7 +482,7 @@ contains
     if (abs(value) < least .or. abs(value) > most) text = likely_unit(trim(key%unit), value, least, most)
   end function meant
 
-  !> Note an error of a value: file, group, key, value as written, allowed values, unit.
+  !> Note an error of a value: file, line if it is given there, group, key, value as written, allowed values, unit.
   subroutine refuse(self, group, name, wanted, element, unit)
     class(case_values_t), intent(inout) :: self
     character(len=*), intent(in) :: group, name, wanted
@@ -490,7 +493,9 @@ contains
     place = self%place_of(group, name)
     shown = 1
     if (present(element)) shown = element
-    text = self%file//': '//shown_group(group)//' '//name
+    text = self%file//': '
+    if (self%values(place)%given(shown)) text = self%at(self%values(place)%line)
+    text = text//shown_group(group)//' '//name
     if (self%keys(place)%count > 1 .and. self%keys(place)%kind == real_kind) text = text//'('//integer_text(shown)//')'
     if (self%values(place)%given(shown)) text = text//' = '//trim(self%values(place)%written(shown))
     text = text//': '//wanted
@@ -508,8 +513,19 @@ contains
   subroutine refuse_group(self, name, why)
     class(case_values_t), intent(inout) :: self
     character(len=*), intent(in) :: name, why
-    call self%problems%add(self%file//': '//shown_group(name)//': '//why, name, self%line(find_group(self%groups, name)))
+    integer :: line
+    line = self%line(find_group(self%groups, name))
+    call self%problems%add(self%at(line)//shown_group(name)//': '//why, name, line)
   end subroutine refuse_group
+
+  !> `file:line: `, or `file: ` for what is not in the file.
+  pure function at(self, line)
+    class(case_values_t), intent(in) :: self
+    integer, intent(in) :: line
+    character(len=:), allocatable :: at
+    at = self%file//': '
+    if (line > 0 .and. line < behind_file) at = self%file//':'//integer_text(line)//': '
+  end function at
 
   !> Line of the file on which the key at `place` is given, or else on which its group begins.
   pure integer function place_in_file(self, place)

@@ -35,7 +35,7 @@ contains
       call values%forbid(key /= '', group, key, wanted)
     else
       call values%forbid(oil%temperature > 0 .and. .not. values%is_given(group, 'viscosity_law'), group, 'temperature', &
-        'needs viscosity_law = ''walther'' or ''vogel''; the default is given')
+        'needs an oil, or viscosity_law = ''walther'' or ''vogel'': without one the viscosity is given')
     end if
   end subroutine check_oil
 

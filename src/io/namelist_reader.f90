@@ -3,7 +3,7 @@
 !> &end, every key must have values, and no value may be missing between commas. A word behind a number is its unit.
 module namelist_reader
   use error_handling, only: error_t, fail, status_case_file
-  use text_tools, only: printable, integer_text, whole_number
+  use text_tools, only: printable, is_clean, integer_text, whole_number
   use text_scanner, only: scanner_t, name_here, skip_blanks, bare_length, at_end, next_is, piece, rest_of_line, word_is_next, &
     slash_of_unit, skip_text_behind_end, digits, shown
   use physical_units, only: split_number
@@ -282,6 +282,8 @@ contains
         return
       end if
       token%text = scan%text(scan%at:scan%at + length - 1)
+      call refuse_typography(scan, token%text)
+      if (allocated(scan%message)) return
       scan%at = scan%at + length
       star = index(token%text, '*')
       if (star < 2) return
@@ -301,6 +303,28 @@ contains
     end if
     call read_string(scan, token)
   end subroutine read_token
+
+  !> Refuse quotation marks and dashes of word processors, and bytes that are not UTF-8, in a value without quotes.
+  pure subroutine refuse_typography(scan, text)
+    type(scanner_t), intent(inout) :: scan
+    character(len=*), intent(in) :: text
+    character(len=*), parameter :: general = char(226)//char(128)   ! U+2010 to U+203F but for the last byte
+    integer :: at, i
+    at = index(text, general) + len(general)
+    if (at > len(general) .and. at <= len(text)) then
+      select case (ichar(text(at:at)))
+      case (144:149)
+        scan%message = printable(text, shown)//' has a dash: write -'
+      case (152:159)
+        scan%message = printable(text, shown)//' has a typographic quotation mark: write '' or "'
+      case default   ! no mark that is mistaken for one of ASCII
+      end select
+    else if (index(text, char(226)//char(136)//char(146)) > 0) then
+      scan%message = printable(text, shown)//' has a minus sign of typography: write -'
+    else if (.not. is_clean(text) .and. maxval(ichar([(text(i:i), i=1, len(text))])) > 127) then
+      scan%message = printable(text, shown)//': not UTF-8: save the file in this encoding'
+    end if
+  end subroutine refuse_typography
 
   !> Read the unit of a number that is not glued to it, and the further words of a unit, as in N m, each behind one blank.
   subroutine read_unit(scan, text)

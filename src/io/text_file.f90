@@ -39,8 +39,20 @@ contains
     else if (len(text) > most*1000000) then
       call fail(error, printable(path, 200)//': larger than '//integer_text(most)//' MB: not a '//kind, &
         status_case_file)
+    else if (is_utf_16(text)) then
+      call fail(error, printable(path, 200)//': encoded in UTF-16 ("Unicode" in Windows, > in its PowerShell): save it in UTF-8', &
+        status_case_file)
     end if
   end subroutine read_text_file
+
+  !> Whether a text begins as one of UTF-16: with its byte order mark, or with a character of ASCII and its empty byte.
+  pure logical function is_utf_16(text) result(found)
+    character(len=*), intent(in) :: text
+    character(len=*), parameter :: mark = char(255)//char(254)
+    found = .false.
+    if (len(text) < 2) return
+    found = text(:2) == mark .or. text(:2) == mark(2:2)//mark(1:1) .or. (ichar(text(1:1)) == 0 .neqv. ichar(text(2:2)) == 0)
+  end function is_utf_16
 
   !> All bytes of a file; `status` is 0 or the error number.
   subroutine read_whole(path, bytes, status)

@@ -104,7 +104,7 @@ class Case(Groups):
         """A case from the text of a case file. Tables that it names are read in `folder` and below; None: it may name none; "/":
         anywhere. Raises CaseError where the text cannot be read."""
         place = "" if folder is None else os.path.abspath(folder)
-        data = text.encode()
+        data = text.encode(errors="surrogateescape")
         return cls(library().case_new(data, len(data), name.encode(), place.encode()), name, place)
 
     def __del__(self, library: Callable[[], Any] = library) -> None:  # also while Python ends
@@ -389,9 +389,13 @@ def template(kind: str = "complete") -> Case:
 
 
 def read(path: str | Path, *, sets: Mapping[str, Value] = {}) -> Case:
-    """Read a case file; `sets` are values that replace those of the file. Tables that it names are read in its folder and below."""
+    """Read a case file; `sets` are values that replace those of the file. Tables that it names are read in its folder and below.
+    Raises CaseError where it cannot be read, also for bytes that are not UTF-8."""
     path = Path(path)
-    case = Case.from_text(path.read_text(), path.stem, path.parent)
+    data = path.read_bytes()
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        raise CaseError(f"{path}: encoded in UTF-16: save it in UTF-8")
+    case = Case.from_text(data.decode(errors="surrogateescape"), path.stem, path.parent)
     for name, value in sets.items():
         case[name] = value
     return case
