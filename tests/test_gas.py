@@ -509,6 +509,8 @@ def masses_of_valves(program: Path) -> None:
         check(abs(float(r.answers["gas_residual_relative"])) < 1e-8, f"air_reeds, {method}: the energy of the gas is kept", r.answers["gas_residual_relative"])
         check(r.answers["cycle_max_suction_valve_lift"] == r.answers["cycle_max_discharge_valve_lift"] and
               abs(float(r.answers["cycle_max_suction_valve_lift"]) - 1e-3) < 1e-14, f"air_reeds, {method}: both valves open fully")
+    settled = run(program, REEDS, "run.until=periodic", "integrator.end_time=1", "integrator.relative_tolerance=1e-8", name="settled").answers
+    check(settled["motion"] == "periodic" and settled["period_revolutions"] == "1", "reeds settle to a period of a turn", str(settled["motion"]))
     # a mass of 1 g is felt, one towards 0 with 1/4 of the critical damping is not: the difference falls with the natural time
     quick = ("integrator.relative_tolerance=1e-8", "working_gas.leak_area=0")
     light = [run(program, REEDS, *quick, *both(mass=mass, damping=damping), name="light").answers for mass, damping in
@@ -646,6 +648,8 @@ def ledger_and_notes(program: Path) -> None:
     status, text, answers = said_by(compressor, *leak)
     check(status == 0 and answers.get("cycle_open_valve") == "suction" and "suction valve is open through the whole cycle" in text, "a note on a valve that does not shut", text)
     check("delivers no gas" in text, "a note on a compressor that does not deliver", text)
+    status, text, answers = said_by(REEDS, *leak)
+    check(status == 0 and answers.get("cycle_open_valve") == "suction" and "suction valve is open through the whole cycle" in text, "a note on a reed that does not shut", text)
     for settings, note in ((("combustion.suction_pressure=2e5",), True), (("combustion.suction_pressure=2e5", "combustion.crankcase_pressure=101325"), False),
                            (("combustion.suction_pressure=5e4",), True), ((), False)):
         check(("in a hermetic compressor both are equal" in said(program, GAS / "compressor.nml", *settings)) == note, "a note on the pressure in the crankcase", f"{settings}")

@@ -122,8 +122,8 @@ contains
   !> A copy goes on like the run itself, also when the run has gone on before it.
   subroutine copies(check)
     class(checks_t), intent(inout) :: check
-    character(len=*), parameter :: files(4) = [character(len=long) :: 'cases/sim_II.nml', 'cases/flores/friction_100.nml', &
-      'cases/gas/compressor.nml', 'cases/joints/piston_slap.nml']
+    character(len=*), parameter :: files(5) = [character(len=long) :: 'cases/sim_II.nml', 'cases/flores/friction_100.nml', &
+      'cases/gas/compressor.nml', 'cases/joints/piston_slap.nml', 'data/gas/air_reeds.nml']
     character(len=5), parameter :: methods(3) = ['adams', 'radau', 'auto ']
     type(case_t) :: case
     type(column_list_t) :: list

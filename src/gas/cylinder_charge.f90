@@ -76,7 +76,7 @@ module cylinder_charge
     procedure :: claim
     procedure :: declare
     procedure :: set_start
-    procedure :: set_rates
+    procedure, non_overridable :: set_rates
     procedure :: reed_events
     procedure :: pass_reed
     procedure :: admits

@@ -13,7 +13,6 @@ module working_gas
   use cylinder_charge, only: charge_t, charge_motion_t, n_charge_sums, of_balance, moved
   use gas_cycle, only: part_open
   use flow_valve, only: suction, discharge
-  use valve_reeds, only: ports
   use trace_row, only: least, largest, of_cycle
   implicit none
   private
@@ -205,7 +204,6 @@ contains
     type(charge_motion_t), intent(in) :: charge
     type(trace_row_t), intent(inout) :: row
     real(dp) :: volume
-    integer :: k
     if (.not. self%has_force) return
     call row%add('cylinder_pressure[Pa]', pressure, 'absolute pressure of the gas in the cylinder')
     if (self%has_states()) call row%keep('max_cylinder_pressure', largest, 'largest pressure of the gas in the cylinder', &
@@ -227,16 +225,26 @@ contains
     if (.not. allocated(self%charge%valves)) return
     call row%add_on_request('suction_flow[kg/s]', charge%valve_flow(suction), 'flow of gas through the suction valve')
     call row%add_on_request('discharge_flow[kg/s]', charge%valve_flow(discharge), 'flow of gas through the discharge valve')
-    do k = suction, discharge
-      call row%add_on_request(trim(ports(k))//'_valve_lift[m]', min(max(charge%valve_lift(k), 0.0_dp), &
-        self%charge%valves(k)%lift), 'lift of the '//trim(ports(k))//' valve')
-      if (.not. self%charge%valves(k)%mass > 0) cycle
-      call row%keep('max_'//trim(ports(k))//'_valve_lift', largest, 'largest lift of the '//trim(ports(k))//' valve', &
-        rate=charge%valve_speed(k), told=of_cycle)
-      call row%keep('min_'//trim(ports(k))//'_valve_lift', least, 'smallest lift of the '//trim(ports(k))//' valve', &
-        rate=charge%valve_speed(k), told=of_cycle)
-      call row%add_on_request(trim(ports(k))//'_valve_speed[m/s]', charge%valve_speed(k), 'rate of this lift')
-    end do
+    call add_lift(row, suction, 'suction_valve_lift[m]', 'lift of the suction valve', 'max_suction_valve_lift', &
+      'min_suction_valve_lift', 'suction_valve_speed[m/s]')
+    call add_lift(row, discharge, 'discharge_valve_lift[m]', 'lift of the discharge valve', 'max_discharge_valve_lift', &
+      'min_discharge_valve_lift', 'discharge_valve_speed[m/s]')
+
+  contains
+
+    !> The lift of a valve, with its extremes and its rate if the valve has a mass.
+    pure subroutine add_lift(row, port, name, says, most, fewest, speed)
+      type(trace_row_t), intent(inout) :: row
+      integer, intent(in) :: port
+      character(len=*), intent(in) :: name, says, most, fewest, speed   !! of its columns and its extremes
+      associate (valve => self%charge%valves(port))
+        call row%add_on_request(name, min(max(charge%valve_lift(port), 0.0_dp), valve%lift), says)
+        if (.not. valve%mass > 0) return
+        call row%keep(most, largest, 'largest lift of this valve', rate=charge%valve_speed(port), told=of_cycle)
+        call row%keep(fewest, least, 'smallest lift of this valve', rate=charge%valve_speed(port), told=of_cycle)
+        call row%add_on_request(speed, charge%valve_speed(port), 'rate of this lift')
+      end associate
+    end subroutine add_lift
   end subroutine add_columns
 
   !> Derivative of the force with respect to the crank angle, of gas without states [N/rad].

@@ -267,53 +267,59 @@ contains
     real(dp), intent(in) :: y(:)
     real(dp), intent(inout) :: a_p(:, :), a_v(:, :)
     real(dp), parameter :: small = 1e-7_dp
-    real(dp) :: step
-    integer, allocatable :: rows(:), lifts(:)
-    integer :: i, m
+    type(charge_motion_t) :: moved
+    real(dp) :: state(size(y)), step, change(4)
+    integer :: rows(4), port(4), n, i, m, lift   ! of pressure, mass, and the valves that have a mass
     m = size(a_p, 2)
     associate (gas => scene%gas, q => now%motion%crank_angle, speed => now%motion%crank_speed)
-      rows = [gas%charge%pressures%first, gas%charge%masses%first] - m
-      allocate (lifts(0))
+      rows(:2) = [gas%charge%pressures%first, gas%charge%masses%first] - m
+      n = 2
       if (allocated(gas%charge%reeds)) then
-        associate (at => gas%charge%reeds%at)
-          rows = [rows, pack(at%rate, at%n > 0) - m]
-          lifts = pack(at%position, at%n > 0)
-        end associate
+        do i = 1, size(gas%charge%reeds%at)
+          if (gas%charge%reeds%at(i)%n == 0) cycle
+          n = n + 1
+          rows(n) = gas%charge%reeds%at(i)%rate - m
+          port(n) = i
+        end do
       end if
-      do i = 1, size(rows)
-        step = small
-        if (i <= 2) step = small*y(m + rows(i))   ! of a speed any step will do, the accelerations are linear in it
-        a_v(rows, rows(i)) = change_of_rates(0.0_dp, 0.0_dp, m + rows(i), step)/step
+      do i = 1, n
+        step = small   ! of a speed, in which the accelerations are linear
+        if (i <= 2) step = small*y(m + rows(i))
+        call move(q, speed, m + rows(i), step)
+        a_v(rows(:n), rows(i)) = change(:n)/step
+        if (i == 1) a_v(piston_row, rows(1)) = scene%joints(1)%site%sense*scene%chain%bodies%per_piston_mass* &
+          (gas%force(moved%pressure) - gas%force(now%charge%pressure))/step
       end do
-      step = small*y(gas%charge%pressures%first)
-      a_v(piston_row, rows(1)) = scene%joints(1)%site%sense*scene%chain%bodies%per_piston_mass* &
-        (gas%force(now%charge%pressure + step) - gas%force(now%charge%pressure))/step
-      do i = 1, size(lifts)   ! in which the flows are linear
-        step = small*gas%charge%valves(findloc(gas%charge%reeds%at%position, lifts(i), 1))%lift
-        a_p(rows, lifts(i)) = change_of_rates(0.0_dp, 0.0_dp, lifts(i), step)/step
+      do i = 3, n
+        lift = gas%charge%reeds%at(port(i))%position
+        step = small*gas%charge%valves(port(i))%lift
+        call move(q, speed, lift, step)
+        a_p(rows(:n), lift) = change(:n)/step
       end do
       if (.not. scene%chain%drive%free_crank) return
-      a_p(rows, scene%crank%position) = change_of_rates(small, 0.0_dp, 0, 0.0_dp)/small
+      call move(q + small, speed, 1, 0.0_dp)
+      a_p(rows(:n), scene%crank%position) = change(:n)/small
       step = small*max(abs(speed), 1.0_dp)
-      a_v(rows, scene%crank%rate - m) = change_of_rates(0.0_dp, step, 0, 0.0_dp)/step
+      call move(q, speed + step, 1, 0.0_dp)
+      a_v(rows(:n), scene%crank%rate - m) = change(:n)/step
     end associate
 
   contains
 
-    !> By how much these rates differ from the present ones at another crank angle [rad] and speed [rad/s], or with another state i.
-    function change_of_rates(by_angle, by_speed, i, by_state) result(change)
-      real(dp), intent(in) :: by_angle, by_speed, by_state
-      integer, intent(in) :: i   !! 0: none
-      real(dp) :: change(size(rows))
-      real(dp) :: state(size(y)), before(size(y)), after(size(y))
-      type(charge_motion_t) :: moved
+    !> The gas at a crank angle [rad] and a speed [rad/s], with another state i, and by how much its rates differ from the present
+    !> ones.
+    subroutine move(q, speed, i, by_state)
+      real(dp), intent(in) :: q, speed, by_state
+      integer, intent(in) :: i
+      integer :: k
       state = y
-      if (i > 0) state(i) = y(i) + by_state
-      call scene%gas%find_charge(now%motion%crank_angle + by_angle, now%motion%crank_speed + by_speed, state, moved)
-      call scene%gas%charge%set_rates(1, now%charge, y, before)
-      call scene%gas%charge%set_rates(1, moved, state, after)
-      change = after(m + rows) - before(m + rows)
-    end function change_of_rates
+      state(i) = y(i) + by_state
+      call scene%gas%find_charge(q, speed, state, moved)
+      change(:2) = [moved%pressure_rate - now%charge%pressure_rate, moved%mass_rate - now%charge%mass_rate]
+      do k = 3, n
+        change(k) = moved%valve_acceleration(port(k)) - now%charge%valve_acceleration(port(k))
+      end do
+    end subroutine move
   end subroutine add_gas_slopes
 
   !> Put the derivatives of the accelerations of crank and pin and of the rates of the joint's states to their places among those of
