@@ -13,7 +13,7 @@ module face_balance
                                                   !! at rest, which the rates may cancel
   integer, parameter :: sweeps = 3                !! of Gauss and Seidel over the guess of that part
   integer, parameter :: most_rounds = 60          !! of the search for the part that is full
-  integer, parameter :: most_halvings = 30        !! of a change of the rates, until the springs balance better
+  integer, parameter :: most_plain = 10           !! steps of Newton's method before they are shortened
 
 contains
 
@@ -261,37 +261,38 @@ contains
     rate = [a(2, 2)*b(1) - a(1, 2)*b(2), a(1, 1)*b(2) - a(2, 1)*b(1)]/(a(1, 1)*a(2, 2) - a(1, 2)*a(2, 1))
   end function balanced_rate
 
-  !> The rates for which the springs balance where suction is cut off, by Newton's method with steps that are halved until the
-  !> balance is better: it is linear while the nodes without suction stay.
+  !> The rates for which the springs balance where suction is cut off: that is linear while the nodes without suction stay. Newton's
+  !> method finds them in few steps; where it runs in circles its steps end where the first node changes (Katzenelson 1965).
   pure function cut_rate(n, weight, part, load, drag) result(rate)
     integer, intent(in) :: n
     real(dp), intent(in) :: weight(n, 2), part(3, n), load(2), drag
-    real(dp) :: rate(2), next(2), pressure(n), next_pressure(n)
-    integer :: pass, halving
+    real(dp) :: rate(2), next(2), share, nothing
+    real(dp), dimension(n) :: pressure, next_pressure
+    logical, dimension(n) :: counts, changes
+    integer :: pass, first
     rate = 0
     pressure = part(1, :)
-    do pass = 1, most_rounds
-      next = balanced_rate(n, weight, part, pressure > 0, load, drag)
+    nothing = lowest_suction*maxval(abs(pressure))
+    counts = pressure > 0
+    do pass = 1, most_plain + 4*n
+      next = balanced_rate(n, weight, part, counts, load, drag)
       next_pressure = part(1, :) + next(1)*part(2, :) + next(2)*part(3, :)
-      if (all((next_pressure > 0) .eqv. (pressure > 0))) exit
-      do halving = 1, most_halvings
-        if (miss(next, next_pressure) < miss(rate, pressure)) exit
-        next = 0.5_dp*(next + rate)
-        next_pressure = 0.5_dp*(next_pressure + pressure)
-      end do
-      rate = next
-      pressure = next_pressure
+      changes = abs(next_pressure) > nothing .and. ((next_pressure > 0) .neqv. counts)
+      share = 1
+      first = 0
+      if (pass > most_plain .and. any(changes)) then
+        first = minloc(pressure/(pressure - next_pressure), 1, mask=changes)
+        share = max(pressure(first)/(pressure(first) - next_pressure(first)), 0.0_dp)
+      end if
+      rate = rate + share*(next - rate)
+      if (.not. any(changes)) exit
+      pressure = pressure + share*(next_pressure - pressure)
+      if (first > 0) then
+        counts(first) = .not. counts(first)
+      else
+        counts = pressure > 0
+      end if
     end do
-    rate = next
-
-  contains
-
-    !> What the springs miss [N].
-    pure real(dp) function miss(rate, pressure)
-      real(dp), intent(in) :: rate(2), pressure(n)
-      miss = norm2(load - drag*rate + [dot_product(max(pressure, 0.0_dp), weight(:, 1)), &
-        dot_product(max(pressure, 0.0_dp), weight(:, 2))])
-    end function miss
   end function cut_rate
 
   !> The symmetric matrix of the balances of the full nodes, in the form of `solve_symmetric`.
