@@ -214,13 +214,16 @@ class Throttled(Cylinder):
             now = tuple((lift > 0) + (lift >= full) for lift, full in zip(lifts, (max(c["suction_valve_lift"]), max(c["discharge_valve_lift"]))))
             self.pieces.append(self.pieces[-1] + (state is not None and now != state))
             state = now
-        for port in ("suction", "discharge"):   # a reed has a speed in the row in which it meets its seat or its stop, and none behind
+        # a reed has a speed in the row in which it meets its seat or its stop, and none behind; between rows it may meet them too
+        for port in ("suction", "discharge"):
             if f"{port}_valve_speed" not in c:
                 continue
             x, v, full, breaks = c[f"{port}_valve_lift"], c[f"{port}_valve_speed"], max(c[f"{port}_valve_lift"]), 0
             for i in range(1, len(x)):
                 inside = [0 < x[k] < full for k in (i - 1, i)]
-                breaks += (inside[0] or v[i - 1] != 0) != (inside[1] or v[i] != 0) or (v[i - 1] != 0 and not inside[0])
+                reach = 2 * max(abs(v[i - 1]), abs(v[i])) * (run.times[i] - run.times[i - 1])
+                breaks += ((inside[0] or v[i - 1] != 0) != (inside[1] or v[i] != 0) or (v[i - 1] != 0 and not inside[0])
+                           or all(inside) and reach > min(x[i - 1], x[i], full - x[i - 1], full - x[i]))
                 self.pieces[i + 1] += breaks
 
     def wanted(self, i: int, q: float) -> float | None:
