@@ -387,6 +387,8 @@ TEXTS = {
     "{}, delivery temperature {}": "{}, temperatura de descarga {}",
     "{}, lost in the suction valve {}": "{}, perda na válvula de sucção {}",
     "{}, in the discharge valve {}": "{}, na válvula de descarga {}",
+    "{}, suction valve hits with {}": "{}, a válvula de sucção bate com {}",
+    "{}, discharge valve hits with {}": "{}, a válvula de descarga bate com {}",
     "ideal valves": "válvulas ideais",
     "heat shown by the pressure [J]": "calor indicado pela pressão [J]",
     "10, 50, 90 % at {}, {}, {} deg": "10, 50, 90 % a {}, {}, {} graus",

@@ -148,7 +148,9 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
         ("leak", rows.shown("cycle_leak_flow", "g/s", 1000)), ("efficiency", rows.shown("cycle_indicated_efficiency", "%", 100)),
         ("delivers", rows.shown("cycle_mass_flow", "g/s", 1000)), ("volumetric efficiency", rows.shown("cycle_volumetric_efficiency", "%", 100)),
         ("isentropic efficiency", rows.shown("cycle_isentropic_efficiency", "%", 100)), ("delivery temperature", rows.shown("cycle_discharge_temperature", "K", 1)),
-        ("lost in the suction valve", rows.shown("cycle_suction_loss", "W", 1)), ("in the discharge valve", rows.shown("cycle_discharge_loss", "W", 1))) if text]
+        ("lost in the suction valve", rows.shown("cycle_suction_loss", "W", 1)), ("in the discharge valve", rows.shown("cycle_discharge_loss", "W", 1)),
+        ("suction valve hits with", rows.shown("cycle_max_suction_valve_speed", "m/s", 1)),
+        ("discharge valve hits with", rows.shown("cycle_max_discharge_valve_speed", "m/s", 1))) if text]
     if gas:
         found.append(("Gas", ", ".join(gas)))
     if text := slap(rows):
