@@ -29,6 +29,11 @@ edit 's/samples_per_revolution = 720/columns = "time, cylinder_pressure"/'
 refused "a column that the scene lacks" 3 "cylinder_pressure" "$work/case.nml"
 refused "a folder for a case" 3 "." cases
 
+# the pressure of a rig that is not yet a table of the program
+printf 'Winkel;Druck\r\n°KW;bar\r\n-360,0;1,01\r\n-359,0;1,02\r\n' >"$work/rig.csv"
+refused "a rig's file as pressure" 3 "rig.csv:1: .*gudgeon.read_pressure .* a rig's file; this one begins 'Winkel;Druck', '°KW;bar', '-360,0;1,01'$" \
+  --set "cylinder_pressure.table=$work/rig.csv" cases/gas/measured.nml
+
 # a table that results would replace
 mkdir "$work/motor"
 cp cases/drive/motor.nml cases/drive/motor.csv "$work/motor"

@@ -119,7 +119,7 @@ contains
         if (present(joint)) call select_worn_bore(text, joint)
         call parse_curve(text, x_is, y_is, curve%x, curve%y, lines, message, line)
         if (message /= '' .and. y_is%name == pressure%name) message = message// &
-          '; gudgeon.read_pressure of the Python package makes such a table of a rig''s file'
+          '; gudgeon.read_pressure of the Python package makes such a table of a rig''s file; this one begins '//beginning(text)
         if (message == '' .and. present(period)) call close_period(curve, period, offset, lines, message, line)
         if (message == '' .and. y_is%name == deviation%name) call close_turn(curve, lines, message, line)
       end if
@@ -132,6 +132,23 @@ contains
     end if
     call finish_table(values, group, key, curve)
   end subroutine provide
+
+  !> The first lines of a file, as a message shows them.
+  function beginning(text) result(shown)
+    character(len=*), intent(in) :: text
+    character(len=:), allocatable :: shown
+    integer, parameter :: most_lines = 3, most_letters = 40   !! shown, and of each
+    integer :: first, length, i
+    shown = ''
+    first = 1
+    do i = 1, most_lines
+      if (first > len(text)) exit
+      length = scan(text(first:)//new_line('a'), new_line('a')//achar(13)) - 1
+      if (i > 1) shown = shown//', '
+      shown = shown//''''//printable(text(first:first + length - 1), most_letters)//''''
+      first = first + length + index(text(first + length:)//new_line('a'), new_line('a'))
+    end do
+  end function beginning
 
   !> Read the text of a table, unless it has been read before or cannot be read, which is noted.
   subroutine read_new(values, case_file, group, key, table, text)
