@@ -274,7 +274,7 @@ contains
     pressure = part(1, :)
     nothing = lowest_suction*maxval(abs(pressure))
     counts = pressure > 0
-    do pass = 1, most_plain + 4*n
+    do pass = 1, most_plain + n
       next = balanced_rate(n, weight, part, counts, load, drag)
       next_pressure = part(1, :) + next(1)*part(2, :) + next(2)*part(3, :)
       changes = abs(next_pressure) > nothing .and. ((next_pressure > 0) .neqv. counts)
