@@ -819,9 +819,10 @@ contains
     if (allocated(error)) return
     call check%that(all(abs(c%mechanism%rod_com - [0.05_dp, -0.7e-3_dp]) < 1e-15_dp), 'only the number with this index is set')
     call refused_with(check, 'mechanism.rod_com(3)=1', &
-      'x.nml: --set mechanism.rod_com(3)=1: &mechanism rod_com: takes 2 values, not 3')
-    call refused_with(check, 'joint.clearance(1)=1', 'x.nml: --set joint.clearance(1)=1: &joint clearance: takes no index')
-    call refused_with(check, 'contact.law(2)=hertz', 'x.nml: --set contact.law(2)=hertz: &contact law: takes no index')
+      'x.nml: --set mechanism.rod_com(3)=1: &mechanism rod_com(3): has the numbers rod_com[1] to rod_com[2]')
+    call refused_with(check, 'joint.clearance(1)=1', &
+      'x.nml: --set joint.clearance(1)=1: &joint clearance(1): clearance is no list of numbers')
+    call refused_with(check, 'contact.law(2)=hertz', 'x.nml: --set contact.law(2)=hertz: &contact law(2): law is no list of numbers')
   end subroutine test_index_of_an_override
 
   !> Characters of word processors and of other encodings are named; a value that cannot be read is refused once.
