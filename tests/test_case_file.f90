@@ -822,7 +822,8 @@ contains
       'x.nml: --set mechanism.rod_com(3)=1: &mechanism rod_com(3): has the numbers rod_com[1] to rod_com[2]')
     call refused_with(check, 'joint.clearance(1)=1', &
       'x.nml: --set joint.clearance(1)=1: &joint clearance(1): clearance is no list of numbers')
-    call refused_with(check, 'contact.law(2)=hertz', 'x.nml: --set contact.law(2)=hertz: &contact law(2): law is no list of numbers')
+    call refused_with(check, 'contact.law(2)=hertz', &
+      'x.nml: --set contact.law(2)=hertz: &contact law(2): law is no list of numbers')
   end subroutine test_index_of_an_override
 
   !> Characters of word processors and of other encodings are named; a value that cannot be read is refused once.
