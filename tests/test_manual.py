@@ -167,7 +167,8 @@ def first_column(path: Path) -> set[str]:
 def check_built(program: Path) -> None:
     """The manual is built without a warning, loads nothing from a network, and the links of its pages lead to existing files."""
     done = subprocess.run(["scripts/manual.sh", "--pdf", program], cwd=ROOT, capture_output=True, text=True)
-    check(done.returncode == 0 and not done.stderr, "the manual is built without a warning", done.stderr[-500:])
+    said = "".join(line for line in done.stderr.splitlines(keepends=True) if not line.startswith("setup: gudgeon-plot on the PATH"))   # where there is another clone
+    check(done.returncode == 0 and not said, "the manual is built without a warning", said[-500:])
     built = ROOT / "build/manual"
     check((built / "gudgeon.pdf").exists() and (built / "gudgeon.pdf").read_bytes()[:5] == b"%PDF-", "the manual is printed")
     check_printed(built)
