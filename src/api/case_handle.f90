@@ -134,10 +134,12 @@ contains
           ', counted from 0', status)
         return
       end if
-      if (schema%is_list .and. element > given%whole + 1) then
-        call self%refuse(trim(schema%group)//'.'//trim(schema%name)//': number '//integer_text(element - 1)// &
-          ' must be given before', status)
-        return
+      if (schema%is_list .and. element > 1) then
+        if (.not. given%given(element - 1)) then
+          call self%refuse(trim(schema%group)//'.'//trim(schema%name)//': number '//integer_text(element - 1)// &
+            ' must be given before', status)
+          return
+        end if
       end if
       if (.not. is_allowed(value, schema%kind)) then
         call fail(error, trim(schema%group)//'.'//trim(schema%name)//' = '//short_text(value)// &

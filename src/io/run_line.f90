@@ -1,5 +1,5 @@
-!> What the user is told about a run that has ended: the physics in one line and one for each further bearing, its cost, and the notes on its
-!> results.
+!> What the user is told about a run that has ended: the physics in one line and one for each further bearing, its cost, and the
+!> notes on its results.
 module run_line
   use kinds, only: dp
   use constants, only: two_pi

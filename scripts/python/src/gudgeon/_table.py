@@ -238,7 +238,7 @@ def _of_study(path: Path, wanted: list[str] | None, digits: int) -> Table:
     end = names.index("status")
     if wanted is None:
         asked = [name for name in asked_columns(path) if name in names[end:]]
-        results = asked or [name for name in _answers(names[end + 1 :], OF_STUDY) if runs.table[name].notna().any()]
+        results = asked or [name for name in _answers(names[end + 1 :], OF_STUDY) if len(runs.table[name].dropna())]
     else:
         results = _chosen(names[end:], wanted)
     data, cells = {}, {}
