@@ -820,6 +820,8 @@ contains
     call check%that(all(abs(c%mechanism%rod_com - [0.05_dp, -0.7e-3_dp]) < 1e-15_dp), 'only the number with this index is set')
     call refused_with(check, 'mechanism.rod_com(3)=1', &
       'x.nml: --set mechanism.rod_com(3)=1: &mechanism rod_com(3): has the numbers rod_com[1] to rod_com[2]')
+    call refused_with(check, 'ring.height=1e-3', &
+      'x.nml: --set ring.height=1e-3: &ring: there may be several: ring_1.height is that of the first one')
     call refused_with(check, 'joint.clearance(1)=1', &
       'x.nml: --set joint.clearance(1)=1: &joint clearance(1): clearance is no list of numbers')
     call refused_with(check, 'contact.law(2)=hertz', &

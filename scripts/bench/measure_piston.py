@@ -6,10 +6,9 @@ conditions of rupture, rings in closed form and with films. Writes data/measured
 """
 from __future__ import annotations
 
-import resource
 import tempfile
 
-from measured import program_of, run, table, write_table
+from measured import program_of, table, timed_run, write_table
 
 CASE = "joints/piston"
 DRY = ("guide.kind=clearance", "guide.stiffness=5e7", "guide.restitution=0.4", "guide.coefficient=0.05", "guide.lubrication=none", "guide.asperities=none")
@@ -33,24 +32,15 @@ runs with all files. Dry corners have 5e7 N/m, a restitution of 0.4 and a fricti
 COLUMNS = (("cycle_skirt_fmep", 1e-3, ".2f"), ("cycle_ring_fmep", 1e-3, ".2f"), ("cycle_min_skirt_film_thickness", 1e6, ".2f"), ("cycle_min_ring_1_film_thickness", 1e6, ".3f"))
 
 
-def processor_time() -> float:
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
 def main() -> None:
     program = program_of(__doc__)
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         for name, settings in RUNGS:
-            times = []
-            for _ in range(3):
-                before = processor_time()
-                summary = run(program, CASE, folder, settings)
-                times.append(processor_time() - before)
+            seconds, summary = timed_run(program, CASE, folder, settings)
             force = max((float(summary[key]) for key in summary if key in ("cycle_max_skirt_force", *(f"guide_{k}_max_force" for k in range(1, 5)))), default=0.0)
             speed = float(summary.get("cycle_max_slap_speed") or summary.get("cycle_slap_speed") or 0)
-            rows.append([name, summary["rhs_evaluations"], f"{min(times):.2f}", f"{force:.0f}" if force else "-", f"{1e3*speed:.0f}" if speed else "-",
+            rows.append([name, summary["rhs_evaluations"], f"{seconds:.2f}", f"{force:.0f}" if force else "-", f"{1e3*speed:.0f}" if speed else "-",
                          *(f"{factor*float(summary[key]):{form}}" if key in summary else "-" for key, factor, form in COLUMNS)])
     head = ("model", "evaluations", "time [s]", "largest side force [N]", "fastest end of the skirt [mm/s]", "FMEP of the skirt [kPa]", "of the rings [kPa]",
             "least film of the skirt [µm]", "of the top ring [µm]")

@@ -211,6 +211,11 @@ contains
       if (allocated(text)) call fail(error, at//shown_group(group)//' '//printable(key, 40)//': '//text, status_case_file)
       return
     end if
+    if (find_group(self%groups, group//'_1') > 0) then
+      call fail(error, at//'&'//group//': there may be several: '//group//'_1.'//trim(printable(key, 40))// &
+        ' is that of the first one', status_case_file)
+      return
+    end if
     if (find_group(self%groups, group) == 0) then
       names = [character(len=name_length) :: (self%groups(i)%name, i=1, size(self%groups))]
       near = nearest_word(group, names)
