@@ -20,6 +20,7 @@ import sys
 import tempfile
 from pathlib import Path
 from urllib.parse import unquote
+from xml.etree import ElementTree
 
 for folder in ("manual", "bench"):
     sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts" / folder))
@@ -184,8 +185,12 @@ def check_built(program: Path) -> None:
         check(not broken and (links or page.name == "404.html"), f"manual, {page.name}: its links lead to existing files", str(broken))
 
 
+PARTS = {"msup": 2, "msub": 2, "mfrac": 2, "mover": 2, "munder": 2, "mroot": 2, "msubsup": 3, "munderover": 3}   # elements of MathML
+
+
 def check_printed(built: Path) -> None:
-    """The contents of the PDF have the pages where its sections begin; the font has the letters of the equations; numbers of the text are typeset."""
+    """The contents of the PDF have the pages where its sections begin; the font has the letters of the equations, whose parts are as many as MathML
+    has; numbers of the text are typeset."""
     import hooks  # in .venv
     from fontTools.ttLib import TTFont
 
@@ -198,6 +203,10 @@ def check_printed(built: Path) -> None:
     letters = {ord(letter) for math in re.findall(r"<math.*?</math>", text, re.DOTALL) for letter in html.unescape(re.sub(r"<[^>]+>", "", math)) if not letter.isspace()}
     lacking = {chr(letter) for letter in (letters | {0x221A}) - set(font.getBestCmap())}
     check("MATH" in font and not lacking and (built / "STIXTwoMath.woff").stat().st_size < 2e5, "the font has the letters of the equations, and few others", str(lacking))
+    equations = [ElementTree.fromstring(math) for math in re.findall(r"<math.*?</math>", text, re.DOTALL)]
+    odd = {(part.tag, len(part)) for equation in equations for part in equation.iter()
+           if (wanted := PARTS.get(part.tag.rpartition("}")[2])) and len(part) != wanted}
+    check(len(equations) > 300 and not odd, "powers, indices and fractions have their parts", str(odd))
     for written, wanted in (("1e-3 to 6.61e10 N/m^1.5", "10⁻³ to 6.61·10¹⁰ N/m<sup>1.5</sup>"), ("-0.25 kg m^2, 3.1-3.30, 2026-11-26", "−0.25 kg m², 3.1–3.30, 2026-11-26"),
                             ("1.35 um<code>1e-3</code> x86-64 2e+01", "1.35 µm<code>1e-3</code> x86-64 20")):
         check(hooks.typeset(written) == wanted, f"the manual prints {written}", hooks.typeset(written))

@@ -65,7 +65,8 @@ def on_page_content(text: str, page, **_) -> str:
         done = latex2mathml.converter.convert(source.replace("{aligned}", "{align*}"), display="inline" if match[1] == "span" else "block")
         if "\\" in done or "<mi>&</mi>" in done:
             log.warning("%s: not an equation: %s", page.file.src_path, source)
-        done = re.sub(r"<mi>(sin|cos|tanh|ln|exp)</mi>", r'<mspace width="0.17em"/><mi>\1</mi><mspace width="0.1em"/>', done)
+        done = re.sub(r"(<msup>)?<mi>(sin|cos|tanh|ln|exp)</mi>",   # a power has two parts, without spaces between them
+                      lambda m: f'<mspace width="0.17em"/>{m[1] or ""}<mi>{m[2]}</mi>' + ("" if m[1] else '<mspace width="0.1em"/>'), done)
         sides = itertools.cycle(("prefix", "postfix"))   # of absolute values
         done = re.sub("<mo>&#x0007C;</mo>", lambda _: f'<mo form="{next(sides)}" stretchy="false">|</mo>', done)
         done = re.sub(r'mtd columnalign="(\w+)"', r'mtd style="text-align: \1"', done)   # browsers know no other alignment
