@@ -60,7 +60,6 @@ contains
     call test_ends_of_runs(check)
     call test_groups_taken_out(check)
     call test_decimal_commas(check)
-    call test_index_of_an_override(check)
     call test_typography(check)
     call test_hints(check)
     call test_several_errors(check)
@@ -146,6 +145,8 @@ contains
     class(checks_t), intent(inout) :: check
     character(len=*), parameter :: shaft = whole//'&crankshaft inertia = 1, 2, 3 stiffness = 5 /'//n, &
       given = bodies//joint//contact//'&integrator revolutions = 2 /'//n
+    type(case_t) :: c
+    type(error_t), allocatable :: error
     call resolves(check, given, [character(len=40) :: 'mechanism.rod_com[2]=1 mm', 'mechanism.crank_com(1)=0.002'], &
       'rod_com = 0.0, 0.001', 'crank_com = 0.002, 0.0')
     call resolves(check, shaft, [character(len=40) :: 'crankshaft.inertia[1]=4', 'crankshaft.inertia[2]=5'], &
@@ -161,6 +162,19 @@ contains
       'x.nml: --set joint.clearance[1]=1: &joint clearance[1]: clearance is no list of numbers')
     call refused_with(check, 'output.columns[1]=time', &
       'x.nml: --set output.columns[1]=time: &output columns[1]: columns is no list of numbers')
+    call refused_with(check, 'mechanism.rod_com(3)=1', &
+      'x.nml: --set mechanism.rod_com(3)=1: &mechanism rod_com(3): has the numbers rod_com[1] to rod_com[2]')
+    call refused_with(check, 'ring.height=1e-3', &
+      'x.nml: --set ring.height=1e-3: &ring: there may be several: ring_1.height is that of the first one')
+    call refused_with(check, 'joint.clearance(1)=1', &
+      'x.nml: --set joint.clearance(1)=1: &joint clearance(1): clearance is no list of numbers')
+    call refused_with(check, 'contact.law(2)=hertz', &
+      'x.nml: --set contact.law(2)=hertz: &contact law(2): law is no list of numbers')
+    call parse_case(whole, 'x.nml', [character(len=30) :: 'mechanism.rod_com=0.05,0.001', 'mechanism.rod_com(2) = -0.7 mm'], &
+      c, error)
+    call check%that(.not. allocated(error), 'an index in an override')
+    if (allocated(error)) return
+    call check%that(all(abs(c%mechanism%rod_com - [0.05_dp, -0.7e-3_dp]) < 1e-15_dp), 'only the number with this index is set')
   end subroutine test_elements
 
   !> Paths of files that another file names, replaced parts of texts, and lines.
@@ -807,26 +821,6 @@ contains
     call check%that(abs(c%mechanism%rod_com(2) - 5) < 1e-15_dp .and. abs(c%mechanism%crank_com(1) - 1) < 1e-15_dp, &
       'two values with a comma are two values')
   end subroutine test_decimal_commas
-
-  !> One number of a list may be set on the command line, by its index.
-  subroutine test_index_of_an_override(check)
-    class(checks_t), intent(inout) :: check
-    type(case_t) :: c
-    type(error_t), allocatable :: error
-    call parse_case(whole, 'x.nml', [character(len=30) :: 'mechanism.rod_com=0.05,0.001', 'mechanism.rod_com(2) = -0.7 mm'], &
-      c, error)
-    call check%that(.not. allocated(error), 'an index in an override')
-    if (allocated(error)) return
-    call check%that(all(abs(c%mechanism%rod_com - [0.05_dp, -0.7e-3_dp]) < 1e-15_dp), 'only the number with this index is set')
-    call refused_with(check, 'mechanism.rod_com(3)=1', &
-      'x.nml: --set mechanism.rod_com(3)=1: &mechanism rod_com(3): has the numbers rod_com[1] to rod_com[2]')
-    call refused_with(check, 'ring.height=1e-3', &
-      'x.nml: --set ring.height=1e-3: &ring: there may be several: ring_1.height is that of the first one')
-    call refused_with(check, 'joint.clearance(1)=1', &
-      'x.nml: --set joint.clearance(1)=1: &joint clearance(1): clearance is no list of numbers')
-    call refused_with(check, 'contact.law(2)=hertz', &
-      'x.nml: --set contact.law(2)=hertz: &contact law(2): law is no list of numbers')
-  end subroutine test_index_of_an_override
 
   !> Characters of word processors and of other encodings are named; a value that cannot be read is refused once.
   subroutine test_typography(check)

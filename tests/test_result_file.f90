@@ -85,7 +85,8 @@ contains
     call remove_file(folder//'/a.csv', status)
   end subroutine test_writing
 
-  !> A file that is being written is not written by another program; what a killed program has left is no obstacle.
+  !> A file that is being written is not written by another run of this program or of another one; what a killed program has left
+  !> is no obstacle.
   subroutine test_two_writers(check)
     class(checks_t), intent(inout) :: check
     type(result_file_t) :: one, other
@@ -97,6 +98,10 @@ contains
     call check%that(.not. allocated(error), 'a file left by a killed program is replaced')
     call one%append('one'//n)
     call one%flush()
+    call other%open(folder//'/a.csv', error)
+    call expect(check, error, folder//'/a.csv: another run is writing it; wait for it or choose another folder with --out')
+    call other%append('other'//n)
+    call other%close(error)
     call fork_worker(process)
     if (process == 0) then   ! the other program
       call other%open(folder//'/a.csv', error)

@@ -401,6 +401,7 @@ class AnyStudy(InDirectory):
         self.assertEqual(units["initial.crank_speed"], "rad/s")
         self.assertEqual(units["contact.restitution"], "")
         self.assertEqual(names.of_parameter("lubrication.viscosity", np.array([0.004, 0.04])).label, "viscosity [mPa s]")
+        self.assertEqual(names.of_parameter("guide.piston_com[2]", np.array([-7e-4, 7e-4])).label, "piston com[2] [µm]")   # one number of a list
 
 
 class Sweeps(InDirectory):

@@ -1,5 +1,5 @@
-/* What POSIX (2008), and flock, give by macros, structures and calls with a varying number of arguments, whose values and layouts differ between
-   systems, for posix_files, posix_processes and posix_signals; they bind the plain calls themselves. */
+/* What POSIX (2008), and flock, give by macros, structures and calls with a varying number of arguments, whose values and layouts
+   differ between systems, for posix_files, posix_processes and posix_signals; they bind the plain calls themselves. */
 #define _XOPEN_SOURCE 700
 #define _DARWIN_C_SOURCE   /* flock, which is older than POSIX, on macOS */
 #include <dirent.h>

@@ -13,7 +13,7 @@ module posix_files
     error_broken_pipe, error_not_regular, error_is_link
 
   !> Error numbers that are the same on every system, and three of this module: the file is neither a regular file nor a folder, a
-  !> symbolic link that must not be followed, and a file that another program is writing.
+  !> symbolic link that must not be followed, and a file that another run is writing.
   integer, parameter :: error_no_entry = 2, error_interrupted = 4, error_no_access = 13, error_exists = 17, &
     error_not_directory = 20, error_is_directory = 21, error_no_space = 28, error_broken_pipe = 32, &
     error_not_regular = -1, error_is_link = -2, error_locked = -3
@@ -205,7 +205,7 @@ contains
     descriptor = -1
   end subroutine open_file
 
-  !> Lock an open file against other programs, until it is closed or the program ends. `status` is `error_locked` if another program
+  !> Lock an open file for this opening of it, until it is closed or the program ends. `status` is `error_locked` if another opening
   !> holds the lock; on a file system without locks there is none, and `status` is 0.
   subroutine lock_file(descriptor, status)
     integer, intent(in) :: descriptor

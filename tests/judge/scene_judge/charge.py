@@ -203,10 +203,10 @@ class ChargeChecks:
         """Check mass and pressure against the integrals of their rates, from the first row of each part of the cycle; the number of checks."""
         pieces = pieces_of(self.checks, self.run)
         stencil = stencils(self.run.times, pieces, joined=False)
-        rates = self.rates()
+        rates, sizes = self.rates(), self.natural_sizes()
         for name, rate in rates.items():
             values, found = self.columns[name], integral(rate, stencil)
-            size = self.natural_sizes().get(name) or max(values)
+            size = sizes.get(name) or max(values)
             for rows in pieces:
                 rows = [i for i in rows if not (self.charge.is_open(q := self.columns["crank_angle"][i] - self.gas.top) or self.gas.jumps_near(q, 1e-7))]
                 if len(rows) <= 2 * NODES:   # of a sudden combustion: too few for a bound of the quadrature's error

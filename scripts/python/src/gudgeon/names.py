@@ -138,7 +138,7 @@ def key_units() -> dict[str, str]:
 
 def of_parameter(key: str, values: np.ndarray) -> Shown:
     """A key of a study, as an axis shows it."""
-    own = key.partition("(")[0].split(".")[-2:]   # KEY(2): one number of a list
+    own = re.split(r"[\[(]", key)[0].split(".")[-2:]   # KEY[2] or KEY(2): one number of a list
     name = KEYS.get(key) or key.split(".")[-1].replace("_", " ")
     unit = key_units().get(".".join(own), "")
     unit = unit if re.fullmatch(r"[\w/ ^.]{1,12}", unit) and " " not in unit.replace("Pa s", "").replace("N m", "") else ""
