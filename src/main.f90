@@ -13,8 +13,9 @@ program gudgeon
   use json_schema, only: json_schema_text
   use shell_pages, only: completion_text, manual_text
   use reference_pages, only: keys_reference, results_reference, oils_reference
+  use portuguese, only: in_language
   use run_progress, only: progress_wanted, tell, say
-  use text_tools, only: printable
+  use text_tools, only: printable, case_name
   use posix_files, only: fill_standard_descriptors, signal_set_t, hold_interrupts, interrupted, ignore_write_signals
   use posix_processes, only: end_program
   use version_number, only: program_version
@@ -106,7 +107,9 @@ contains
       else
         call run_study_file(trim(options%cases(i)), options, show_progress, before, line, error)
       end if
-      if (line /= '' .and. .not. options%quiet) call say(line, status)
+      if (line /= '' .and. .not. options%quiet) call say(in_language(line, options%language, &
+        trim(options%cases(i))//achar(10)//case_name(trim(options%cases(i)))//achar(10)//options%out//'/'// &
+        case_name(trim(options%cases(i)))), status)
       if (.not. allocated(error)) cycle
       call tell(error%message)
       status = max(status, error%status)

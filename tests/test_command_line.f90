@@ -5,6 +5,7 @@ module test_command_line
   use accuracy_presets, only: with_preset
   use case_definition, only: case_t
   use case_file, only: read_case
+  use portuguese, only: in_language
   use checks, only: checks_t
   implicit none
   private
@@ -22,6 +23,7 @@ contains
     call test_options(check)
     call test_refusals(check)
     call test_presets(check)
+    call test_portuguese(check)
   end subroutine run_test_command_line
 
   !> An accuracy level sets method, contact entry and tolerance of any case; higher levels have smaller tolerances; --set takes
@@ -61,6 +63,33 @@ contains
     end function with_level
   end subroutine test_presets
 
+  !> Portuguese of outcomes: the longest text counts, a star stands for a word, numbers have commas, labels are in columns; names of
+  !> the user, of models and of keys stay, and so do unknown words.
+  subroutine test_portuguese(check)
+    class(checks_t), intent(inout) :: check
+    character(len=1), parameter :: n = achar(10)
+    call same('done: done; 2.5 revolutions in 1 s', 'done', 'done: terminada; 2,5 rotações em 1 s', 'a case named as a word')
+    call same('a: done'//n//'  my run/rows of.csv; 1 steps', 'a'//n//'my run/rows of', &
+      'a: terminada'//n//'  my run/rows of.csv; 1 passos', 'a path of words')
+    call same('a.nml: correct'//n//'  main bearing short_bearing film'//n//'  rings       3, oil 4.5 mPa s', 'a.nml'//n//'rings', &
+      'a.nml: correto'//n//'  mancal principal filme short_bearing'//n//'  anéis            3, óleo 4,5 mPa s', &
+      'labels and a star')
+    call same('x; film of at least 1e-3 m (2.5 m in the last cycle) film_2.5/b', '', &
+      'x; filme de no mínimo 1e-3 m (2,5 m no último ciclo) film_2.5/b', 'brackets, and words that are no numbers')
+    call same('running, contacts)', '', 'running, contatos)', 'the end of a word')
+    call same('a: done'//n//'  note: done in 1.5 runs'//n//'  note: of', 'a', &
+      'a: terminada'//n//'  aviso: done in 1.5 runs'//n//'  aviso: of', 'notes')
+    call same('', '', '', 'nothing')
+    call check%equal_text(in_language('a: done', 'en', ''), 'a: done', 'English')
+
+  contains
+
+    subroutine same(text, names, wanted, what)
+      character(len=*), intent(in) :: text, names, wanted, what
+      call check%equal_text(in_language(text, 'pt', names), wanted, 'Portuguese: '//what)
+    end subroutine same
+  end subroutine test_portuguese
+
   subroutine test_options(check)
     class(checks_t), intent(inout) :: check
     type(command_line_t) :: line
@@ -69,6 +98,7 @@ contains
     call check%that(.not. allocated(error), 'one case')
     call check%equal_text(line%out, 'results', 'folder by default')
     call check%equal_text(line%progress, 'auto', 'progress by default')
+    call check%equal_text(line%language, 'en', 'language by default')
     call check%equal_text(line%accuracy, '', 'accuracy by default')
     call check%that(line%jobs == 0 .and. size(line%overrides) == 0 .and. size(line%cases) == 1, 'nothing else by default')
     call parse_command_line([character(len=40) :: '-o', 'out dir', 'b/a.nml', '--set=joint.clearance=1e-5', '-s', &
@@ -86,6 +116,8 @@ contains
     call check%that(line%quiet .and. line%check .and. .not. line%help, 'switches')
     call check%that(size(line%cases) == 2, 'two cases')
     call check%equal_text(trim(line%cases(2)), '-c.nml', 'a case after --')
+    call parse_command_line([character(len=16) :: 'sweep', '--language', 'pt', 's.nml'], line, error)
+    call check%that(.not. allocated(error) .and. line%language == 'pt', '--language of a study')
     call parse_command_line(['-qh'], line, error)
     call check%that(.not. allocated(error) .and. line%help .and. line%quiet, 'switches in one')
     call parse_command_line(['-V'], line, error)
@@ -151,6 +183,7 @@ contains
     call refused(check, ['-slubrication=off'], '--set lubrication=off: must have the form GROUP.KEY=VALUE or GROUP=none'//hint)
     call refused(check, ['-s=none'], '--set =none: must have the form GROUP.KEY=VALUE or GROUP=none'//hint)
     call refused(check, ['-abest'], '--accuracy best: must be one of draft, standard, reference, dissertation'//hint)
+    call refused(check, ['--language=de'], '--language de: must be en or pt'//hint)
     call refused(check, ['--progress=on'], '--progress on: must be auto, always or never'//hint)
     call refused(check, ['-j0'], '--jobs 0: must be a whole number from 1 to 1024'//hint)
     call refused(check, ['-j-1'], '--jobs -1: must be a whole number from 1 to 1024'//hint)

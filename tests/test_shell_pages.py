@@ -133,6 +133,54 @@ def completion(program: str) -> None:
     check(done.returncode == 2 and "must be bash, zsh or fish" in done.stderr, done.stderr)
 
 
+def words_of(text: str) -> set[str]:
+    """Words of three letters and more; no paths, names with _, or notes on a run."""
+    text = re.sub(r"^  (?:note|aviso): .*$|\S*[/_=]\S*", "", re.sub(r"\b(\w+)/(diameter|diâmetro|s|min)\b", r"\1 \2", text), flags=re.MULTILINE)
+    return set(re.findall(r"(?<!-)[^\W\d]{3,}", text))
+
+
+def enumerated(schema: object) -> set[str]:
+    """All words that keys can have."""
+    parts = schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else []
+    words = set(schema.get("enum", [])) if isinstance(schema, dict) else set()
+    return {word for word in words if isinstance(word, str)}.union(*map(enumerated, parts))
+
+
+def portuguese(program: str, folder: str) -> None:
+    """With --language pt no English word is left in the answer to --check and in the lines of runs and studies."""
+    kept = enumerated(json.loads(output(program, "--reference", "schema"))) | {"rpm", "bar", "mPa", "MPa", "mrad", "ideal", "diametral", "Lyapunov", "min"}
+    cases = [path for path in sorted((TOP / "cases").rglob("*.nml")) if path.parent.name != "studies"]
+    said = []
+    for command in (["--check", *map(str, cases)], ["sweep", "--check", *map(str, sorted((TOP / "cases" / "studies").glob("*.nml")))]):
+        said.append([subprocess.run([program, *command, "--language", language], capture_output=True, text=True).stdout for language in ("en", "pt")])
+        check(len(said[-1][1].splitlines()) == len(said[-1][0].splitlines()) > 10, f"as many lines: {command[:2]}")
+    for case, *options in (
+        ("flores/dry_0500um", "--certify"), ("sim_IV", "--certify"), ("cylinders/inline_four_bearings",), ("joints/piston_slap",), ("joints/skirt",),
+        ("film/sim_I_fed",), ("pin/dry",), ("pin/engine", "-srun.until=end", "-sintegrator.crank_revolutions=2"), ("film/heat",), ("gas/compressor_valves",),
+        ("flores/dry_0500um", "-srun.until=periodic", "-srun.most_revolutions=6"), ("flores/dry_0500um", "-srun.lyapunov_revolutions=5"),
+        ("flores/lubricated_400cP", "-srun.until=periodic"), ("bearings/lemon_main",), ("wear/worn_bore", "-sintegrator.end_time=1e-3"),
+        ("sim_IV", "-sjoint.clearance=1e-3", "-sintegrator.max_steps=30"),
+    ):  # fmt: skip
+        both = []
+        for language in ("en", "pt"):
+            path = TOP / "cases" / f"{case}.nml"
+            done = subprocess.run([program, "--language", language, "-o", folder, *options, str(path)], capture_output=True, text=True, timeout=600)
+            check(f"{path.stem}: " in done.stdout and f"{folder}/{path.stem}.csv; " in done.stdout, f"{case} {options}: {done.stdout[:300]}{done.stderr}")
+            both.append(done.stdout.replace(path.stem, ""))
+        said.append(both)
+    study = Path(folder) / "grid.nml"
+    study.write_text(f"&study case = '{TOP}/cases/sim_I.nml' /\n&parameter key = 'integrator.max_steps', values = 100000, 5 /\n")
+    said.append([subprocess.run([program, "sweep", "--fresh", "--language", language, "-o", folder, str(study)], capture_output=True, text=True).stdout.replace("grid", "")
+                 for language in ("en", "pt")])  # fmt: skip
+    check("simulações" in said[-1][1], f"a study: {said[-1]}")
+    for english, done in said:
+        left = (words_of(english) & words_of(done)) - kept
+        check(not left, f"no word stays English: {sorted(left)} in {done[:300]}")
+        check(not re.search(r"\d\.\d", re.sub(r"\S*[/_=]\S*|^  aviso: .*$", "", done, flags=re.MULTILINE)), f"decimal commas: {done[:300]}")
+    done = subprocess.run([program, "--language", "pt", "--resolved", str(cases[0])], capture_output=True, text=True)
+    check(done.stdout == output(program, "--resolved", str(cases[0])), "a resolved case is one in every language")
+
+
 def manual_page(program: str) -> None:
     page = output(program, "--man")
     with tempfile.NamedTemporaryFile("w", suffix=".1") as file:
@@ -178,6 +226,8 @@ def main() -> int:
     completion(program)
     manual_page(program)
     installed(program)
+    with tempfile.TemporaryDirectory() as folder:
+        portuguese(program, folder)
     print(f"{passed} passed, {failed} failed")
     return failed > 0
 

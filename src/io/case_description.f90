@@ -80,8 +80,8 @@ contains
     if (allocated(case%measured)) bore = case%measured%bore
     text = 'stroke '//quantity_text(stroke, 'm', digits)//', rod '//quantity_text(case%mechanism%rod_length, 'm', digits)// &
       ' (crank over rod '//short_text(linkage%crank_length/linkage%rod_length, 3)//')'
-    if (abs(linkage%axis_offset) > 0) text = text//', axis '//quantity_text(linkage%axis_offset, 'm', digits)// &
-      ' off: dead centres at '//short_text(linkage%top_angle()/degree, digits)//' and '// &
+    if (abs(linkage%axis_offset) > 0) text = text//', axis off by '//quantity_text(linkage%axis_offset, 'm', digits)// &
+      ': dead centres at '//short_text(linkage%top_angle()/degree, digits)//' and '// &
       short_text(linkage%bottom_angle()/degree, digits)//' degrees'
     if (bore > 0) text = text//', bore '//quantity_text(bore, 'm', digits)//', displacement '// &
       short_text(mm3_to_cm3*pi/4*bore**2*stroke, digits)//' cm3'

@@ -21,6 +21,7 @@ module case_runner
   use result_file, only: fail_with_file
   use posix_files, only: absolute_path, make_directory, interrupted
   use run_progress, only: tell, say, clock, progress_wanted
+  use portuguese, only: in_language
   use measured_curve, only: measured_curve_t
   use process_pool, only: tasks_t, note_t, share, available_processors
   use text_tools, only: printable, integer_text, path_beside, replaced
@@ -248,7 +249,11 @@ contains
     call keep_first(job%error, error)
     call keep_first(job%run%error, error)
     call keep_first(job%twin%error, error)
-    if (allocated(job%run%line) .and. .not. options%quiet) call say(job%run%line, status)
+    if (allocated(job%run%line) .and. .not. options%quiet) then
+      if (options%resolved) call say(job%run%line, status)
+      if (.not. options%resolved) call say(in_language(job%run%line, options%language, &
+        job%run%case%file//achar(10)//job%run%case%name//achar(10)//job%run%base), status)
+    end if
     if (.not. allocated(error)) return
     call tell(error%message)
     status = max(status, error%status)

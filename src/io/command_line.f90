@@ -9,7 +9,7 @@ module command_line
   implicit none
   private
   public :: command_line_t, parse_command_line, program_arguments, help_text, option_t, options, subjects, shells, &
-    progress_words
+    progress_words, languages
 
   !> The contents of the command line.
   type :: command_line_t
@@ -28,6 +28,7 @@ module command_line
     logical :: resolved = .false.                 !! print the complete cases instead of running them
     logical :: check = .false., template = .false., quiet = .false., help = .false., version = .false.
     character(len=:), allocatable :: progress     !! auto, always, never
+    character(len=:), allocatable :: language     !! of outcomes: one of `languages`
     character(len=:), allocatable :: cases(:)     !! paths of case files or study files, padded with blanks
     logical :: sweep = .false.                    !! the files are studies
     logical :: fresh = .false.                    !! start a sweep again from the beginning
@@ -42,10 +43,10 @@ module command_line
     logical :: may_take_value = .false.   !! in the form --NAME=VALUE alone
   end type option_t
 
-  type(option_t), parameter :: options(19) = [ &
+  type(option_t), parameter :: options(20) = [ &
     option_t('out', 'o', .true.), option_t('set', 's', .true.), option_t('accuracy', 'a', .true.), &
-    option_t('jobs', 'j', .true.), option_t('progress', '', .true.), option_t('check', '', .false.), &
-    option_t('resolved', '', .false.), &
+    option_t('jobs', 'j', .true.), option_t('progress', '', .true.), option_t('language', '', .true.), &
+    option_t('check', '', .false.), option_t('resolved', '', .false.), &
     option_t('certify', '', .false.), option_t('name', '', .true.), &
     option_t('template', '', .false., .true.), option_t('quiet', 'q', .false.), option_t('help', 'h', .false.), &
     option_t('version', 'V', .false.), option_t('fresh', '', .false.), option_t('rows', '', .true.), &
@@ -55,6 +56,7 @@ module command_line
   character(len=*), parameter :: subjects = 'case, study, oils, results, schema'   !! of --reference, beside groups
   character(len=*), parameter :: shells = 'bash, zsh, fish'                   !! of --completion
   character(len=*), parameter :: progress_words = 'auto, always, never'       !! of --progress
+  character(len=*), parameter :: languages = 'en, pt'                         !! of --language
   character(len=*), parameter :: chunks = '.chunks'   !! ending of the folder in which a study collects results
   character(len=*), parameter :: standard_input = '/dev/stdin'
   integer, parameter :: most_jobs = 1024
@@ -73,6 +75,7 @@ contains
     line%accuracy = ''
     line%from = ''
     line%progress = 'auto'
+    line%language = 'en'
     line%reference = ''
     line%name = ''
     line%kind = ''
@@ -242,6 +245,9 @@ contains
     case ('progress')
       line%progress = value
       if (.not. is_listed(value, progress_words)) wanted = 'must be auto, always or never'
+    case ('language')
+      line%language = value
+      if (.not. is_listed(value, languages)) wanted = 'must be en or pt'
     case ('check')
       line%check = .true.
     case ('resolved')
@@ -400,6 +406,7 @@ contains
       '      --completion SHELL    print what completes this command line in bash, zsh or fish'//n// &
       '      --man                 print the manual page'//n// &
       '      --progress WHEN       show progress on standard error: auto (on a terminal), always or never'//n// &
+      '      --language LANGUAGE   of --check and of the line of a run or study: en or pt; messages and notes are English'//n// &
       '  -q, --quiet               print errors only'//n// &
       '      --fresh               sweep: discard the results of an earlier sweep (default: continue it)'//n// &
       '      --rows A:B            sweep: run only the rows A to B; a later sweep joins them with the others'//n// &

@@ -2,7 +2,7 @@
 module shell_pages
   use text_tools, only: replaced, next_line, joined
   use case_schema, only: key_table_t, case_schema_of, group_names
-  use command_line, only: options, help_text, subjects, shells, progress_words
+  use command_line, only: options, help_text, subjects, shells, progress_words, languages
   use accuracy_presets, only: accuracy_levels
   use case_templates, only: template_kinds
   use version_number, only: program_version
@@ -41,6 +41,7 @@ contains
       '    -s|--set) words="'//settings()//'"; compopt -o nospace ;;'//n// &
       '    -a|--accuracy) words="'//listed(accuracy_levels)//'" ;;'//n// &
       '    --progress) words="'//listed(progress_words)//'" ;;'//n// &
+      '    --language) words="'//listed(languages)//'" ;;'//n// &
       '    --reference) words="'//all_subjects()//'" ;;'//n// &
       '    --completion) words="'//listed(shells)//'" ;;'//n// &
       '    -o|--out|--from) COMPREPLY=($(compgen -f -- "$now")); compopt -o filenames; return ;;'//n// &
@@ -71,6 +72,8 @@ contains
         line = line//' -x -a "'//listed(accuracy_levels)//'"'
       case ('progress')
         line = line//' -x -a "'//listed(progress_words)//'"'
+      case ('language')
+        line = line//' -x -a "'//listed(languages)//'"'
       case ('reference')
         line = line//' -x -a "'//all_subjects()//'"'
       case ('completion')

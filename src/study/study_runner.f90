@@ -452,7 +452,7 @@ contains
       total = sweep%last - sweep%first + 1
       line = printable(sweep%study%name, 200)//': '//integer_text(total)//' runs'
       if (began > 0) line = line//', '//integer_text(began)//' of them already done'
-      if (done > began) line = line//'; '//short_text(wall_time)//' s, '//rate_text((done - began)/max(wall_time, 1e-6_dp))
+      if (done > began) line = line//'; '//short_text(wall_time, 3)//' s, '//rate_text((done - began)/max(wall_time, 1e-6_dp))
       if (tasks%noted > 0) line = line//'; '//integer_text(tasks%noted)//' with notes (column notes)'
       is_joined = file_length(sweep%path//trim(suffixes(of_runs))) >= 0
       if (total == sweep%design%runs .and. done == total .and. .not. is_joined) then
