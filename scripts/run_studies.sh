@@ -34,22 +34,25 @@ for study in map_I map_IV map_I_oscillating map_IV_oscillating bifurcation_clear
   "$program" sweep -o "$out" $options $more "cases/studies/$study.nml" || status=$?
 done
 gudgeon-plot study --results "$out" --format png --format svg || status=1
-gudgeon-plot study "$out/pin_ticking.runs.csv" --columns small_end_eccentricity_rate_x_max_abs small_end_min_film_thickness || status=1
-gudgeon-plot study "$out/pin_sliding.runs.csv" --columns pin_speed_rms small_end_asperity_force_max || status=1
+gudgeon-plot study "$out/pin_ticking.runs.csv" --format png --format svg --columns small_end_eccentricity_rate_x_max_abs small_end_min_film_thickness \
+  --title "A wide clearance ticks; thick oil cures a tight pin, not a worn one" || status=1
+gudgeon-plot study "$out/pin_sliding.runs.csv" --format png --format svg --columns pin_speed_rms small_end_asperity_force_max \
+  --title "Where asperities carry in the small end, the pin turns with the rod" || status=1
+gudgeon-plot study "$out/offset_crank.runs.csv" --format png --format svg --columns guide_force_max_abs guide_friction_power_mean \
+  --title "An offset of 9.5 mm has the least side force, one of 14 mm the least friction" || status=1
 
-gudgeon-plot study "$out/offset_crank.runs.csv" --columns guide_force_max_abs guide_friction_power_mean || status=1
-
-sensitivity() {   # sensitivity STUDY OUTPUT...
+sensitivity() {   # sensitivity STUDY TITLE OUTPUT...
   study=$1
-  shift
+  title=$2
+  shift 2
   # shellcheck disable=SC2086  # options are words
-  gudgeon-plot sensitivity --program "$program" -o "$out/sensitivity" --format png --format svg $options --convergence \
+  gudgeon-plot sensitivity --program "$program" -o "$out/sensitivity" --format png --format svg $options --convergence --title "$title" \
     "cases/studies/$study.nml" --outputs "$@" || status=1
 }
-sensitivity sensitivity_I log:min_film_thickness contact_time_fraction
-sensitivity sensitivity_IV log:min_film_thickness contact_time_fraction
-sensitivity sensitivity_I_oscillating min_film_thickness contact_time_fraction
-sensitivity sensitivity_IV_oscillating min_film_thickness contact_time_fraction
+sensitivity sensitivity_I "Clearance and viscosity decide the thinnest film of simulation I" log:min_film_thickness contact_time_fraction
+sensitivity sensitivity_IV "Which parameters decide the thinnest film of simulation IV" log:min_film_thickness contact_time_fraction
+sensitivity sensitivity_I_oscillating "With an oscillating film the speed decides, and chance" min_film_thickness contact_time_fraction
+sensitivity sensitivity_IV_oscillating "Which parameters decide simulation IV with an oscillating film" min_film_thickness contact_time_fraction
 if [ "$status" = 0 ]; then
   scripts/bench/record.py studies "Parameter studies" gudgeon-plot study --results "$out" --numbers || status=1
   scripts/bench/record.py sensitivity "Sensitivity of films and contacts" gudgeon-plot sensitivity --table -o "$out/sensitivity" \

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import math
+import re
 from collections.abc import Iterable, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -63,6 +64,17 @@ class Unit(NamedTuple):
             return cls(*SHOWN[unit])
         name, factor = prefixed(unit.replace(".", " "), np.array(values, dtype=float))
         return cls(name.replace("µ", "u"), factor)
+
+    @property
+    def printed(self) -> str:
+        """Its name as pictures have it: µm, °C, cm³/min."""
+        from .names import plain_unit
+
+        return re.sub(r"^u(?=[A-Za-z])", "µ", plain_unit(self.name)).replace("degC", "°C")
+
+    def label(self, quantity: str) -> str:
+        """A quantity as an axis shows it, with its unit."""
+        return f"{quantity} [{self.printed}]" if self.name else quantity
 
     def __call__(self, value: Any) -> Any:
         return value if self.factor == 1 and self.offset == 0 else (value + self.offset) * self.factor
@@ -249,7 +261,7 @@ def _of_study(path: Path, wanted: list[str] | None, digits: int) -> Table:
             continue
         if 0 < names.index(name) < end:
             shown = of_parameter(name, values.to_numpy())
-            unit = Unit("degC", offset=-273.15) if shown.unit == "K" else Unit(shown.unit.replace("µ", "u").replace("²", "2").replace("³", "3"), shown.factor)
+            unit = Unit("degC", offset=-273.15) if shown.unit == "°C" else Unit(shown.unit.replace("µ", "u").replace("²", "2").replace("³", "3"), shown.factor)
         else:
             unit = Unit.of(name, runs.units[name], values.to_numpy())
         head = f"{name} [{unit.name}]" if unit.name else name

@@ -203,18 +203,20 @@ class Tolerances:
         matters most, coloured by the second."""
         from matplotlib.figure import Figure
 
+        from .names import COLUMNS, KEYS
+
         units = self._units
-        drawing = Figure(figsize=(9, 3.2 * len(self.quantities)), layout="constrained")
+        labels = {name: units[name].label(KEYS.get(name) or COLUMNS.get(name) or name.split(".")[-1].replace("_", " ")) for name in (*self.keys, *self.quantities)}
+        drawing = Figure(figsize=(7, 2.7 * len(self.quantities)), layout="constrained")
         for (left, right), name in zip(drawing.subplots(len(self.quantities), 2, squeeze=False), self.quantities):
-            label = f"{name.replace('_', ' ')} [{units[name].name}]" if units[name].name else name.replace("_", " ")
-            left.hist(units[name](self.samples(name)), "auto", color="tab:blue", alpha=0.7)
+            left.hist(units[name](self.samples(name)), "auto", color="#0072B2", alpha=0.5)
             marks = [("nominal", self.nominal[name], "black", "-")]
-            marks += [(f"{share:g} %", self.percentile(name, share)[0], "tab:red", "-") for share in (self.chosen[0], self.chosen[-1])]
-            marks += [("limit", limits[name], "tab:green", "--") for limits in (self.below, self.above) if name in limits]
+            marks += [(f"{share:g} %", self.percentile(name, share)[0], "#D55E00", ":") for share in (self.chosen[0], self.chosen[-1])]
+            marks += [("limit", limits[name], "#009E73", "--") for limits in (self.below, self.above) if name in limits]
             for said, value, colour, style in marks:
-                left.axvline(units[name](float(value)), color=colour, linestyle=style, label=said)
-            left.set(xlabel=label, ylabel="runs")
-            left.legend(fontsize=8, frameon=True)
+                left.axvline(units[name](float(value)), color=colour, linestyle=style, linewidth=1.4, label=said)
+            left.set(xlabel=labels[name], ylabel="runs")
+            left.legend(frameon=True)
             order = self.rank_correlation.loc[name].abs().sort_values(ascending=False).index
             first, *others = order
             rows = self.done.dropna(subset=[name])
@@ -222,8 +224,12 @@ class Tolerances:
             shade = units[others[0]](rows[others[0]].to_numpy(dtype=float)) if others else None
             points = right.scatter(over, up, c=shade, s=12)
             if others:
-                drawing.colorbar(points, label=f"{others[0].split('.')[-1].replace('_', ' ')} [{units[others[0]].name}]")
-            right.set(xlabel=f"{first.split('.')[-1].replace('_', ' ')} [{units[first].name}]", ylabel=label)
+                drawing.colorbar(points, label=labels[others[0]])
+            right.set(xlabel=labels[first], ylabel=labels[name])
+        beyond = [(name, "below", limit) for name, limit in self.below.items()] + [(name, "above", limit) for name, limit in self.above.items()]
+        shares = [f"{COLUMNS.get(name) or name.replace('_', ' ')} {word} {units[name](limit):.3g} {units[name].printed} in {100 * self.probability(name, **{word: limit}).value:.2g} % of the runs"
+                  for name, word, limit in beyond]
+        drawing.suptitle("\n".join(shares))
         return drawing
 
     def report(self) -> Page:

@@ -39,6 +39,8 @@ KEYS = {
 #: Columns of results whose names alone are not clear as labels.
 COLUMNS = {
     "min_film_thickness": "smallest film thickness",
+    "cycle_min_film_thickness": "thinnest film in the last cycle",
+    "cycle_max_force": "largest force in the last cycle",
     "min_film_thickness_mean": "smallest film thickness of a revolution, mean",
     "contact_time_fraction": "time in contact",
     "max_penetration": "largest penetration",
@@ -68,11 +70,16 @@ PREFIXES = ((1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"), (1e6,
 
 @dataclass(frozen=True)
 class Shown:
-    """A quantity on an axis: its name, its unit, and the factor from its values to that unit."""
+    """A quantity on an axis: its name, its unit, and the factor from its values to that unit, with what is added then."""
 
     name: str
     unit: str = ""
     factor: float = 1.0
+    shift: float = 0.0
+
+    def __call__(self, values: np.ndarray | float) -> np.ndarray | float:
+        """Values in the unit shown."""
+        return self.factor * values + self.shift
 
     @property
     def label(self) -> str:
@@ -142,8 +149,7 @@ def of_parameter(key: str, values: np.ndarray) -> Shown:
     name = KEYS.get(key) or key.split(".")[-1].replace("_", " ")
     unit = key_units().get(".".join(own), "")
     unit = unit if re.fullmatch(r"[\w/ ^.]{1,12}", unit) and " " not in unit.replace("Pa s", "").replace("N m", "") else ""
-    shown, factor = shown_unit(key, unit, np.asarray(values, dtype=float))
-    return Shown(name, plain_unit(shown), factor)
+    return shown_in(name, *shown_unit(key, unit, np.asarray(values, dtype=float)))
 
 
 def of_column(column: str, unit: str, values: np.ndarray) -> Shown:
@@ -157,5 +163,9 @@ def of_column(column: str, unit: str, values: np.ndarray) -> Shown:
     name = COLUMNS.get(column) or column.replace("_", " ")
     if column.endswith("_fraction"):
         return Shown(name, "%", 100.0)
-    shown, factor = shown_unit(column, unit, values)
-    return Shown(name, plain_unit(shown), factor)
+    return shown_in(name, *shown_unit(column, unit, values))
+
+
+def shown_in(name: str, unit: str, factor: float) -> Shown:
+    """A quantity in a unit; temperatures in °C."""
+    return Shown(name, "°C", 1.0, -273.15) if unit == "K" and not name.endswith("rms") else Shown(name, plain_unit(unit), factor)

@@ -17,6 +17,7 @@ import pandas as pd
 import gudgeon
 from gudgeon import language
 from gudgeon.commands import Refused, add_output, number, save
+from gudgeon.names import plain_unit, shown_unit
 from gudgeon.plots.studies import read_strobe
 from gudgeon.plots.style import WIDTH, add_legend, plt
 from gudgeon.study import Runs
@@ -41,6 +42,13 @@ def require(table: pd.DataFrame, *names: str) -> None:
     for name in names:
         if name not in table:
             raise Refused(f"no column {name}; there are: {', '.join(table.columns)}")
+
+
+def finding(table: pd.DataFrame, key: str, unit: str) -> str:
+    """Where the period doubles, for the title."""
+    flips = table.loc[table["kind"] == "flip", key].to_numpy()
+    shown, factor = shown_unit(key, unit, flips)
+    return f"the period doubles at {', '.join(f'{factor * value:.3g}' for value in flips)} {plain_unit(shown)}" if len(flips) else "periodic orbits"
 
 
 def run(options: argparse.Namespace) -> int:
@@ -74,6 +82,6 @@ def run(options: argparse.Namespace) -> int:
         branch.plot(options.column, over if i == 0 else None, axes)
     axes.set_xlim(*sorted(axes.get_xlim()))
     add_legend(drawing, [axes])
-    drawing.suptitle(f"{options.case.stem}: periodic orbits")
+    drawing.suptitle(f"{options.case.stem}: {finding(table, options.key, branches[0].units[options.key])}")
     save(drawing, options, folder, f"{options.case.stem}.branch")
     return 0

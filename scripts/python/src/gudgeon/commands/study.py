@@ -55,8 +55,8 @@ def maps(results: Path) -> tuple[figures.Drawing, list[str]]:
 
 def bifurcation(results: Path) -> tuple[figures.Drawing, list[str]]:
     kinds = {
-        "bifurcation_clearance": ("joint.clearance", 1e6, "µm", None, FLORES_SPEED, "524 rad/s"),
-        "bifurcation_speed": ("initial.crank_speed", 1.0, "rad/s", FLORES_CLEARANCE, None, "c = 100 µm"),
+        "bifurcation_clearance": ("joint.clearance", 1e6, "µm", None, FLORES_SPEED, "at 5000 rpm"),
+        "bifurcation_speed": ("initial.crank_speed", 1.0, "rad/s", FLORES_CLEARANCE, None, "at a clearance c of 100 µm"),
     }
     strobes, lines = {}, []
     for name, (parameter, unit, label, clearance, speed, held) in kinds.items():
@@ -64,7 +64,7 @@ def bifurcation(results: Path) -> tuple[figures.Drawing, list[str]]:
         strobe = studies.with_ratios(strobe, clearance, speed)
         strobes[name] = (strobe, parameter, held)
         lines.append(studies.describe_bifurcation(strobe, name, parameter, unit, label))
-    title = "Flores slider-crank, dry: state at the dead centre in 80 revolutions"
+    title = "Dry joint, state at the dead centre: chaos at large clearance and low speed, else the motion repeats"
     return studies.draw_bifurcation(strobes, title), lines
 
 

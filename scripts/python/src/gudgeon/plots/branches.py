@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 #: Special points: how they are named and coloured.
 KINDS = {
-    "fold": ("fold", ORANGE), "flip": ("flip", VERMILION), "neimark_sacker": ("Neimark-Sacker", GREEN), "grazing": ("grazing", PURPLE),
+    "fold": ("fold", ORANGE), "flip": ("flip, the period doubles", VERMILION), "neimark_sacker": ("Neimark-Sacker", GREEN), "grazing": ("grazing", PURPLE),
     "lift_off": ("lift-off", BLACK), "edge": ("edge", BLACK), "end": ("end", BLACK),
 }  # fmt: skip
 
@@ -35,7 +35,7 @@ def draw_branch(branch: Branch, column: str, over: pd.DataFrame | None, axes: An
         return label if new else None
 
     if over is not None:
-        axes.scatter(along * over[branch.key], up * over[column], s=1, c=GREY, linewidths=0, rasterized=True, zorder=1, label=once("brute force"))
+        axes.scatter(along * over[branch.key], up * over[column], s=1, c=GREY, linewidths=0, rasterized=True, zorder=1, label=once("Poincaré sections"))
     x, special, stable = along * table[branch.key].to_numpy(), (table["kind"] != "").to_numpy(), table["stable"].to_numpy()
     # a special point is on the border: its neighbour says how a piece of the line is drawn
     pieces = np.where(special[:-1], stable[1:], np.where(special[1:], stable[:-1], stable[:-1] & stable[1:]))

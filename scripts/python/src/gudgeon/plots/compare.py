@@ -108,6 +108,8 @@ def draw(a: Run, b: Run, names: tuple[str, str], found: list[Agreement], agreeme
             axis.axvline(1e3 * limit, color=GREY, linewidth=1, linestyle=":", label=f"horizon: {1e3 * limit:.4g} ms")
     axes[-1, 0].set_xlabel("time [ms]")
     axes[-1, 0].set_xlim(1e3 * found[0].time[0], 1e3 * found[0].time[-1])
+    until = "to the end" if all(item.whole for item in found) else f"up to {1e3 * limit:.4g} ms"
+    drawing.suptitle(f"{names[0]} and {names[1]} agree {until}")
     drawing.align_ylabels()
     style.add_legend(drawing, axes.flat)
     return drawing

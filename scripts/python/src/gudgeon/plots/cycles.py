@@ -157,7 +157,8 @@ def draw_indicator(cycles: Cycles) -> Drawing:
         draw_heat(cycles, axes[0, 1])
     axis.set_xlabel(f"{cycles.run.volume} [cm³]")
     axis.set_ylabel("cylinder pressure [bar]")
-    axis.set_title(run.name)
+    lost = [float(run.summary[name][0]) for name in ("cycle_suction_loss", "cycle_discharge_loss") if name in run.summary]
+    axis.set_title(f"{run.name}: the valves take {sum(lost):.3g} W" if lost else run.name)
     return drawing
 
 

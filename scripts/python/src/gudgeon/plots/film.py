@@ -6,11 +6,10 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
-from gudgeon.plots.style import BLACK, BLUE, GREEN, VERMILION, WIDTH
+from gudgeon.plots.style import BLACK, BLUE, GREEN, VERMILION, WIDTH, mark_decades
 from gudgeon.results import Results, Run, read_table
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
-from matplotlib.ticker import StrMethodFormatter
 
 SIMULATIONS = ("I", "II", "III", "IV", "V", "VI")
 #: Ending of the case's name, film, colour.
@@ -92,19 +91,18 @@ def with_memory(run: Run, table: pd.DataFrame, name: str) -> Drawing:
         (3, "supply_flow", 1e6, "from the supply", BLUE), (3, "side_flow", 1e6, "out of the ends", VERMILION))
     for i, column, factor, label, colour in series:
         axes[i].plot(x, factor * table[column].to_numpy()[order], color=colour, label=label)
-    for axis, label in zip(axes, ("thinnest film [µm]", "largest pressure [MPa]", "oil in the gap [-]", "flow [ml/s]")):
+    for axis, label in zip(axes, ("thinnest film [µm]", "largest pressure [MPa]", "oil in the gap", "flow [ml/s]")):
         axis.set_ylabel(label)
     axes[0].set_yscale("log")
-    for formatter in (axes[0].yaxis.set_major_formatter, axes[0].yaxis.set_minor_formatter):
-        formatter(StrMethodFormatter("{x:g}"))
+    mark_decades(axes[0].yaxis)
     axes[2].set_ylim(0, 1)
     axes[0].legend(loc="best", ncols=2)
     axes[3].legend(loc="best", ncols=2)
     axes[3].set_xlim(0, 360 if np.ptp(angle) < 361 else 720)
     axes[3].set_xticks(range(0, 361 if np.ptp(angle) < 361 else 721, 90))
     axes[3].set_xlabel("crank angle [°]")
-    kind = run.parameter("supply", "kind")
-    drawing.suptitle(f"{name}: the film that must be fed" if kind else f"{name}: a film without supply")
+    fed, quick = (1e6 * table[f"{which}_film_thickness"].min() for which in ("min", "quick"))
+    drawing.suptitle(f"{name}: with memory the film is at least {fed:.2g} µm thick, without it {quick:.2g} µm")
     return drawing
 
 
@@ -140,13 +138,13 @@ def gap_of(run: Run) -> list[np.ndarray]:
 def draw_gap(axes: Axes, gap: list[np.ndarray]) -> None:
     """The gap of a centred pin over the angle of the bearing, in the middle and at both ends."""
     angle, *gaps = gap
-    for values, colour, label in zip(gaps, (BLUE, GREEN, VERMILION), ("in the middle", "at the ends", None)):
+    for values, colour, label in zip(gaps, (BLUE, GREEN, VERMILION), ("in the middle", "at one end", "at the other end")):
         axes.plot(angle, 1e6 * values, color=colour, label=label, linewidth=None if colour == BLUE else 0.6)
     axes.set_xticks(range(0, 361, 90))
     axes.set_xlim(0, 360)
     axes.set_xlabel("angle in the bearing [°]")
-    axes.set_ylabel("gap of a centred pin [µm]")
-    axes.legend(loc="best", ncols=2)
+    axes.set_ylabel("gap, pin centred [µm]")
+    axes.legend(loc="best", ncols=3)
 
 
 def simulations(results: Results) -> Drawing:

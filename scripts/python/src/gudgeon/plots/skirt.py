@@ -9,10 +9,11 @@ from gudgeon.plots.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILI
 from gudgeon.results import Run
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
-from matplotlib.ticker import MultipleLocator
+from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 COLOURS = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY)
 IN_A_ROW = 3   # pairs of faces
+LEVELS = 14   # of pressure
 ABOVE = {"loc": "lower center", "bbox_to_anchor": (0.5, 0.98)}   # place of a legend
 ENDS = ("+y, top", "+y, bottom", "−y, top", "−y, bottom")
 
@@ -32,7 +33,11 @@ def draw(run: Run, table: pd.DataFrame | None) -> Drawing:
     rows = rows_of_cycle(run, -1)
     for place, kind in enumerate(kinds, maps):
         {"gaps": draw_gaps, "friction": draw_friction, "stribeck": draw_stribeck}[kind](drawing.add_subplot(grid[place, :]), run, rows)
-    drawing.suptitle(f"{run.name}: the piston in its bore")
+    found = "the piston in its bore"
+    if fields:
+        hardest = table.loc[table["pressure"].idxmax()]
+        found = f"the film carries hardest at {np.degrees(hardest['crank_angle']) % 720:.0f}°, {1e-6 * hardest['pressure']:.2g} MPa"
+    drawing.suptitle(f"{run.name}: {found}")
     return drawing
 
 
@@ -44,16 +49,16 @@ def draw_faces(drawing: Drawing, axes: list[list[Axes]], fields: list[pd.DataFra
             half = field[field["side"] == side].pivot(index="height", columns="angle", values="pressure")
             angles = np.concatenate([-half.columns.to_numpy()[::-1], half.columns.to_numpy()])
             pressures = 1e-6 * np.hstack([half.to_numpy()[:, ::-1], half.to_numpy()])
-            mesh = axis.pcolormesh(angles, 1e3 * half.index.to_numpy(), pressures, cmap="viridis", vmin=0, vmax=top, shading="gouraud", rasterized=True)
+            mesh = axis.contourf(angles, 1e3 * half.index.to_numpy(), pressures, levels=np.linspace(0, top, LEVELS + 1), cmap="viridis")
             axis.grid(False)
             axis.xaxis.set_major_locator(MultipleLocator(30))
-            axis.set_title(f"{'−y' if side < 0 else '+y'}, {pressures.max():.2g} MPa", loc="left")
+            axis.set_title(f"{'−y' if side < 0 else '+y'} {pressures.max():.2g} MPa", loc="left")
             axis.set_xlabel(f"at {np.degrees(field['crank_angle'].iloc[0]) % 720:.0f}°" if side < 0 else "face [°]")
             if k % IN_A_ROW or side > 0:
                 axis.tick_params(labelleft=False)
             else:
                 axis.set_ylabel("above the pin [mm]")
-    drawing.colorbar(mesh, ax=[axis for pair in axes for axis in pair], label="pressure [MPa]", pad=0.01)
+    drawing.colorbar(mesh, ax=[axis for pair in axes for axis in pair], label="pressure [MPa]", pad=0.01, ticks=MaxNLocator(6))
 
 
 def over_cycle(axis: Axes, run: Run, rows: slice, column: str, factor: float, colour: str, label: str) -> None:

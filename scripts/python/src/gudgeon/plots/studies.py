@@ -21,7 +21,7 @@ from gudgeon.results import MissingResult, events_of, read_table
 from gudgeon.study import Runs
 from matplotlib.axes import Axes
 from matplotlib.collections import PathCollection
-from matplotlib.colors import LogNorm, Normalize, TwoSlopeNorm
+from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import MaxNLocator
 from scipy.optimize import brentq
@@ -55,11 +55,11 @@ def grid(runs: Runs, x: str, y: str, column: str) -> tuple[np.ndarray, np.ndarra
     return found.columns.to_numpy(dtype=float), found.index.to_numpy(dtype=float), found.to_numpy(dtype=float)
 
 
-def mark_failed(axis: Axes, runs: Runs, x: str, y: str, scale: tuple[float, float] = (1.0, 1.0)) -> None:
+def mark_failed(axis: Axes, runs: Runs, x: str, y: str, shown_x: Shown, shown_y: Shown) -> None:
     """Draw crosses where runs failed."""
     if not runs.done.all():
         failed = runs.table[~runs.done]
-        axis.plot(scale[0] * failed[x], scale[1] * failed[y], "x", color=VERMILION, markersize=4, label="failed")
+        axis.plot(shown_x(failed[x]), shown_y(failed[y]), "x", color=VERMILION, markersize=4, label="failed")
 
 
 def is_even_in_logarithm(values: np.ndarray) -> bool:
@@ -119,8 +119,8 @@ def table_panel(drawing: Drawing, axis: Axes, shown_x: Shown, shown_y: Shown, sh
         dark = np.isfinite(value) and norm(value) > 0.6
         said = f"{value:.0f}" if abs(value) >= 100 or abs(value) < 1e-3 * norm.vmax and not isinstance(norm, LogNorm) else f"{value:.2g}"
         axis.text(column + 0.5, row + 0.5, said if np.isfinite(value) else "×", ha="center", va="center", fontsize=7, color="white" if dark else BLACK)
-    axis.set_xticks(np.arange(len(xs)) + 0.5, [f"{shown_x.factor * one:.3g}" for one in xs])
-    axis.set_yticks(np.arange(len(ys)) + 0.5, [f"{shown_y.factor * one:.3g}" for one in ys])
+    axis.set_xticks(np.arange(len(xs)) + 0.5, [f"{shown_x(one):.3g}" for one in xs])
+    axis.set_yticks(np.arange(len(ys)) + 0.5, [f"{shown_y(one):.3g}" for one in ys])
     axis.tick_params(length=0)
     axis.set(xlabel=shown_x.label, ylabel=shown_y.label, title=shown.label)
     axis.grid(visible=False)
@@ -133,24 +133,24 @@ def map_panel(
     xs, ys, values = grid(runs, x, y, column)
     shown_x, shown_y = of_parameter(x, xs), of_parameter(y, ys)
     shown = of_column(column, runs.units[column], values)
-    values = shown.factor * values
+    values = shown(values)
     if norm is None and values.size <= MOST_CELLS:
         table_panel(drawing, axis, shown_x, shown_y, shown, xs, ys, values)
         return
     own, extend = colour_scale(values)
     norm = norm or own
     colours = "viridis" if column.startswith("min_film") and shown.factor > 0 else "magma"
-    image = axis.pcolormesh(shown_x.factor * xs, shown_y.factor * ys, values, norm=norm, cmap=colours, shading="nearest")
+    image = axis.pcolormesh(shown_x(xs), shown_y(ys), values, norm=norm, cmap=colours, shading="nearest")
     if isinstance(norm, LogNorm) and colours == "viridis":
         exponents = range(int(np.floor(np.log10(norm.vmin))), int(np.ceil(np.log10(norm.vmax))) + 1)
         levels = [m * 10.0**k for k in exponents for m in (1, 3) if np.nanmin(values) < m * 10.0**k < np.nanmax(values)]
         if levels:
-            lines = axis.contour(shown_x.factor * xs, shown_y.factor * ys, values, levels=levels, colors="white", linewidths=0.8)
+            lines = axis.contour(shown_x(xs), shown_y(ys), values, levels=levels, colors="white", linewidths=0.8)
             long = [level for level, parts in zip(lines.levels, lines.allsegs) if sum(map(len, parts)) > 12]
             axis.clabel(lines, long, fmt=lambda value: f"{value:g}", fontsize=7)
-    mark_failed(axis, runs, x, y, (shown_x.factor, shown_y.factor))
-    scale_axis(axis, "x", xs)
-    scale_axis(axis, "y", ys)
+    mark_failed(axis, runs, x, y, shown_x, shown_y)
+    scale_axis(axis, "x", shown_x(xs))
+    scale_axis(axis, "y", shown_y(ys))
     axis.set_xlabel(shown_x.label)
     axis.set_ylabel(shown_y.label)
     axis.grid(visible=False)
@@ -253,9 +253,9 @@ def strobe_panel(axis: Axes, strobe: pd.DataFrame, parameter: str, column: str, 
     ):
         points = strobe[mask]
         axis.scatter(
-            shown.factor * points[parameter], points[column], s=size, c=colour, linewidths=0, rasterized=True, label=name
+            shown(points[parameter]), points[column], s=size, c=colour, linewidths=0, rasterized=True, label=name
         )
-    scale_axis(axis, "x", strobe[parameter])
+    scale_axis(axis, "x", shown(strobe[parameter]))
     axis.set_xlabel(shown.label)
     axis.set_ylabel(label)
 
@@ -263,6 +263,9 @@ def strobe_panel(axis: Axes, strobe: pd.DataFrame, parameter: str, column: str, 
 #: Column of the largest Lyapunov exponent [1/revolution], and the largest magnitude that the colours show.
 EXPONENT = "lyapunov_exponent"
 EXPONENT_SHOWN = 1.0
+
+#: Colours of exponents, the lighter the larger, so that chaos and periodic motion differ in grey too.
+EXPONENTS = LinearSegmentedColormap.from_list("exponents", plt.get_cmap("plasma")(np.linspace(0, 0.8, 64)))
 
 #: Columns of a strobe divided by the clearance, or by clearance times crank speed.
 RATIOS = {
@@ -303,26 +306,28 @@ def explain_strobes(drawing: Drawing, axes: np.ndarray, coloured: PathCollection
     """Add the colour bar of the exponents and the legend of the periods."""
     if coloured is not None:
         label = of_column(EXPONENT, "1/revolution", [EXPONENT_SHOWN]).label
-        drawing.colorbar(coloured, ax=axes, location="bottom", aspect=50, pad=0.02, extend="both").set_label(label)
+        bar = drawing.colorbar(coloured, ax=axes, location="bottom", aspect=50, pad=0.02, extend="both")
+        bar.set_label(f"{label}: below 0 the motion repeats, above it is chaotic")
     if not all_coloured:
         add_legend(drawing, axes.flat, markerscale=3)
 
 
 def exponent_panel(axis: Axes, strobe: pd.DataFrame, parameter: str, column: str, label: str) -> PathCollection:
-    """Points of a column once in a revolution over the parameter, coloured by the largest Lyapunov exponent of their run: blue if
-    neighbouring motions converge, red if they diverge."""
+    """Points of a column once in a revolution over the parameter, coloured by the largest Lyapunov exponent of their run: dark if
+    neighbouring motions converge, light if they diverge."""
     shown = of_parameter(parameter, strobe[parameter])
     points = axis.scatter(
-        shown.factor * strobe[parameter],
+        shown(strobe[parameter]),
         strobe[column],
-        s=np.where(strobe[EXPONENT] > 0, 0.5, 3.0),
+        s=np.where(strobe[EXPONENT] > 0, 0.15, 3.0),
         c=strobe[EXPONENT],
-        cmap="coolwarm",
-        norm=TwoSlopeNorm(0.0, -EXPONENT_SHOWN, EXPONENT_SHOWN),
+        cmap=EXPONENTS,
+        norm=Normalize(-EXPONENT_SHOWN, EXPONENT_SHOWN),
         linewidths=0,
+        antialiased=False,
         rasterized=True,
     )
-    scale_axis(axis, "x", strobe[parameter])
+    scale_axis(axis, "x", shown(strobe[parameter]))
     axis.set_xlabel(shown.label)
     axis.set_ylabel(label)
     return points
@@ -340,7 +345,7 @@ def draw_strobes(strobe: pd.DataFrame, parameter: str, title: str) -> Drawing:
     coloured = None
     for axis, column in zip(axes[:, 0], columns):
         shown = of_column(column, strobe.attrs.get(column, ""), strobe[column])
-        scaled = strobe.assign(**{column: shown.factor * strobe[column]})
+        scaled = strobe.assign(**{column: shown(strobe[column])})
         coloured = panel_of_strobes(axis, scaled, parameter, column, repeats, shown.label)
     for axis in axes[:-1, 0]:
         axis.set_xlabel("")
@@ -423,7 +428,7 @@ def draw_restitution(runs: Runs, measured: pd.DataFrame) -> Drawing:
     for axis in axes[1]:
         axis.set_xlabel("coefficient of restitution asked for")
     add_legend(drawing, axes.flat)
-    drawing.suptitle(f"Flores slider-crank, 5000 rpm, clearance 0.5 mm, dry{failed_note(runs)}")
+    drawing.suptitle(f"Asked for up to 0.75 a restitution changes little: the law gives no less than 0.66 (Flores, 5000 rpm, 0.5 mm, dry){failed_note(runs)}")
     return drawing
 
 
@@ -450,7 +455,7 @@ def shown_columns(runs: Runs, columns: Sequence[str]) -> tuple[list[str], list[s
         if column not in varying:
             values = runs.table.loc[runs.done, column].astype(float)
             shown = of_column(column, runs.units[column], values)
-            value = f"{shown.factor * values.iloc[0]:.4g} {shown.unit}".strip() if len(values) else "no value"
+            value = f"{shown(values.iloc[0]):.4g} {shown.unit}".strip() if len(values) else "no value"
             notes.append(f"{shown.name}: {value} in every run")
     return varying, notes
 
@@ -470,23 +475,31 @@ def draw_curves(runs: Runs, parameter: str, columns: Sequence[str], title: str) 
     for axis, column in zip(axes[:, 0], columns):
         values = np.where(runs.done, runs[column], np.nan).astype(float)
         shown = of_column(column, runs.units[column], values)
-        axis.plot(shown_x.factor * places, shown.factor * values, ".-" if is_number else "o", color=BLUE)
+        axis.plot(shown_x(places), shown(values), ".-" if is_number else "o", color=BLUE)
         axis.set_ylabel(shown.label)
-        if spans_decades(shown.factor * values):
+        if spans_decades(shown(values)):
             axis.set_yscale("log")
             mark_decades(axis.yaxis)
         failed = ~runs.done
         if failed.any():
             axis.plot(
-                shown_x.factor * places[failed], np.zeros(failed.sum()), "x", color=VERMILION, markersize=4, clip_on=False,
+                shown_x(places[failed]), np.zeros(failed.sum()), "x", color=VERMILION, markersize=4, clip_on=False,
                 transform=axis.get_xaxis_transform(), label="failed",
             )
     if is_number:
-        scale_axis(axes[-1][0], "x", places)
+        scale_axis(axes[-1][0], "x", shown_x(places))
     else:
         axes[-1][0].set_xticks(places, [str(value) for value in runs.table[parameter]], rotation=30, ha="right")
     axes[-1][0].set_xlabel(shown_x.label)
     return titled(drawing, title, runs, notes)
+
+
+def where_largest(runs: Runs, x: str, y: str, column: str) -> str:
+    """The largest value of a column over two parameters, and where it is."""
+    row = runs.table.loc[runs.table[column].where(runs.done).astype(float).idxmax()]
+    shown = of_column(column, runs.units[column], np.array([row[column]], dtype=float))
+    value, *place = (f"{one(row[key]):.3g} {one.unit}".strip() for key, one in ((column, shown), *((key, of_parameter(key, runs[key])) for key in (x, y))))
+    return f"up to {value}, at {place[0]} and {place[1]}"
 
 
 def draw_map(runs: Runs, x: str, y: str, columns: Sequence[str], title: str) -> Drawing:
@@ -499,6 +512,8 @@ def draw_map(runs: Runs, x: str, y: str, columns: Sequence[str], title: str) -> 
         map_panel(drawing, axis, runs, x, y, column)
     for axis in axes.flat[len(columns) :]:
         axis.remove()
+    if len(columns) == 1:
+        title += f": {where_largest(runs, x, y, columns[0])}"
     return titled(drawing, title, runs, notes)
 
 
@@ -513,9 +528,9 @@ def draw_scatter(runs: Runs, parameters: Sequence[str], columns: Sequence[str], 
         for axis, parameter in zip(row, parameters):
             is_number = pd.api.types.is_numeric_dtype(runs.table[parameter])
             shown_x = of_parameter(parameter, runs[parameter]) if is_number else Shown(parameter.replace("_", " ").replace(".", " "))
-            places = shown_x.factor * runs[parameter] if is_number else runs.table[parameter].astype(str)
-            axis.plot(places, shown.factor * values, ".", color=BLUE, markersize=2)
-            if spans_decades(shown.factor * values):
+            places = shown_x(runs[parameter]) if is_number else runs.table[parameter].astype(str)
+            axis.plot(places, shown(values), ".", color=BLUE, markersize=2)
+            if spans_decades(shown(values)):
                 axis.set_yscale("log")
                 mark_decades(axis.yaxis)
             axis.margins(x=0.06)

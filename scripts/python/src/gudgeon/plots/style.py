@@ -1,18 +1,22 @@
 """Style of all pictures: sizes for print, colours that colour-blind readers can distinguish (Okabe and Ito), legends, files."""
 
 import math
+import re
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
+import numpy as np
 from gudgeon import language
 from gudgeon.results import MissingResult
 from matplotlib import font_manager
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
+from matplotlib.collections import Collection, QuadMesh
 from matplotlib.figure import Figure as Drawing
+from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, LogLocator
 
@@ -30,6 +34,13 @@ WIDTH = 6.3
 
 #: Number of letters of a legend that fit side by side, and the number that a legend handle takes the place of.
 LETTERS_IN_A_ROW, HANDLE_LETTERS = 125, 9
+
+#: How a picture that is kept is written: in pixels for pages of a forge, as vectors for those of the manual.
+KEPT = ("png", "svg")
+
+#: Largest part of a vector file that curves, marks and cells may have [bytes], bytes of one point, mark or cell, and resolution of the
+#: parts that are pixels there because others would make the file larger: clouds of points, maps, chaotic traces [dots per inch].
+VECTORS, BYTES, VECTOR_DPI = 80_000, {"point": 23, "mark": 110, "cell": 200}, 120
 
 #: Size of the letters [points]; those of ticks and legends are smaller by one, titles larger by one.
 FONT_SIZE = 8
@@ -127,10 +138,41 @@ def fit_title(drawing: Drawing) -> None:
         title.set_fontsize(title.get_fontsize() * 0.98 * room / box.width)
 
 
-def save(drawing: Drawing, directory: Path, stem: str, formats: Iterable[str]) -> list[Path]:
+def bytes_of(part: Line2D | Collection) -> int:
+    """About the size of a part of a drawing in a vector file."""
+    if isinstance(part, Line2D):
+        marks = 0 if part.get_marker() in ("None", None, "") else len(part.get_xdata())
+        line = part.get_transform().transform_path(part.get_path()) if part.get_linestyle() != "None" else None
+        return BYTES["mark"] * marks + BYTES["point"] * (len(line.cleaned(simplify=True).vertices) if line else 0)
+    if isinstance(part, QuadMesh):
+        return BYTES["cell"] * np.size(part.get_array())
+    return max(BYTES["mark"] * len(part.get_offsets()), BYTES["point"] * sum(len(path.vertices) for path in part.get_paths()))
+
+
+def lighten(drawing: Drawing) -> None:
+    """Make the largest parts of a drawing pixels in its vector files, until the others have at most VECTORS bytes."""
+    parts = [*drawing.findobj(Line2D), *drawing.findobj(Collection)]
+    sizes = sorted(((bytes_of(part), i) for i, part in enumerate(parts) if not part.get_rasterized()), reverse=True)
+    rest = sum(size for size, _ in sizes)
+    for size, i in sizes:
+        if rest <= VECTORS:
+            break
+        parts[i].set_rasterized(True)
+        rest -= size
+
+
+def shortened(vectors: str) -> str:
+    """An SVG without indentation and with places to a hundredth of a point: a fifth smaller."""
+    places = re.compile(r' (?:d|x|y)="[^"]*"')
+    return re.sub(r"\n +", "\n", places.sub(lambda found: re.sub(r"\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}", found[0]), vectors))
+
+
+def save(drawing: Drawing, directory: Path, stem: str, formats: Sequence[str]) -> list[Path]:
     """Write a drawing in each format, in the language of the script. Dates are left out, so that equal results give equal files."""
     language.current.localise(drawing)
     fit_title(drawing)
+    if "svg" in formats:
+        lighten(drawing)
     directory.mkdir(parents=True, exist_ok=True)
     paths = []
     for form in formats:
@@ -139,9 +181,16 @@ def save(drawing: Drawing, directory: Path, stem: str, formats: Iterable[str]) -
         with warnings.catch_warnings():
             warnings.filterwarnings("error", "constrained_layout not applied", UserWarning)
             try:
-                drawing.savefig(path, metadata=dateless)
+                drawing.savefig(path, metadata=dateless, dpi=VECTOR_DPI if form == "svg" else mpl.rcParams["savefig.dpi"])
             except UserWarning:
                 raise MissingResult(f"{stem}: {drawing.get_figwidth() * 2.54:.1f} x {drawing.get_figheight() * 2.54:.1f} cm are too few for its parts: give a larger --size") from None
+        if form == "svg":
+            path.write_text(shortened(path.read_text(encoding="utf-8")), encoding="utf-8")
         paths.append(path)
     plt.close(drawing)
     return paths
+
+
+def keep(drawing: Drawing, picture: str | Path) -> list[Path]:
+    """Write a drawing that is kept: to the path of its PNG, and as vectors beside it."""
+    return save(drawing, Path(picture).parent, Path(picture).stem, KEPT)
