@@ -301,8 +301,27 @@ def check_pictures() -> None:
     there = {path for path in there if "/build/" not in path}
     there -= {path for path in there if path.endswith(".svg") and path.removesuffix(".svg") + ".png" in there}
     check(there == set(listed), "data/pictures.csv has every picture", str(there ^ set(listed)))
+    drawn = {path for path, command in listed.items() if path.endswith(".png") and not command.startswith("tests/")}   # others show a browser
+    bare = {path for path in drawn if not (ROOT / path).with_suffix(".svg").is_file()}
+    check(len(drawn) > 30 and not bare, "each picture that is drawn has vectors beside it", str(bare))
+    heavy = {path: size for path in drawn - bare if (size := (ROOT / path).with_suffix(".svg").stat().st_size) > 250_000}
+    check(not heavy, "no vectors are large", str(heavy))
     missing = {command for command in listed.values() if not (command.startswith("gudgeon-plot ") or (ROOT / command.split()[0]).is_file())}
     check(not missing, "data/pictures.csv: the commands are there", str(missing))
+
+
+def check_pictures_of_pages() -> None:
+    """The manual shows the vectors of each picture. Those of a page are together no heavier than 500 kB, unless it reads its many pictures as they
+    come into view."""
+    import hooks  # in .venv
+
+    for page in pages():
+        wanted: set[Path] = set()
+        text = page.read_text(encoding="utf-8")
+        there = manual_pages.relinked(text, page, manual_pages.place_in_manual(page), wanted)
+        pixels = [name for name in re.findall(r"!\[[^]]*\]\(([^)]*\.png)\)", there) if not name.endswith("explore.png")]
+        sizes = [one.stat().st_size for one in wanted if one.suffix in (".png", ".svg")]
+        check(not pixels and (len(sizes) > hooks.MANY or sum(sizes) < 5e5), f"{page.relative_to(ROOT)}: its pictures are vectors in the manual, and light", f"{pixels} {sizes}")
 
 
 def check_tutorials(program: Path) -> None:
@@ -331,7 +350,7 @@ def check_notebooks() -> None:
 
 def check_pictures_of_tutorials() -> None:
     """A tutorial shows each picture that its commands name, and each picture that is kept."""
-    kept = {path.name for path in (ROOT / "data/manual/tutorials").iterdir()}
+    kept = {path.name for path in (ROOT / "data/manual/tutorials").glob("*.png")}
     seen = set()
     for page in sorted((ROOT / "data/manual").glob("tutorial_*.md")):
         text = page.read_text(encoding="utf-8")
@@ -413,8 +432,10 @@ def check_read() -> None:
                 check(browser.wait("document.querySelectorAll('.md-search-result__item').length > 1", 20), f"manual, {page}: the search finds")
                 check(not (said := browser.messages()), f"manual, {page}: console", str(said))
             browser.open(ROOT / "build/manual/gallery.html")
-            shown = browser.run("return [...document.querySelectorAll('td img')].filter(i => i.naturalWidth).length")
-            check(shown > 40, "manual: the gallery shows every picture", str(shown))
+            check(browser.run("return document.querySelectorAll('td img[loading=lazy]').length") > 45, "manual: the gallery reads pictures as they come into view")
+            browser.run("document.querySelectorAll('td img').forEach(i => i.loading = 'eager')")   # else those out of view wait
+            check(browser.wait("[...document.querySelectorAll('td img')].every(i => i.naturalWidth)", 20), "manual: the gallery shows every picture")
+            check(browser.run("return document.querySelectorAll('td img[src$=svg]').length") > 45, "manual: as vectors")
             browser.open(ROOT / "build/manual/case_file.html")
             browser.run(SEARCH, "oil flow")
             browser.wait("document.querySelector('.md-search-result__link')", 20)
@@ -623,6 +644,7 @@ def main() -> int:
     check_symbols()
     check_rungs()
     check_pictures()
+    check_pictures_of_pages()
     program = (options.program or program_built()).resolve()
     check_commands(program)
     check_tutorials(program)

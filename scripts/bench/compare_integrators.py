@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares the program's integrators with public codes on shipped scenes; scripts/bench/compare_integrators.sh runs this script.
 
-    compare_integrators.py DIR              writes DIR/integrators.md, integrators.csv and integrators.png
+    compare_integrators.py DIR              writes DIR/integrators.md, integrators.csv, .png and .svg
     compare_integrators.py DIR --compiled   measures the compiled codes again; keeps SciPy's rows in DIR/integrators.csv
     compare_integrators.py DIR --draw       draws DIR/integrators.csv again; with --language pt in Portuguese
 
@@ -265,7 +265,7 @@ def draw(data: pd.DataFrame, path: Path) -> None:
         axis.set_xticks([], minor=True)
     axes[0].set_ylabel("error")
     figure.suptitle("In a film radau, in dry contact adams needs the fewest evaluations for an accuracy; auto finds out which")
-    style.save(figure, path.parent, path.stem, ["png"])
+    style.keep(figure, path)
     language.current.warn("compare_integrators.py")
 
 

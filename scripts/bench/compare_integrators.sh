@@ -3,7 +3,7 @@
 # Radau and LSODA, SUNDIALS CVODE (Debian: apt-get install libsundials-dev) and Hairer's RADAU5 as compiled in the R package deSolve
 # (apt-get install --no-install-recommends r-cran-desolve). The last two are left out if they are not installed.
 #
-#   scripts/bench/compare_integrators.sh [DIR]                writes DIR/integrators.md, .csv and .png (default: data/measured)
+#   scripts/bench/compare_integrators.sh [DIR]                writes DIR/integrators.md, .csv, .png, .svg (default: data/measured)
 #   scripts/bench/compare_integrators.sh [DIR] --compiled     measures all but SciPy again
 #   scripts/bench/compare_integrators.sh [DIR] --draw         measures nothing, draws the picture again from DIR/integrators.csv
 #

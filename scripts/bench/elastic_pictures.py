@@ -9,7 +9,7 @@ from gudgeon.plots.style import (
     BLUE,
     GREEN,
     GREY,
-    ORANGE,
+    PURPLE,
     VERMILION,
     WIDTH,
 )
@@ -20,9 +20,9 @@ from matplotlib.figure import Figure as Drawing
 RODS = (
     ("rigid", BLACK, "-", ("elastic_rod=none",)),
     ("bends (4 modes)", GREEN, (0, (4, 4)), ("elastic_rod.axial_shapes=0",)),
-    ("stretches (1 shape)", ORANGE, "-", ("elastic_rod.axial_shapes=1",)),
+    ("stretches (1 shape)", VERMILION, "-", ("elastic_rod.axial_shapes=1",)),
     ("bends and stretches", BLUE, "-", ()),
-    ("stretches (8 shapes)", VERMILION, (0, (4, 4)), ("elastic_rod.transverse_modes=0",)),
+    ("stretches (8 shapes)", PURPLE, (0, (4, 4)), ("elastic_rod.transverse_modes=0",)),
 )
 WHOLE = 3  #: index of the rod that bends and stretches
 
@@ -47,7 +47,7 @@ def draw_first_impacts(runs: list[Run]) -> Drawing:
     for begin, _, end, _ in FINITE_ELEMENTS:
         axes[0].plot([begin, end], [0, 0], "x", color=GREY, markersize=5)
     axes[0].axvspan(*first, color=GREY, alpha=0.18, linewidth=0)
-    axes[0].annotate("x: contacts of finite elements", (0.99, 0.03), xycoords="axes fraction", ha="right", fontsize=7, color=GREY)
+    axes[0].annotate("× contacts of finite elements", (0.99, 0.03), xycoords="axes fraction", ha="right", fontsize=7, color=GREY)
     axes[0].axhline(0, color=GREY, linewidth=0.6)
     axes[0].set(ylabel="film thickness [µm]\n(below 0: penetration)", xlabel="time [ms]")
     axes[1].set(ylabel="contact force [kN]", xlabel="time [ms], grey above", xlim=first, facecolor="#EFEFEF")

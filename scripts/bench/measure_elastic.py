@@ -64,7 +64,7 @@ def main() -> int:
         print(text)
         if options.write:
             print(write_table(options.what, title, f"scripts/bench/measure_elastic.py {options.what} --write", text))
-        print(*style.save(drawing, shipped if options.write else options.out, options.what, options.format or ["png"]))
+        print(*style.save(drawing, shipped if options.write else options.out, options.what, options.format or style.KEPT[: 1 + options.write]))
     except OSError as failure:
         print(f"measure_elastic.py: {failure}", file=sys.stderr)
         return 1

@@ -10,7 +10,7 @@ use_virtual_environment()
 import matplotlib.pyplot as plt
 import numpy as np
 from gudgeon.plots.quantity import ideal_line
-from gudgeon.plots.style import BLACK, BLUE, GREY, VERMILION
+from gudgeon.plots.style import BLACK, BLUE, GREY, VERMILION, keep
 from gudgeon.results import Results, Run, default_folder
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyBboxPatch, Polygon
@@ -104,8 +104,7 @@ def write(results: Results, path: Path) -> None:
     right.set_xlabel("crank angle [deg]")
     right.set_title("piston acceleration [10³ m/s²]")
     right.legend(loc="lower right")
-    drawing.savefig(path, dpi=150)
-    plt.close(drawing)
+    keep(drawing, path)
 
 
 if __name__ == "__main__":

@@ -30,6 +30,7 @@ PRINTED = (   # what a page has outside of code, and how it is printed
     (re.compile(r"(?<=\d )um\b"), "µm"),
     (re.compile(r"(?<!/)\bcm3\b"), "cm³"),
 )
+MANY = 5   # pages with more pictures read them as they come into view
 UNWRITTEN = {*range(0x1D434, 0x1D468), *range(0x1D6E2, 0x1D71C), 0x210E, 0x221A}   # browsers draw letters of equations by these, and roots
 printed: dict[str, str] = {}   # content of each page
 titles: dict[str, str] = {}
@@ -82,7 +83,7 @@ def on_page_content(text: str, page, **_) -> str:
     text = re.sub(r"(?=</t[dh]>)", " ", text)   # else the index of the search has the words of neighbouring cells as one
     printed[page.file.name] = text
     titles[page.file.name] = page.title
-    return text
+    return text.replace("<img ", '<img loading="lazy" ') if text.count("<img ") > MANY else text
 
 
 def headings(items):

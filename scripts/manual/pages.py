@@ -30,7 +30,7 @@ API = PAGES / "api"
 REFERENCE = {"case_file": "case", "results": "results", "studies": "study", "oils": "oils"}   # page: argument of gudgeon --reference
 OTHERS = ("CONTRIBUTING.md", "CHANGELOG.md", "cases/README.md", "cases/studies/README.md", "data/README.md", "tests/README.md",
           "scripts/bench/README.md", "scripts/cluster/README.md")   # pages of other folders that the manual has
-LINK = re.compile(r"(\]\()([^)#\s]+)(#[^)\s]*)?(\))")
+LINK = re.compile(r"(!\[[^\]]*\]\(|\]\()([^)#\s]+)(#[^)\s]*)?(\))")
 
 
 def place_in_manual(path: Path) -> Path:
@@ -47,11 +47,19 @@ def place_in_manual(path: Path) -> Path:
     return PAGES / ("_".join(words or path.relative_to(TOP).with_suffix("").parts).lower() + ".md")
 
 
+def shown(picture: Path) -> Path:
+    """What the manual shows of a picture: the vectors beside it, where there are any."""
+    vectors = picture.with_suffix(".svg")
+    return vectors if vectors.exists() else picture
+
+
 def relinked(text: str, origin: Path, page: Path, wanted: set[Path]) -> str:
     """The Markdown text of the file `origin` with its links changed so that they hold in `page`; the files are added to `wanted`."""
 
     def new(match: re.Match[str]) -> str:
         target = (origin.parent / match[2]).resolve()
+        if match[1].startswith("!"):
+            target = shown(target)
         if "://" in match[2] or match[2].startswith("mailto:") or TOP not in target.parents:
             return match[0]
         if target.is_dir():   # a folder is its page, if it has one
@@ -81,14 +89,16 @@ def rungs(question: str, page: Path, wanted: set[Path]) -> str:
 
 
 def gallery() -> str:
-    """Every picture of the checkout with its question, its command and, where it is there, a vector file beside it, as a table; drawings last."""
+    """Every picture of the checkout with its question and its command, as a table; drawings last. It leads to its vectors, and says where its
+    pixels are."""
     with (TOP / "data/pictures.csv").open(encoding="utf-8", newline="") as lines:
         listed = sorted(csv.DictReader(lines), key=lambda row: row["picture"].endswith(".svg"))
     rows = []
     for row in listed:
         picture = os.path.relpath(TOP / row["picture"], SOURCE)
-        vector = f" [SVG]({Path(picture).with_suffix('.svg')})" if picture.endswith(".png") and (TOP / row["picture"]).with_suffix(".svg").exists() else ""
-        rows.append(f"| [![{row['question']}]({picture})]({picture}) | **{row['question']}**<br>`{row['command'].replace('|', chr(92) + '|')}`{vector} |\n")
+        vectors = os.path.relpath(shown(TOP / row["picture"]), SOURCE)
+        pixels = f" [PNG]({picture})" if vectors != picture else ""
+        rows.append(f"| [![{row['question']}]({picture})]({vectors}) | **{row['question']}**<br>`{row['command'].replace('|', chr(92) + '|')}`{pixels} |\n")
     return "\n| picture | question and command |\n|---|---|\n" + "".join(rows)
 
 

@@ -2,7 +2,7 @@
 """Runs the commands of a tutorial in their order, and compares what they print with what the page shows.
 
     scripts/manual/tutorial.py PAGE [--program PROGRAM] [--write]     --write: puts what they print into the page, and the
-                                                                       pictures that they make into data/manual/tutorials
+                                                                       pictures that they make, as PNG and SVG, into data/manual/tutorials
     scripts/manual/tutorial.py PAGE --notebook                         prints the page as a notebook for Jupyter
 
 A block after a line that ends with "`NAME`:" is a file. In a block that begins with "$ " each such line is a command, run in the folder of the files, and the lines behind it are its output; `...` stands for anything, and numbers may be off by
@@ -77,13 +77,16 @@ def run(page: Path, program: Path, write: bool = False) -> list[str]:
                 lines = shown.rstrip("\n").splitlines()
                 fresh = [line if line in lines or i >= len(lines) or not alike(lines[i], line) else lines[i] for i, line in enumerate(printed.splitlines())]
                 now += "".join(f"    {line}\n" for line in [f"$ {command}", *fresh])
+                if write and [one for one in (work / "results").glob("*.png") if not one.with_suffix(".svg").exists()]:   # as vectors too
+                    vectors = command.replace(".png", ".svg") if ".png" in command else f"{command.partition(' |')[0]} --format svg"
+                    subprocess.run(vectors, shell=True, cwd=work, capture_output=True, check=True, env={**os.environ, "PATH": path})
                 if done.returncode:
                     wrong.append(f"{command}: exit status {done.returncode}: {done.stderr[-300:]}")
                 elif len(lines) != len(printed.splitlines()) or not all(map(alike, lines, printed.splitlines())):
                     wrong.append(f"{command} prints: {printed}")
             text = text.replace(block, now)
         if write:
-            for picture in sorted((work / "results").glob("*.png")):
+            for picture in sorted((work / "results").glob("*.*g")):
                 shutil.copy(picture, TOP / "data/manual/tutorials")
     if write:
         page.write_text(text, encoding="utf-8")

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import fmpy
 import gudgeon
-import gudgeon.plots.style  # the look of all pictures of gudgeon
 import matplotlib.pyplot as plt
 import numpy as np
+from gudgeon.plots import style  # the look of all pictures of gudgeon
 from speed_controller import RPM, compressor
 
 STEP, END = 2e-4, 0.4  # s
@@ -67,12 +67,14 @@ def main(picture: str | None = None) -> dict[str, float]:
     t, speed, current = rows.T
     print(f"unit of {size / 1e6:.1f} MB; {len(rows)} steps to {speed[-1] / RPM:.0f} rpm; largest difference from a Stepper {apart:g}")
     if picture:
-        drawing, (above, below) = plt.subplots(2, 1, figsize=(8, 4), sharex=True, layout="constrained")
+        drawing, (above, below) = plt.subplots(2, 1, figsize=(style.WIDTH, 3.4), sharex=True)
         above.plot(t, speed / RPM)
         above.set_ylabel("speed of the unit [rpm]")
-        below.plot(t, current, color="C1")
+        below.plot(t, current, color=style.VERMILION)
         below.set(xlabel="time [s]", ylabel="current of the motor [A]")
-        drawing.savefig(picture, dpi=110)
+        same = "the same bits as in Python" if apart == 0 else f"{apart:.1g} from Python"
+        drawing.suptitle(f"The motor brings the unit to {speed[-1] / RPM:.0f} rpm: {same}")
+        style.keep(drawing, picture)
     return {"apart": apart, "speed": float(speed[-1]), "steps": len(rows)}
 
 

@@ -10,9 +10,9 @@ skirt meets the wall; the hardest slap of the last cycle is made as soft as poss
 import sys
 
 import gudgeon
-import gudgeon.plots.style  # the look of all pictures of gudgeon
 import matplotlib.pyplot as plt
 import numpy as np
+from gudgeon.plots import style  # the look of all pictures of gudgeon
 from scipy.optimize import minimize_scalar
 
 MASS = 0.2  # of the piston of the template [kg]
@@ -39,12 +39,13 @@ def main(picture: str | None = None) -> dict[str, float]:
     if picture:
         offsets = np.linspace(-1.2e-3, 1.2e-3, 25)
         table = gudgeon.sweep(engine, {"guide.piston_com[2]": offsets}, reduce=hardest)
-        axis = plt.figure(figsize=(6, 3.4), layout="constrained").gca()
-        axis.plot(1e3 * offsets, 1e3 * table.slap, "o-")
-        axis.plot(1e3 * best.x, 1e3 * best.fun, "s", label=f"best: {1e3 * best.x:.2f} mm")
+        drawing, axis = plt.subplots(figsize=(style.WIDTH, 3.0))
+        axis.plot(1e3 * offsets, 1e3 * table.slap, ".-")
+        axis.plot(1e3 * best.x, 1e3 * best.fun, "s", color=style.VERMILION, label=f"best: {1e3 * best.x:.2f} mm")
         axis.set(xlabel="pin offset [mm]", ylabel="hardest slap [mJ]", ylim=(0, None))
         axis.legend()
-        axis.figure.savefig(picture, dpi=110)
+        drawing.suptitle(f"An offset of {1e3 * best.x:.2f} mm softens the hardest slap from {1e3 * centred:.0f} to {1e3 * best.fun:.0f} mJ")
+        style.keep(drawing, picture)
     return {"offset": best.x, "slap": best.fun, "centred": centred}
 
 

@@ -10,9 +10,9 @@ import sys
 from pathlib import Path
 
 import gudgeon
-import gudgeon.plots.style  # the look of all pictures of gudgeon
 import matplotlib.pyplot as plt
 import numpy as np
+from gudgeon.plots import style  # the look of all pictures of gudgeon
 
 CASES = Path(__file__).resolve().parents[3] / "cases/flores"
 SETTLE = 200  # revolutions that are left out
@@ -34,14 +34,15 @@ def main(picture: str | None = None) -> dict[str, float]:
     sizes = {name: float(np.ptp(points, axis=0).max()) for name, points in sections.items()}
     print(", ".join(f"{name}: {len(sections[name])} points within {size:.3g} of the clearance" for name, size in sizes.items()))
     if picture:
-        said = {"dry_0500um": "chaotic without friction", "friction_100": "a point with friction"}
-        drawing, axes = plt.subplots(1, 2, figsize=(8, 4), layout="constrained")
+        said = {"dry_0500um": "no friction, clearance 0.5 mm", "friction_100": "friction 0.1"}
+        drawing, axes = plt.subplots(1, 2, figsize=(style.WIDTH, 3.4))
         for axis, (name, points) in zip(axes, sections.items()):
             axis.add_patch(plt.Circle((0, 0), 1, fill=False, color="0.6"))
             axis.plot(points[:, 1], points[:, 0], ".", markersize=1.5 if len(points) > 500 else 6)   # x is up
-            axis.set(aspect="equal", xlim=(-1.15, 1.15), ylim=(-1.15, 1.15), title=f"{name}: {said[name]}",
-                     xlabel="$e_y$ / c", ylabel="$e_x$ / c")
-        drawing.savefig(picture, dpi=110)
+            axis.set(aspect="equal", xlim=(-1.15, 1.15), ylim=(-1.15, 1.15), title=said[name],
+                     xlabel="across the cylinder / clearance", ylabel="along the cylinder / clearance")
+        drawing.suptitle("Once a revolution: without friction the pin is never at the same place, with friction always")
+        style.keep(drawing, picture)
     return sizes
 
 

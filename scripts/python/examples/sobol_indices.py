@@ -7,9 +7,9 @@
 import sys
 
 import gudgeon
-import gudgeon.plots.style  # the look of all pictures of gudgeon
 import matplotlib.pyplot as plt
 import numpy as np
+from gudgeon.plots import style  # the look of all pictures of gudgeon
 from SALib.analyze import sobol as analysis
 from SALib.sample import sobol as sampling
 
@@ -34,14 +34,17 @@ def main(picture: str | None = None) -> dict[str, float]:
     for name, first, total in zip(PROBLEM["names"], found["S1"], found["ST"]):
         print(f"{name:24} first {first:.2f}, total {total:.2f}")
     if picture:
-        axis = plt.figure(figsize=(6.5, 3.2), layout="constrained").gca()
+        drawing, axis = plt.subplots(figsize=(style.WIDTH, 2.8))
+        names = [name.split(".")[-1].replace("_", " ") for name in PROBLEM["names"]]
         places = np.arange(PROBLEM["num_vars"])
-        axis.barh(places - 0.2, found["S1"], 0.4, xerr=found["S1_conf"], label="first order")
-        axis.barh(places + 0.2, found["ST"], 0.4, xerr=found["ST_conf"], label="total")
-        axis.set_yticks(places, PROBLEM["names"])
-        axis.set_xlabel(f"index for the thinnest film, {len(table)} runs")
+        axis.barh(places - 0.2, found["S1"], 0.4, xerr=found["S1_conf"], color=style.BLUE, label="alone")
+        axis.barh(places + 0.2, found["ST"], 0.4, xerr=found["ST_conf"], color=style.SKY, label="with others")
+        axis.set_yticks(places, names)
+        axis.set_xlabel(f"share of the variance of the thinnest film (Sobol index), {len(table)} runs")
         axis.legend()
-        axis.figure.savefig(picture, dpi=110)
+        most = np.argmax(found["ST"])
+        drawing.suptitle(f"The {names[most]} makes {100 * found['S1'][most]:.0f} % of the scatter of the thinnest film")
+        style.keep(drawing, picture)
     return dict(zip(PROBLEM["names"], found["ST"])) | {"sum": float(found["S1"].sum()), "runs": len(table)}
 
 

@@ -11,9 +11,9 @@ import sys
 from pathlib import Path
 
 import gudgeon
-import gudgeon.plots.style  # the look of all pictures of gudgeon
 import matplotlib.pyplot as plt
 import numpy as np
+from gudgeon.plots import style  # the look of all pictures of gudgeon
 
 STEP, END = 1e-3, 1.2  # s
 RPM = 2 * np.pi / 60
@@ -56,14 +56,16 @@ def main(picture: str | None = None) -> dict[str, float]:
     last = t > END - 0.2
     print(f"last 0.2 s: {rpm[last].mean():.1f} rpm, from {rpm[last].min():.1f} to {rpm[last].max():.1f}; torque {torque[last].mean():.2f} N m")
     if picture:
-        drawing, (above, below) = plt.subplots(2, 1, figsize=(8, 4), sharex=True, layout="constrained")
+        drawing, (above, below) = plt.subplots(2, 1, figsize=(style.WIDTH, 3.4), sharex=True)
         above.plot(run["time"], run["crank_speed"] / RPM, linewidth=0.6)
         above.plot(t, [wanted(x) / RPM for x in t], "k--", linewidth=1, label="wanted")
         above.set_ylabel("speed [rpm]")
         above.legend()
-        below.step(t, torque, where="post", color="C1", linewidth=0.8)
+        below.step(t, torque, where="post", color=style.VERMILION, linewidth=0.8)
         below.set(xlabel="time [s]", ylabel="torque [N m]")
-        drawing.savefig(picture, dpi=110)
+        reached = t[(rpm >= 1800) & (t > END / 2)][0] - END / 2
+        drawing.suptitle(f"The controller reaches 1800 rpm after {1e3 * reached:.0f} ms and holds it within {np.abs(rpm[last] - 1800).max():.0f} rpm")
+        style.keep(drawing, picture)
     return {"rpm": rpm[last].mean(), "torque": torque[last].mean(), "residual": run.summary["max_energy_residual_relative"], "speed": float(rpm[-1])}
 
 

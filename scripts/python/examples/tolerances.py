@@ -9,6 +9,7 @@ Each parameter has a distribution of scipy.stats; one from OpenTURNS serves as w
 import sys
 
 import gudgeon
+from gudgeon.plots import style  # the look of all pictures of gudgeon
 from scipy import stats
 
 PARAMETERS = {
@@ -29,7 +30,7 @@ def main(picture: str | None = None) -> dict[str, float]:
     found = gudgeon.tolerances(engine, PARAMETERS, [FILM, "cycle_max_force"], below={FILM: LIMIT})
     print(found)
     if picture:
-        found.draw().savefig(picture, dpi=110)
+        style.keep(found.draw(), picture)
     low, median, high = (1e6 * found.percentile(FILM, share)[0] for share in (1, 50, 99))
     nominal, chance = 1e6 * float(found.nominal[FILM]), found.probability(FILM, below=LIMIT).value
     return {"low": low, "median": median, "high": high, "nominal": nominal, "chance": chance, "done": len(found.done) / len(found.table)}
