@@ -361,6 +361,10 @@ class AnyStudy(InDirectory):
         most = small.table.loc[small.table["min_film_thickness"].astype(float).idxmax()]
         found = f"up to {1e6 * most['min_film_thickness']:.3g} µm, at {1e6 * most['joint.clearance']:.3g} µm and {most['initial.crank_speed']:.3g} rad/s"
         self.assertEqual(drawing.get_suptitle(), f"films: {found}")
+        failed = Runs(small.table.assign(status="failed"), small.units)
+        drawing = study_pictures.draw_map(failed, "joint.clearance", "initial.crank_speed", ["min_film_thickness"], "films")
+        self.assertIn("runs failed", drawing.get_suptitle())
+        self.assertNotIn("up to", drawing.get_suptitle())
 
     def test_colours_say_what_lies_beyond_them(self) -> None:
         values = np.concatenate([np.linspace(1, 2, 400), [50.0]])

@@ -88,6 +88,8 @@ def colour_scale(values: np.ndarray) -> tuple[Normalize, str]:
     """Range of colours for the values of a map, and the ends at which values lie beyond it ("neither", "min", "max" or "both").
     Outliers are left out of the range, so that the other values can be distinguished."""
     finite = values[np.isfinite(values)]
+    if not finite.size:   # all runs failed
+        return Normalize(0, 1), "neither"
     as_log = spans_decades(finite)
     bend = np.log if as_log else np.asarray
     low, high = np.percentile(finite, OUTER_PERCENTILES)
@@ -495,11 +497,14 @@ def draw_curves(runs: Runs, parameter: str, columns: Sequence[str], title: str) 
 
 
 def where_largest(runs: Runs, x: str, y: str, column: str) -> str:
-    """The largest value of a column over two parameters, and where it is."""
-    row = runs.table.loc[runs.table[column].where(runs.done).astype(float).idxmax()]
+    """The largest value of a column over two parameters, and where it is, for a title; nothing if no run has a value."""
+    values = runs.table[column].where(runs.done).astype(float)
+    if not values.notna().any():
+        return ""
+    row = runs.table.loc[values.idxmax()]
     shown = of_column(column, runs.units[column], np.array([row[column]], dtype=float))
     value, *place = (f"{one(row[key]):.3g} {one.unit}".strip() for key, one in ((column, shown), *((key, of_parameter(key, runs[key])) for key in (x, y))))
-    return f"up to {value}, at {place[0]} and {place[1]}"
+    return f": up to {value}, at {place[0]} and {place[1]}"
 
 
 def draw_map(runs: Runs, x: str, y: str, columns: Sequence[str], title: str) -> Drawing:
@@ -513,7 +518,7 @@ def draw_map(runs: Runs, x: str, y: str, columns: Sequence[str], title: str) -> 
     for axis in axes.flat[len(columns) :]:
         axis.remove()
     if len(columns) == 1:
-        title += f": {where_largest(runs, x, y, columns[0])}"
+        title += where_largest(runs, x, y, columns[0])
     return titled(drawing, title, runs, notes)
 
 
