@@ -17,6 +17,7 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import MultipleLocator
 
 A4 = (8.27, 11.69)  # inch
+LINE, SPACE = 0.115, 9.0  # heights of a line of 7 points, and of all tables and plots [inch]
 
 #: The plots, of which the first four that the run has are drawn: title with unit, factor, columns.
 PLOTS: tuple[tuple[str, float, tuple[str, ...]], ...] = (
@@ -52,21 +53,22 @@ def case_lines(run: Run) -> list[tuple[str, str]]:
     return [(name, text) for name, text in [*found, ("Oil", language.current.keep(", ".join(part for part in oil if part)))] if text]
 
 
-def write(axes: Axes, heading: str, head: Sequence[str], rows: Sequence[tuple[str, Sequence[str]]], widths: Sequence[float]) -> None:
-    """A table of texts, from the top of its axes; the widths of the columns are shares of that of the axes."""
+def write(axes: Axes, heading: str, head: Sequence[str], rows: Sequence[tuple[str, Sequence[str]]], widths: Sequence[float]) -> float:
+    """A table of texts, from the top of its axes; the widths of the columns are shares of that of the axes. Returns its height [inch]."""
     say: Callable[[str], str] = language.current.say
     axes.axis("off")
     axes.set_title(language.current.keep(say(heading)), loc="left", fontweight="bold")
     letters = 150 * axes.get_subplotspec().get_position(axes.figure).width
-    edges, y = np.concatenate(([0], np.cumsum(widths))), 1.0
-    step = 0.115 / (axes.get_subplotspec().get_position(axes.figure).height * A4[1])   # height of a line of 7 points
+    edges, depth = np.concatenate(([0], np.cumsum(widths))), 0.0
     for cells in ([("", head)] if head else []) + list(rows):
         texts = [textwrap.fill(say(text).translate(FIRM), max(int(letters * width), 8)) for text, width in zip([cells[0], *cells[1]], widths)]
         for line in "\n".join(texts).splitlines():
             language.current.keep(line)   # it is in the page's language
         for x, text in zip(edges, texts):
-            axes.text(x, y, text, transform=axes.transAxes, va="top", fontsize=7, color="#555555" if x == 0 else "black", fontweight="bold" if cells[1] is head else None)
-        y -= step * (0.35 + max(text.count("\n") + 1 for text in texts))
+            axes.annotate(text, (x, 1), (0, -72 * depth), xycoords="axes fraction", textcoords="offset points", va="top", fontsize=7,
+                          color="#555555" if x == 0 else "black", fontweight="bold" if cells[1] is head else None).set_in_layout(False)
+        depth += LINE * (0.35 + max(text.count("\n") + 1 for text in texts))
+    return depth
 
 
 def draw(run: Run, name: str) -> Drawing:
@@ -79,10 +81,12 @@ def draw(run: Run, name: str) -> Drawing:
     drawing.get_layout_engine().set(rect=(0.05, 0.03, 0.9, 0.94))
     drawing.suptitle(language.current.keep(str(run.parameter("case", "title", "")) or name), fontsize=12, fontweight="bold")
     places, ours, others = lines(run)
-    write(axes["case"], "Case", (), [(said, [text]) for said, text in case_lines(run)], (0.3, 0.7))
-    write(axes["machine"], "Machine", (), [(said, [text]) for said, text in others], (0.4, 0.6))
-    write(axes["bearings"], title(run), places, ours, (0.22, *[0.78 / max(len(places), 1)] * len(places)))
-    draw_losses(axes["losses"], Answers(run))
+    tall = max(write(axes["case"], "Case", (), [(said, [text]) for said, text in case_lines(run)], (0.3, 0.7)),
+               write(axes["machine"], "Machine", (), [(said, [text]) for said, text in others], (0.4, 0.6)))
+    wide = write(axes["bearings"], title(run), places, ours, (0.22, *[0.78 / max(len(places), 1)] * len(places)))
+    losses = 0.2 * draw_losses(axes["losses"], Answers(run)) + 0.1
+    plot = max(0.5 * (SPACE - tall - wide - losses), 1.2)   # what the tables leave
+    axes["case"].get_subplotspec().get_gridspec().set_height_ratios([tall, max(wide, 0.1), losses, plot, plot])
     rows = last_cycle(run)
     chosen = [(said, factor, found) for said, factor, names in PLOTS if (found := [one for one in names if one in run or f"{one}_x" in run])]
     for axis, (said, factor, found) in zip((axes[letter] for letter in "abcd"), chosen):
@@ -103,8 +107,8 @@ def draw_cycle(axes: Axes, run: Run, rows: np.ndarray, factor: float, columns: S
         axes.legend()
 
 
-def draw_losses(axes: Axes, rows: Answers) -> None:
-    """The parts of FMEP as bars with their power; without a gas the losses of the bearings."""
+def draw_losses(axes: Axes, rows: Answers) -> int:
+    """The parts of FMEP as bars with their power; without a gas the losses of the bearings. Returns their number."""
     of_gas = losses_of(rows)
     imep, power = rows("cycle_imep") or 1.0, rows("cycle_indicated_power") or 0.0
     parts = [(name, value * power / imep) for name, value in of_gas] or [
@@ -113,7 +117,7 @@ def draw_losses(axes: Axes, rows: Answers) -> None:
     total = f" (FMEP {number(1e-5 * (rows('cycle_fmep') or 0.0))} bar)" if of_gas else ""
     if not parts:
         axes.axis("off")
-        return
+        return 0
     axes.set_title(language.current.keep(language.current.say("Where the losses go") + language.current.say(total)), loc="left", fontweight="bold")
     bars = axes.barh([name for name, _ in parts], [watts for _, watts in parts], color=BLUE, height=0.6)
     axes.bar_label(bars, [f"{number(watts)} W" for _, watts in parts], padding=3, fontsize=7)
@@ -121,3 +125,4 @@ def draw_losses(axes: Axes, rows: Answers) -> None:
     axes.xaxis.set_visible(False)
     axes.spines["bottom"].set_visible(False)
     axes.grid(False)
+    return len(parts)
