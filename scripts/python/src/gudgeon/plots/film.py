@@ -6,6 +6,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+from gudgeon import language
 from gudgeon.plots.style import BLACK, BLUE, GREEN, VERMILION, WIDTH, mark_decades
 from gudgeon.results import Results, Run, read_table
 from matplotlib.axes import Axes
@@ -102,7 +103,7 @@ def with_memory(run: Run, table: pd.DataFrame, name: str) -> Drawing:
     axes[3].set_xticks(range(0, 361 if np.ptp(angle) < 361 else 721, 90))
     axes[3].set_xlabel("crank angle [°]")
     fed, quick = (1e6 * table[f"{which}_film_thickness"].min() for which in ("min", "quick"))
-    drawing.suptitle(f"{name}: with memory the film is at least {fed:.2g} µm thick, without it {quick:.2g} µm")
+    drawing.suptitle(f"{language.current.keep(name)}: with memory the film is at least {fed:.2g} µm thick, without it {quick:.2g} µm")
     return drawing
 
 
@@ -144,7 +145,7 @@ def draw_gap(axes: Axes, gap: list[np.ndarray]) -> None:
     axes.set_xlim(0, 360)
     axes.set_xlabel("angle in the bearing [°]")
     axes.set_ylabel("gap, pin centred [µm]")
-    axes.legend(loc="best", ncols=3)
+    axes.legend(loc="upper center")
 
 
 def simulations(results: Results) -> Drawing:

@@ -4,6 +4,7 @@ curves of the rings."""
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+from gudgeon import language
 from gudgeon.plots.columns import crank_angles, rows_of_cycle
 from gudgeon.plots.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, WIDTH
 from gudgeon.results import Run
@@ -37,7 +38,7 @@ def draw(run: Run, table: pd.DataFrame | None) -> Drawing:
     if fields:
         hardest = table.loc[table["pressure"].idxmax()]
         found = f"the film carries hardest at {np.degrees(hardest['crank_angle']) % 720:.0f}°, {1e-6 * hardest['pressure']:.2g} MPa"
-    drawing.suptitle(f"{run.name}: {found}")
+    drawing.suptitle(f"{language.current.keep(run.name)}: {found}")
     return drawing
 
 
