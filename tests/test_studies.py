@@ -31,6 +31,7 @@ from gudgeon import (
     sensitivity,
     study,
 )
+from gudgeon._table import Unit
 from gudgeon.commands import study as study_command
 from gudgeon.plots import contact_laws as contact_study
 from gudgeon.plots import studies as study_pictures
@@ -409,7 +410,10 @@ class AnyStudy(InDirectory):
         warm = names.of_parameter("lubrication.temperature", np.array([313.15, 353.15]))
         self.assertEqual((warm.label, *np.round(warm(np.array([313.15, 353.15])), 9)), ("temperature [°C]", 40.0, 80.0))
         self.assertEqual(names.of_column("gas_temperature_mean", "K", np.array([300.0])).unit, "°C")
-        self.assertEqual(names.of_column("gas_temperature_rms", "K", np.array([300.0])).unit, "K")   # that of °C would be another
+        for ending in ("rms", "range", "difference"):   # those of °C would be others
+            self.assertEqual(names.of_column(f"gas_temperature_{ending}", "K", np.array([30.0])).unit, "K")
+            self.assertEqual(Unit.of(f"gas_temperature_{ending}", "K", [30.0]).name, "K")
+        self.assertEqual(Unit.of("gas_temperature_mean", "K", [300.0])(300.0), 300.0 - 273.15)
         self.assertEqual(names.of_parameter("guide.piston_com[2]", np.array([-7e-4, 7e-4])).label, "piston com[2] [µm]")   # one number of a list
 
 

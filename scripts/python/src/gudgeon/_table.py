@@ -194,7 +194,9 @@ def is_number(value: Any) -> bool:
 
 def is_place(row: str, unit: str) -> bool:
     """Whether a row is a place on a scale, a temperature or a crank angle, of which no share can be said."""
-    return unit in ("K", "deg") and not row.endswith("_difference")
+    from .names import NO_PLACE
+
+    return unit in ("K", "deg") and not row.endswith(NO_PLACE)
 
 
 def _side_by_side(labels: list[str], summaries: Sequence[Summary], wanted: list[str] | None, digits: int) -> Table:

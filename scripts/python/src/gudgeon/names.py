@@ -166,6 +166,10 @@ def of_column(column: str, unit: str, values: np.ndarray) -> Shown:
     return shown_in(name, *shown_unit(column, unit, values))
 
 
+#: Ends of the names of quantities that are no temperature, or no angle, though they have its unit.
+NO_PLACE = ("difference", "range", "rms")
+
+
 def shown_in(name: str, unit: str, factor: float) -> Shown:
     """A quantity in a unit; temperatures in °C."""
-    return Shown(name, "°C", 1.0, -273.15) if unit == "K" and not name.endswith("rms") else Shown(name, plain_unit(unit), factor)
+    return Shown(name, "°C", 1.0, -273.15) if unit == "K" and not name.endswith(NO_PLACE) else Shown(name, plain_unit(unit), factor)

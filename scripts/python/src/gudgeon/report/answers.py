@@ -143,11 +143,11 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
     if powers := [f"{said} {text}" for said in ("indicated", "brake") if (text := rows.shown(f"cycle_{said}_power", "kW", 1e-3))]:
         found.append(("Power", ", ".join(powers)))
     gas = [f"{name} {text}" for name, text in (
-        ("up to", rows.shown("cycle_max_gas_temperature", "K", 1)), ("to the walls", rows.shown("cycle_heat_to_walls", "J", 1)),
+        ("up to", rows.shown("cycle_max_gas_temperature", "°C", 1, -273.15)), ("to the walls", rows.shown("cycle_heat_to_walls", "J", 1)),
         ("to the walls", rows.shown("cycle_wall_heat_flow", "W", 1)), ("leak", rows.shown("cycle_leak_share", "%", 100)),
         ("leak", rows.shown("cycle_leak_flow", "g/s", 1000)), ("efficiency", rows.shown("cycle_indicated_efficiency", "%", 100)),
         ("delivers", rows.shown("cycle_mass_flow", "g/s", 1000)), ("volumetric efficiency", rows.shown("cycle_volumetric_efficiency", "%", 100)),
-        ("isentropic efficiency", rows.shown("cycle_isentropic_efficiency", "%", 100)), ("delivery temperature", rows.shown("cycle_discharge_temperature", "K", 1)),
+        ("isentropic efficiency", rows.shown("cycle_isentropic_efficiency", "%", 100)), ("delivery temperature", rows.shown("cycle_discharge_temperature", "°C", 1, -273.15)),
         ("lost in the suction valve", rows.shown("cycle_suction_loss", "W", 1)), ("in the discharge valve", rows.shown("cycle_discharge_loss", "W", 1)),
         ("suction valve hits with", rows.shown("cycle_max_suction_valve_speed", "m/s", 1)),
         ("discharge valve hits with", rows.shown("cycle_max_discharge_valve_speed", "m/s", 1))) if text]

@@ -106,7 +106,7 @@ OF_BEARINGS = (
     ("eccentricity_ratio", "eccentricity over the clearance", "", 1.0),
     ("asperity_force", "force of the asperities", "kN", 1e-3),
     ("friction_force", "friction", "N", 1.0),
-    ("film_temperature", "film temperature", "K", 1.0),
+    ("film_temperature", "film temperature", "°C", 1.0),
     ("film_viscosity", "viscosity of the film", "mPa s", 1e3),
     ("max_film_pressure", "largest film pressure", "MPa", 1e-6),
     ("film_power", "power that the film takes", "W", 1.0),
@@ -116,7 +116,7 @@ OF_BEARINGS = (
 )
 
 #: Units of columns in a trace, and what a page shows: unit and factor.
-UNITS = {"m": ("µm", 1e6), "N": ("kN", 1e-3), "Pa": ("MPa", 1e-6), "kg/s": ("g/s", 1e3), "Pa.s": ("mPa s", 1e3), "N.m": ("N m", 1.0)}
+UNITS = {"K": ("°C", 1.0), "m": ("µm", 1e6), "N": ("kN", 1e-3), "Pa": ("MPa", 1e-6), "kg/s": ("g/s", 1e3), "Pa.s": ("mPa s", 1e3), "N.m": ("N m", 1.0)}
 
 #: Plots in which the run of the ideal joint has a plot of its own, because the quantity is a property of that run.
 APART = ("energy_residual",)
@@ -146,8 +146,8 @@ def chosen_rows(columns: list[np.ndarray], most: int = MOST_ROWS) -> np.ndarray:
 
 
 def with_sizes(run: Run) -> dict[str, np.ndarray]:
-    """The run's columns, and the magnitudes of the forces on the pins, the crank and in the films."""
-    columns = {name: run[name] for name in run.trace.columns}
+    """The run's columns, temperatures in °C, and the magnitudes of the forces on the pins, the crank and in the films."""
+    columns = {name: run[name] - (273.15 if run.units.get(name) == "K" else 0.0) for name in run.trace.columns}
     for name in [name.removesuffix("_x") for name in columns if name.endswith("force_x")]:
         if f"{name}_y" in columns:
             columns[name] = np.hypot(run[f"{name}_x"], run[f"{name}_y"])
