@@ -79,6 +79,10 @@ contains
     call same('running, contacts)', '', 'running, contatos)', 'the end of a word')
     call same('a: done'//n//'  note: done in 1.5 runs'//n//'  note: of', 'a', &
       'a: terminada'//n//'  aviso: done in 1.5 runs'//n//'  aviso: of', 'notes')
+    call same('a.nml: correct'//n//'  film table  piston pin: stored in /my rows of 1.5/x; crank pin: must be '// &
+      'computed, in about 1 s', 'a.nml', 'a.nml: correto'//n// &
+      '  tabela do filme  pino do pistão: guardada em /my rows of 1.5/x; '// &
+      'pino da manivela: deve ser calculada, em cerca de 1 s', 'paths of tables')
     call same('', '', '', 'nothing')
     call check%equal_text(in_language('a: done', 'en', ''), 'a: done', 'English')
 
@@ -156,10 +160,10 @@ contains
     call refused(check, ['--xyzzy'], '--xyzzy: unknown option'//hint)
     call refused(check, ['-x'], '-x: unknown option'//hint)
     call refused(check, [''], 'an empty argument is no case file'//hint)
-    call refused(check, ['--out'], '--out: a value is missing'//hint)
+    call refused(check, ['--out'], '--out: must name a folder'//hint)
     call refused(check, ['--template=dryy'], '--template dryy: must be one of dry, film, engine, compressor, slap, '// &
       'elastic, wear; did you mean dry?'//hint)
-    call refused(check, ['--template='], '--template : must be one of dry, film, engine, compressor, slap, elastic, '// &
+    call refused(check, ['--template='], '--template: must be one of dry, film, engine, compressor, slap, elastic, '// &
       'wear'//hint)
     call refused(check, [character(len=16) :: 'sweep', '--template=dry'], 'gudgeon sweep --template has no kinds'//hint)
     call refused(check, ['--reference=joints'], &
@@ -174,7 +178,7 @@ contains
     call refused(check, ['--name=a/b'], '--name a/b: must be a name without folder; --out gives the folder'//hint)
     call refused(check, [character(len=16) :: '--name=a', 'b.nml', 'c.nml'], '--name is for one case'//hint)
     call refused(check, [character(len=16) :: 'sweep', '--name=a', 'b.nml'], '--name is for one case'//hint)
-    call refused(check, ['-o'], '-o: a value is missing'//hint)
+    call refused(check, ['-o'], '--out: must name a folder'//hint)
     call refused(check, ['--out='], '--out : must name a folder'//hint)
     call refused(check, ['--quiet=1'], '--quiet: takes no value'//hint)
     call refused(check, ['-sclearance=1'], '--set clearance=1: must have the form GROUP.KEY=VALUE or GROUP=none'//hint)
@@ -183,6 +187,9 @@ contains
     call refused(check, ['-slubrication=off'], '--set lubrication=off: must have the form GROUP.KEY=VALUE or GROUP=none'//hint)
     call refused(check, ['-s=none'], '--set =none: must have the form GROUP.KEY=VALUE or GROUP=none'//hint)
     call refused(check, ['-abest'], '--accuracy best: must be one of draft, standard, reference, dissertation'//hint)
+    call refused(check, ['--completion'], '--completion: must be bash, zsh or fish'//hint)
+    call refused(check, [character(len=16) :: '--language', 'pt', 'plot', 'report'], &
+      'plot stands before all options: gudgeon plot WHAT [RUN ...]'//hint)
     call refused(check, ['--language=de'], '--language de: must be en or pt'//hint)
     call refused(check, ['--progress=on'], '--progress on: must be auto, always or never'//hint)
     call refused(check, ['-j0'], '--jobs 0: must be a whole number from 1 to 1024'//hint)

@@ -3,8 +3,8 @@ module text_tools
   use, intrinsic :: iso_fortran_env, only: int64
   implicit none
   private
-  public :: lowercase, printable, is_clean, integer_text, whole_number, quoted, nearest_word, likely_word, allowed, joined, &
-    case_name, path_beside, replaced, next_line, next_row
+  public :: lowercase, printable, is_clean, integer_text, counted, whole_number, quoted, nearest_word, likely_word, allowed, &
+    joined, case_name, path_beside, replaced, next_line, next_row
 
   !> Ranges of characters that are blanks beyond ASCII, have no width or change the direction of writing: U+00A0, U+00AD,
   !> U+2000-200F, U+2028-202F, U+205F-206F, U+3000, U+FEFF.
@@ -42,6 +42,15 @@ contains
     write (digits, '(i0)') number
     text = trim(digits)
   end function long_integer
+
+  !> A number of things: 1 contact, 2 contacts.
+  pure function counted(number, thing) result(text)
+    character(len=*), intent(in) :: number   !! as text
+    character(len=*), intent(in) :: thing    !! one of them
+    character(len=:), allocatable :: text
+    text = number//' '//thing
+    if (number /= '1') text = text//'s'
+  end function counted
 
   !> The number in a text: at most 18 digits, possibly with a sign.
   pure integer(int64) function whole_number(text) result(number)

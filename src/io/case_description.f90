@@ -11,7 +11,7 @@ module case_description
   use gas_law, only: gas_law_t
   use gas_figures, only: gas_figures_t, find_gas_figures
   use number_text, only: short_text, quantity_text
-  use text_tools, only: integer_text, printable
+  use text_tools, only: integer_text, counted, printable
   implicit none
   private
   public :: description
@@ -249,16 +249,16 @@ contains
     character(len=:), allocatable :: text
     associate (run => case%integrator)
       if (case%run%is_until_periodic()) then
-        text = 'until the motion repeats, '//integer_text(case%run%most_revolutions)//' revolutions at most'
+        text = 'until the motion repeats, '//counted(integer_text(case%run%most_revolutions), 'revolution')//' at most'
       else if (run%crank_revolutions > 0) then
-        text = short_text(run%crank_revolutions)//' revolutions of the crank, about '// &
+        text = counted(short_text(run%crank_revolutions), 'revolution')//' of the crank, about '// &
           quantity_text(simulated_time(case), 's', digits)
       else if (run%revolutions > 0) then
-        text = short_text(run%revolutions)//' revolutions at the starting speed, '// &
+        text = counted(short_text(run%revolutions), 'revolution')//' at the starting speed, '// &
           quantity_text(simulated_time(case), 's', digits)
       else
         text = quantity_text(run%end_time, 's', digits)//', '// &
-          short_text(run%end_time*abs(case%initial%crank_speed)/two_pi, digits)//' revolutions at the starting speed'
+          counted(short_text(run%end_time*abs(case%initial%crank_speed)/two_pi, digits), 'revolution')//' at the starting speed'
       end if
       text = text//'; method '//run%method//', relative tolerance '//short_text(run%relative_tolerance)
       if (run%contact_entry /= 'root') text = text//', contact entry '//run%contact_entry

@@ -92,6 +92,8 @@ contains
         line%sweep = .true.
       else if (text == '-') then
         line%cases = [character(len=max(len(arguments), len(standard_input))) :: line%cases, standard_input]
+      else if (text == 'plot' .and. .not. only_cases .and. size(line%cases) == 0) then
+        call refuse(error, 'plot stands before all options: gudgeon plot WHAT [RUN ...]')
       else if (only_cases .or. index(text, '-') /= 1) then
         line%cases = [character(len=max(len(arguments), len(standard_input))) :: line%cases, text]
       else if (text == '--') then
@@ -165,7 +167,7 @@ contains
       if (near /= '') near = '; did you mean --'//near//'?'
       call refuse(error, '--'//printable(name, 40)//': unknown option'//near)
     else if (equals == 0) then
-      call read_option(arguments, i, line, error, options(place), '--'//name)
+      call read_option(arguments, i, line, error, options(place))
     else if (options(place)%takes_value .or. options(place)%may_take_value) then
       call set_option(line, error, options(place)%long, text(equals + 1:), has_value=.true.)
     else
@@ -190,26 +192,23 @@ contains
         call set_option(line, error, options(place)%long, text(k + 1:))
         return
       else
-        call read_option(arguments, i, line, error, options(place), '-'//text(k:k))
+        call read_option(arguments, i, line, error, options(place))
       end if
       if (allocated(error)) return
     end do
   end subroutine read_short_options
 
   !> Carry out an option to which no value is attached: if it takes one, that is the next argument.
-  subroutine read_option(arguments, i, line, error, option, shown)
+  subroutine read_option(arguments, i, line, error, option)
     character(len=*), intent(in) :: arguments(:)
     integer, intent(inout) :: i   !! the last argument used
     type(command_line_t), intent(inout) :: line
     type(error_t), allocatable, intent(inout) :: error
     type(option_t), intent(in) :: option
-    character(len=*), intent(in) :: shown
     if (.not. option%takes_value) then
       call set_option(line, error, option%long, '')
-    else if (i == size(arguments) .and. option%long == 'reference') then   ! its subjects are told
+    else if (i == size(arguments)) then   ! is told what is wanted
       call set_option(line, error, option%long, '')
-    else if (i == size(arguments)) then
-      call refuse(error, shown//': a value is missing')
     else
       i = i + 1
       call set_option(line, error, option%long, trim(arguments(i)))
@@ -286,7 +285,7 @@ contains
     case default
       line%version = .true.
     end select
-    if (allocated(wanted)) call refuse(error, '--'//trim(name)//' '//printable(value, 60)//': '//wanted)
+    if (allocated(wanted)) call refuse(error, trim('--'//trim(name)//' '//printable(value, 60))//': '//wanted)
   end subroutine set_option
 
   !> What the subject of --reference must be, if it is not that.

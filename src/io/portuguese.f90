@@ -10,12 +10,12 @@ module portuguese
   character(len=*), parameter :: ends_word = ' ,;:)'//newline
   integer, parameter :: label_width = 17   !! characters of the longest label of a line of --check, and a blank
 
-  !> English and Portuguese, in turn; * stands for one word. Of the English texts that fit the longest one is taken. Names of models
+  !> English and Portuguese, in turn; * stands for one word, # for all up to a
+  !> semicolon. Of the English texts that fit the longest one is taken. Names of models
   !> and of keys stay those of the case file.
   character(len=*), parameter :: phrases(*) = [character(len=84) :: &
     'ended early', 'parou antes do fim', &
     'done', 'terminada', &
-    'revolutions in', 'rotações em', &
     'not periodic within', 'não periódica em', &
     'repeats every revolution', 'repete-se a cada rotação', &
     'repeats every', 'repete-se a cada', &
@@ -76,6 +76,7 @@ module portuguese
     'gas', 'gás', &
     'firing', 'ignição', &
     'piston pin', 'pino do pistão', &
+    'piston pin: rod', 'pino do pistão: rod', &
     'small end', 'pé da biela', &
     'crank pin', 'pino da manivela', &
     'guide', 'guia', &
@@ -124,7 +125,7 @@ module portuguese
     'of the radius of', 'do raio de', &
     'length/diameter', 'comprimento/diâmetro', &
     '* film', 'filme *', &
-    'at * degrees C', 'a * graus C', &
+    'at * degrees C', 'a * °C', &
     'at the start, heats up', 'no início, aquece', &
     'thins with the shear', 'afina com o cisalhamento', &
     'elastic walls', 'paredes elásticas', &
@@ -145,10 +146,12 @@ module portuguese
     'together', 'ao todo', &
     'oil', 'óleo', &
     'until the motion repeats', 'até o movimento repetir-se', &
-    '* revolutions at most', 'no máximo * rotações', &
-    'revolutions of the crank, about', 'rotações da manivela, cerca de', &
-    'revolutions at the starting speed', 'rotações à velocidade inicial', &
+    'at most', 'no máximo', &
+    'of the crank, about', 'da manivela, cerca de', &
+    'at the starting speed', 'à velocidade inicial', &
+    'revolution', 'rotação', &
     'revolutions', 'rotações', &
+    'in', 'em', &
     'method', 'método', &
     'relative tolerance', 'tolerância relativa', &
     'a row for each step', 'uma linha por passo', &
@@ -159,10 +162,10 @@ module portuguese
     'columns in', 'colunas em', &
     'with its events', 'com seus eventos', &
     'and the ideal twin', 'e a simulação ideal', &
-    'stored in', 'guardada em', &
+    'stored in #', 'guardada em #', &
     'must be computed, in about', 'deve ser calculada, em cerca de', &
     'degrees', 'graus', &
-    'at main', 'no mancal principal', &
+    'at main bearing', 'no mancal principal', &
     'at crank pin', 'no pino da manivela', &
     'at piston pin', 'no pino do pistão', &
     'at small end', 'no pé da biela', &
@@ -249,7 +252,7 @@ contains
       longest = scan(text(i:)//' ', ends_word) - 1
       part = with_commas(text(i:i + longest - 1))
     else
-      star = index(part, '*')
+      star = scan(part, '*#')
       if (star > 0) part = part(:star - 1)//with_commas(word)//part(star + 1:)
     end if
     next = i + longest
@@ -263,15 +266,16 @@ contains
   pure subroutine match(text, phrase, length, word)
     character(len=*), intent(in) :: text, phrase
     integer, intent(out) :: length
-    character(len=:), allocatable, intent(out) :: word   !! that stands for *
+    character(len=:), allocatable, intent(out) :: word   !! that stands for * or #
     character(len=:), allocatable :: fitted
     integer :: star
     length = 0
     word = ''
-    star = index(phrase, '*')
+    star = scan(phrase, '*#')
     if (star > 0) then
       if (index(text, phrase(:star - 1)) /= 1) return
       word = text(star:star + scan(text(star:)//' ', ends_word) - 2)
+      if (phrase(star:star) == '#') word = text(star:star + scan(text(star:)//';', ';'//newline) - 2)
     end if
     fitted = phrase
     if (star > 0) fitted = phrase(:star - 1)//word//phrase(star + 1:)

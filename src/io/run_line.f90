@@ -12,7 +12,7 @@ module run_line
   use joint_case, only: joint_case_t
   use result_notes, only: notes_on_results, relative_residual
   use number_text, only: short_text, quantity_text
-  use text_tools, only: integer_text, printable, replaced
+  use text_tools, only: integer_text, counted, printable, replaced
   implicit none
   private
   public :: lines_for_user
@@ -34,8 +34,8 @@ contains
     associate (s => report%statistics, f => report%figures)
       text = 'ended early'
       if (report%status == 'done') text = report%status
-      text = printable(case%name, 200)//': '//text//'; '//short_text(abs(f%crank_travel)/two_pi, digits)//' revolutions in '// &
-        quantity_text(f%time, 's')
+      text = printable(case%name, 200)//': '//text//'; '//counted(short_text(abs(f%crank_travel)/two_pi, digits), &
+        'revolution')//' in '//quantity_text(f%time, 's')
       if (report%periods%is_on .and. report%status == 'done') text = text//', '//period_text(report%periods)
       others = ''
       do i = 1, n_places
@@ -49,8 +49,8 @@ contains
       end do
       text = text//bearings_text(report)
       if (f%floating%is_present) text = text//'; '//turn_text(f%floating)
-      if (case%has_skirt_corners()) text = text//'; piston skirt: '//integer_text(sum(f%corner%contacts))// &
-        ' contacts, force up to '//quantity_text(maxval(f%corner%max_force), 'N')
+      if (case%has_skirt_corners()) text = text//'; piston skirt: '//counted(integer_text(sum(f%corner%contacts)), &
+        'contact')//', force up to '//quantity_text(maxval(f%corner%max_force), 'N')
       text = text//skirt_text(report)
       if (allocated(report%histories)) text = text//histories_text(report%histories, allocated(case%load))
       if (report%exponent%is_known) text = text//'; Lyapunov exponent '//short_text(report%exponent%mean, digits)//' per revolution'
@@ -134,7 +134,7 @@ contains
   function period_text(periods) result(text)
     type(period_watch_t), intent(in) :: periods
     character(len=:), allocatable :: text
-    text = 'not periodic within '//integer_text(periods%most_revolutions)//' revolutions'
+    text = 'not periodic within '//counted(integer_text(periods%most_revolutions), 'revolution')
     if (periods%period == 0) return
     text = 'repeats every revolution'
     if (periods%period > 1) text = 'repeats every '//integer_text(periods%period)//' revolutions'
@@ -204,7 +204,7 @@ contains
     character(len=:), allocatable :: text
     text = ''
     if (joint%has_bearing()) then
-      if (joint%can_touch()) text = integer_text(pin%contacts)//' contacts'//beyond_text(pin)//', '
+      if (joint%can_touch()) text = counted(integer_text(pin%contacts), 'contact')//beyond_text(pin)//', '
       if (joint%can_touch() .and. pin%contacts == 0) text = 'no contact, '
       if (pin%min_film_thickness < 0) then
         text = text//'penetration up to '//quantity_text(-pin%min_film_thickness, 'm')//', '

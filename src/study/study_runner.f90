@@ -6,7 +6,7 @@
 module study_runner
   use kinds, only: dp
   use error_handling, only: error_t, fail, status_output, status_integration
-  use text_tools, only: printable, integer_text, whole_number
+  use text_tools, only: printable, integer_text, counted, whole_number
   use number_text, only: short_text
   use result_file, only: result_file_t, write_text, fail_with_file
   use command_line, only: command_line_t
@@ -450,7 +450,9 @@ contains
     logical :: is_joined
     associate (sweep => tasks%sweep, done => tasks%done, began => tasks%began)
       total = sweep%last - sweep%first + 1
-      line = printable(sweep%study%name, 200)//': '//integer_text(total)//' runs'
+      line = printable(sweep%study%name, 200)//': '
+      if (done < total) line = line//integer_text(done)//' of '
+      line = line//counted(integer_text(total), 'run')
       if (began > 0) line = line//', '//integer_text(began)//' of them already done'
       if (done > began) line = line//'; '//short_text(wall_time, 3)//' s, '//rate_text((done - began)/max(wall_time, 1e-6_dp))
       if (tasks%noted > 0) line = line//'; '//integer_text(tasks%noted)//' with notes (column notes)'

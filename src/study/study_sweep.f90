@@ -3,7 +3,7 @@ module study_sweep
   use kinds, only: dp
   use constants, only: two_pi
   use error_handling, only: error_t, fail, status_command_line, status_case_file, status_integration
-  use text_tools, only: printable, integer_text, lowercase
+  use text_tools, only: printable, integer_text, counted, lowercase
   use checksums, only: checksum_t
   use number_text, only: short_text
   use scene_builder, only: simulated_time
@@ -276,7 +276,7 @@ contains
       end do
     end if
     if (.not. allocated(error)) line = line//'correct, '
-    line = line//integer_text(total)//' runs'
+    line = line//counted(integer_text(total), 'run')
     if (total > most_checked .and. sweep%study%table == '') &
       line = line//' ('//integer_text(most_checked)//' of them checked)'
     if (failed > 0) line = line//', '//integer_text(failed)//' would fail'

@@ -124,7 +124,7 @@ def library() -> Any:
     try:
         free, held = c.CDLL(str(path())), c.PyDLL(str(path()))
     except OSError as error:
-        raise LibraryMissing(f"{error}; 'pip install ./scripts/python' in the checkout compiles it") from None
+        raise LibraryMissing(f"{error}; '{sys.executable} -m pip install ./scripts/python' in the checkout compiles it, in some minutes") from None
 
     class Functions:
         """Functions by their names without gudgeon_."""
