@@ -170,7 +170,7 @@ contains
       '--reference joints: must be case, study, oils, results, schema or a group of cases'//groups// &
       '; did you mean joint?'//hint)
     call refused(check, ['--reference'], &
-      '--reference : must be case, study, oils, results, schema or a group of cases'//groups//hint)
+      '--reference: must be case, study, oils, results, schema or a group of cases'//groups//hint)
     call refused(check, [character(len=16) :: '--template', 'engine'], &
       '--template engine: a kind stands behind =: --template=KIND, one of dry, film, engine, compressor, slap, elastic, wear'//hint)
     call refused(check, ['--reference=injector'], &
@@ -179,7 +179,7 @@ contains
     call refused(check, [character(len=16) :: '--name=a', 'b.nml', 'c.nml'], '--name is for one case'//hint)
     call refused(check, [character(len=16) :: 'sweep', '--name=a', 'b.nml'], '--name is for one case'//hint)
     call refused(check, ['-o'], '--out: must name a folder'//hint)
-    call refused(check, ['--out='], '--out : must name a folder'//hint)
+    call refused(check, ['--out='], '--out: must name a folder'//hint)
     call refused(check, ['--quiet=1'], '--quiet: takes no value'//hint)
     call refused(check, ['-sclearance=1'], '--set clearance=1: must have the form GROUP.KEY=VALUE or GROUP=none'//hint)
     call refused(check, ['-sjoint.clearance'], '--set joint.clearance: must have the form GROUP.KEY=VALUE or GROUP=none'// &
