@@ -380,6 +380,11 @@ contains
     call refused_on(check, whole//fire, [character(len=40) :: 'combustion.cycle=compressor', 'combustion.dead_space=0.1', &
       'combustion.discharge_pressure=101325', 'combustion.polytropic_exponent=1.2'], &
       'x.nml: &combustion discharge_pressure = 101325: must be > suction_pressure = 101325 (Pa)')
+    call refused(check, whole//'&drive kind=''free'''//n//'torque_table=''none.csv'' /', &
+      'x.nml:9: &drive torque_table: none.csv: No such file or directory')
+    call refused(check, replaced(whole, '&initial', '&initial from=''none.nml'''), &
+      'x.nml:4: &initial from: none.nml: No such file or directory')
+    call refused_with(check, 'drive.torque_table=none.csv', 'x.nml: &drive torque_table: none.csv: No such file or directory')
     call refused_with(check, 'cylinder_pressure.bore=0.1', 'x.nml: &cylinder_pressure table: required')
     call refused_with(check, 'cylinder_pressure.table=', 'x.nml: &cylinder_pressure table = : must be the name of a file', &
       '&cylinder_pressure bore=0.1 /')

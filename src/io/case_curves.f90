@@ -13,7 +13,6 @@ module case_curves
   use compliance_file, only: parse_compliances
   use history_case, only: history_case_t, bore_case_t
   use joint_places, only: places, n_places
-  use case_schema, only: shown_group
   use case_values, only: case_values_t
   use curve_file, only: parse_curve, quantity_t, crank_angle, pressure, turning_speed, torque, load, height, relief, &
     place_angle, deviation
@@ -90,7 +89,7 @@ contains
       call parse_compliances(text, bore%compliances, message, line)
       if (message /= '') then
         call fail(error, printable(bore%table%path, 200)//':'//integer_text(line)//': '//message, status_case_file)
-        call note_error(values, group, key, error)
+        call values%refuse_file(group, key, error)
         return
       end if
     end if
@@ -126,7 +125,7 @@ contains
       if (message /= '') then
         call fail(error, printable(curve%path, 200)//':'//integer_text(line)//': '//message, status_case_file)
         deallocate (curve%path)
-        call note_error(values, group, key, error)
+        call values%refuse_file(group, key, error)
         return
       end if
     end if
@@ -172,22 +171,13 @@ contains
     call read_text_file(path, largest_file, 'table', text, error)
     if (allocated(error)) then
       deallocate (text)
-      call note_error(values, group, key, error)
+      call values%refuse_file(group, key, error)
       return
     end if
     call sum%add(text)
     table%found = sum%hexadecimal()
     table%path = absolute_path(path)
   end subroutine read_new
-
-  !> Note an error of a table.
-  subroutine note_error(values, group, key, error)
-    type(case_values_t), intent(inout) :: values
-    character(len=*), intent(in) :: group, key
-    type(error_t), allocatable, intent(inout) :: error
-    error%message = values%file//': '//shown_group(group)//' '//key//': '//error%message
-    call values%problems%add_error(error, group, values%place_in_file(values%place_of(group, key)))
-  end subroutine note_error
 
   !> Check the digest of a table that has been read, and put its absolute path and digest into the values.
   subroutine finish_table(values, group, key, table)

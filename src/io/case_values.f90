@@ -46,6 +46,8 @@ module case_values
     procedure :: is_used      !! whether the selected law has this key
     procedure :: check_range  !! range of one key
     procedure :: refuse       !! note an error of a value
+    procedure :: refuse_file  !! note an error of the file that a key names
+    procedure, private :: named
     procedure :: refuse_group !! note that a group must not be given
     procedure, private :: at
     procedure :: forbid       !! the same if a condition holds
@@ -498,9 +500,7 @@ contains
     place = self%place_of(group, name)
     shown = 1
     if (present(element)) shown = element
-    text = self%file//': '
-    if (self%values(place)%given(shown)) text = self%at(self%values(place)%line)
-    text = text//shown_group(group)//' '//name
+    text = self%named(group, name)
     if (self%keys(place)%count > 1 .and. self%keys(place)%kind == real_kind) text = text//'('//integer_text(shown)//')'
     if (self%values(place)%given(shown)) text = text//' = '//trim(self%values(place)%written(shown))
     text = text//': '//wanted
@@ -513,6 +513,23 @@ contains
     end if
     call self%problems%add(text, group, merge(missing_key, self%place_in_file(place), index(wanted, 'required') == 1))
   end subroutine refuse
+
+  !> Note an error of the file that a key names; the error is then deallocated.
+  subroutine refuse_file(self, group, name, error)
+    class(case_values_t), intent(inout) :: self
+    character(len=*), intent(in) :: group, name
+    type(error_t), allocatable, intent(inout) :: error
+    error%message = self%named(group, name)//': '//error%message
+    call self%problems%add_error(error, group, self%place_in_file(self%place_of(group, name)))
+  end subroutine refuse_file
+
+  !> `file:line: &group key`, or `file: &group key` for a key that the file does not give.
+  pure function named(self, group, name) result(text)
+    class(case_values_t), intent(in) :: self
+    character(len=*), intent(in) :: group, name
+    character(len=:), allocatable :: text
+    text = self%at(self%values(self%place_of(group, name))%line)//shown_group(group)//' '//name
+  end function named
 
   !> Note that a group must not be given.
   subroutine refuse_group(self, name, why)

@@ -5,7 +5,6 @@ module state_file
   use error_handling, only: error_t, fail, status_case_file
   use run_state, only: run_state_t, state_number_t
   use case_definition, only: case_t
-  use case_schema, only: shown_group
   use case_values, only: case_values_t
   use posix_files, only: absolute_path
   use namelist_reader, only: namelist_t, read_namelist
@@ -90,8 +89,7 @@ contains
       call read_state(list, state, error)
     end if
     if (allocated(error)) then
-      error%message = values%file//': '//shown_group('initial')//' from: '//error%message
-      call values%problems%add_error(error, 'initial', values%place_in_file(place))
+      call values%refuse_file('initial', 'from', error)
     else
       call move_alloc(state, into%initial%state)
     end if
