@@ -63,6 +63,7 @@ contains
     call rings_shear_their_film(check)
     call ring_refusals(check)
     call refusals(check)
+    call what_leaves_is_named(check)
   end subroutine run_test_guide
 
   !> The friction of a smooth ring against the exact one of a parabolic face full of oil with Reynolds' condition: load over
@@ -673,6 +674,30 @@ contains
       end associate
     end do
   end subroutine follow_siconos
+
+  !> A run that ends because a body leaves the range of its model names this body: the piston in a soft bore, alone and beside a
+  !> loose pin, this pin in a soft bearing, and an elastic rod between ideal pins.
+  subroutine what_leaves_is_named(check)
+    class(checks_t), intent(inout) :: check
+    character(len=*), parameter :: both = 'cases/joints/piston_slap.nml'
+    call ends_with(slap, ['guide.stiffness=1e2'], 'the piston left its bore')
+    call ends_with(both, ['guide.stiffness=1e3'], 'the piston left its bore')
+    call ends_with(both, ['contact.youngs_modulus=1e6,1e6'], 'the pin left its bearing or its film')
+    call ends_with(ideal, [character(len=long) :: 'elastic_rod.youngs_modulus=1e13', 'elastic_rod.section_area=1e-5', &
+      'elastic_rod.section_inertia=5e-8', 'elastic_rod.transverse_modes=1', 'elastic_rod.axial_shapes=1', &
+      'elastic_rod.damping_ratio=0.999', 'mechanism.piston_mass=1e4', 'mechanism.crank_inertia=1e-6', &
+      'initial.crank_angle_deg=90', 'guide.coefficient=2', 'guide.v0=0.001', 'guide.v1=0.98', 'integrator.method=auto'], &
+      'the elastic rod bent or stretched beyond the validity of its equations')
+
+  contains
+
+    subroutine ends_with(file, overrides, wanted)
+      character(len=*), intent(in) :: file, overrides(:), wanted
+      type(trace_t) :: run
+      run = run_case(file, overrides)
+      call check%that(index(run%report%status, 'the state left the range of the model ('//wanted//') at t = ') == 1, wanted)
+    end subroutine ends_with
+  end subroutine what_leaves_is_named
 
   subroutine refusals(check)
     class(checks_t), intent(inout) :: check

@@ -40,6 +40,7 @@ module piston_skirt
     procedure, non_overridable :: read_state
     procedure, non_overridable :: place_corners
     procedure, non_overridable :: admits
+    procedure, non_overridable :: reached
   end type skirt_t
 
 contains
@@ -75,11 +76,18 @@ contains
     end do
   end subroutine place_corners
 
-  !> Whether the position of the piston is admissible: no corner penetrates the wall by more than the piston's radius, and the tilt
-  !> is less than 1 rad.
+  !> Whether the position of the piston is admissible.
   pure logical function admits(self, tilting)
     class(skirt_t), intent(in) :: self
     type(tilting_t), intent(in) :: tilting
-    admits = abs(tilting%offset) < self%clearance + self%radius .and. abs(tilting%tilt) < 1
+    admits = self%reached(tilting) < 1
   end function admits
+
+  !> Offset or tilt of the piston over its limit, the larger one: the clearance and the piston's radius, by which corners may then
+  !> penetrate the wall, and 1 rad.
+  pure real(dp) function reached(self, tilting)
+    class(skirt_t), intent(in) :: self
+    type(tilting_t), intent(in) :: tilting
+    reached = max(abs(tilting%offset)/(self%clearance + self%radius), abs(tilting%tilt))
+  end function reached
 end module piston_skirt

@@ -8,6 +8,7 @@ module stop_reason
   use scene_problem, only: scene_t, evaluation_t, phase_free
   use joint_places, only: in_order, spot_title
   use film_heat, only: hottest
+  use chain_motion, only: tilting_t
   implicit none
   private
   public :: reason, place, interrupted_text, revolution_budget_spent, crank_turned_back, turns_not_made, &
@@ -31,7 +32,7 @@ contains
     type(scene_t), intent(in) :: scene
     type(ode_settings_t), intent(in) :: settings
     real(dp), intent(in) :: t, y(:)
-    character(len=:), allocatable :: text, wall
+    character(len=:), allocatable :: text
     select case (status)
     case (step_too_small)
       text = small_step_reason(scene, settings, t, y)
@@ -40,17 +41,7 @@ contains
     case (left_domain, start_outside)
       text = hot_film_reason(scene, y)
       if (text /= '') return
-      text = 'the state left the range of the model ('//leaving_pin(scene, y)//' left its bearing or its film)'
-      wall = film_at_wall(scene)
-      if (wall /= '') then
-        if (scene%n_joints == 0) then
-          text = 'the state left the range of the model ('//wall//' went into the bore, through its asperities)'
-        else
-          text = text(:len(text) - 1)//', or '//wall//' went into the bore, through its asperities)'
-        end if
-      end if
-      if (scene%chain%has_elastic_rod()) text = text(:len(text) - 1)// &
-        ', or the elastic rod bent or stretched beyond the validity of its equations)'
+      text = 'the state left the range of the model'//leaving_parts(scene, y)
       if (scene%is_singular(y)) text = ill_posed_text(scene, y)
     case (step_limit_reached)
       text = 'too many steps (&integrator max_steps)'
@@ -72,6 +63,18 @@ contains
       text = 'stopped'
     end select
   end function reason
+
+  !> What may have left the range of its model, in parentheses; empty: nothing of this scene.
+  function leaving_parts(scene, y) result(text)
+    type(scene_t), intent(in) :: scene
+    real(dp), intent(in) :: y(:)
+    character(len=:), allocatable :: text
+    text = leaving_body(scene, y)
+    if (film_at_wall(scene) /= '') text = text//', or '//film_at_wall(scene)//' went into the bore, through its asperities'
+    if (scene%chain%has_elastic_rod()) text = text//', or the elastic rod bent or stretched beyond the validity of its equations'
+    if (index(text, ', or ') == 1) text = text(6:)
+    if (text /= '') text = ' ('//text//')'
+  end function leaving_parts
 
   !> What has a film at the bore; empty: nothing.
   pure function film_at_wall(scene) result(text)
@@ -124,24 +127,33 @@ contains
     text = 'ill-posed: the film'//at//' has almost no thickness and an unbounded force'
   end function ill_posed_text
 
-  !> The pin that is nearest to the limit of its eccentricity, relative to that limit, as a text.
-  function leaving_pin(scene, y) result(text)
+  !> The pin with clearance, or the piston in a dry bore, that is nearest to the limit of its position, relative to that limit, as a
+  !> text; empty without such a body.
+  function leaving_body(scene, y) result(text)
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: y(:)
     character(len=:), allocatable :: text
+    type(tilting_t) :: tilting
     real(dp) :: part, largest
     integer :: i
-    text = 'the pin'
-    if (has_plain_names(scene)) return
+    text = ''
     largest = -1
     do i = 1, size(scene%joints)
       associate (at => scene%joints(i)%at%position)
         part = norm2(y(at:at + 1))/scene%joints(i)%reach(scene%joints(i)%phase)
       end associate
-      if (part > largest) text = 'the '//joint_name(scene, i)
+      if (part > largest) then
+        text = 'the pin'
+        if (.not. has_plain_names(scene)) text = 'the '//joint_name(scene, i)
+        text = text//' left its bearing or its film'
+      end if
       largest = max(largest, part)
     end do
-  end function leaving_pin
+    if (.not. allocated(scene%guide)) return
+    if (scene%guide%touching == 0) return
+    call scene%guide%read_state(y, tilting)
+    if (scene%guide%reached(tilting) > largest) text = 'the piston left its bore'
+  end function leaving_body
 
   !> Whether no place but the first has a joint with clearance, so that texts need not name it.
   pure logical function has_plain_names(scene)
