@@ -157,6 +157,8 @@ contains
       'x.nml: --set mechanism.rod_com[3]=1: &mechanism rod_com[3]: has the numbers rod_com[1] to rod_com[2]')
     call refused_with(check, 'mechanism.rod_com[2=1', &
       'x.nml: --set mechanism.rod_com[2=1: &mechanism rod_com[2: has the numbers rod_com[1] to rod_com[2]')
+    call refused_with(check, 'mechanism.rod_com[=1', &
+      'x.nml: --set mechanism.rod_com[=1: &mechanism rod_com[: has the numbers rod_com[1] to rod_com[2]')
     call refused_with(check, 'mechanism.rod_com[1]=1, 2', 'x.nml: --set mechanism.rod_com[1]=1, 2: takes 1 value, not 2')
     call refused_with(check, 'joint.clearance[1]=1', &
       'x.nml: --set joint.clearance[1]=1: &joint clearance[1]: clearance is no list of numbers')

@@ -10,8 +10,8 @@ module case_schema
   implicit none
   private
   public :: key_t, group_definition_t, key_table_t, schema_t, case_schema_of, find_key, find_group, is_listed, is_group_of_cases
-  public :: group_names, shown_group, name_in_file, is_first_of_name, is_apart, real_kind, integer_kind, logical_kind, word_kind, &
-    text_kind
+  public :: group_names, shown_group, without_number, name_in_file, is_first_of_name, is_apart, real_kind, integer_kind, &
+    logical_kind, word_kind, text_kind
 
   !> A group. The group of an optional model may be missing in a case; its model is then absent from the scene.
   type :: group_definition_t
@@ -124,6 +124,13 @@ contains
     text = '&'//trim(name(dot + 1:))
     if (dot > 0) text = text//' of '//name(:dot - 1)
   end function shown_group
+
+  !> The name of a key, or of the key of a number of a list: KEY of KEY[2] or KEY(2).
+  pure function without_number(name) result(key)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable :: key
+    key = name(:scan(name//'[', '[(') - 1)
+  end function without_number
 
   !> The name of a group in a case file, without place or number.
   pure function name_in_file(group) result(name)

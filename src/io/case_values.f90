@@ -5,7 +5,7 @@ module case_values
   use error_handling, only: error_t, fail, status_case_file
   use text_tools, only: printable, integer_text, nearest_word, allowed
   use joint_places, only: places
-  use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, group_names, &
+  use case_schema, only: key_t, key_table_t, find_group, find_key, is_listed, shown_group, without_number, group_names, &
     real_kind, integer_kind, word_kind, text_kind
   use namelist_reader, only: entry_t, token_t, read_values
   use unit_hints, only: likely_unit
@@ -199,17 +199,17 @@ contains
     type(error_t), allocatable, intent(out) :: error
     integer, intent(out), optional :: element
     character(len=name_length), allocatable :: names(:)
-    character(len=:), allocatable :: text, near
-    integer :: i, bracket
+    character(len=:), allocatable :: name, text, near
+    integer :: i
     near = ''
-    bracket = len(key) + 1
+    name = key
     if (present(element)) then
       element = 0
-      if (scan(key, '[(') > 1) bracket = scan(key, '[(')
+      name = without_number(key)
     end if
-    place = self%place_of(group, trim(key(:bracket - 1)))
+    place = self%place_of(group, trim(name))
     if (place > 0) then
-      if (bracket < len(key)) call find_element(self%keys(place), key(bracket + 1:), element, text)
+      if (len(name) < len(key)) call find_element(self%keys(place), key(len(name) + 1:), element, text)
       if (allocated(text)) call fail(error, at//shown_group(group)//' '//printable(key, 40)//': '//text, status_case_file)
       return
     end if
@@ -235,13 +235,13 @@ contains
     call fail(error, at//text//allowed(names), status_case_file)
   end subroutine find
 
-  !> The index of a number of a list from what stands behind its bracket, such as `2]`; `wanted` says what is allowed instead.
+  !> The index of a number of a list from its brackets, such as `[2]`; `wanted` says what is allowed instead.
   pure subroutine find_element(key, text, element, wanted)
     type(key_t), intent(in) :: key
     character(len=*), intent(in) :: text
     integer, intent(out) :: element
     character(len=:), allocatable, intent(out) :: wanted
-    call read_integer(text(:max(0, len(text) - 1)), element, wanted)
+    call read_integer(text(2:len(text) - 1), element, wanted)
     if (allocated(wanted) .or. verify(text(len(text):), ')]') > 0 .or. element < 1 .or. element > key%count) &
       wanted = 'has the numbers '//trim(key%name)//'[1] to '//trim(key%name)//'['//integer_text(key%count)//']'
     if (key%kind /= real_kind .or. key%count == 1) wanted = trim(key%name)//' is no list of numbers'

@@ -7,7 +7,8 @@ module study_file
   use posix_files, only: absolute_path
   use namelist_reader, only: namelist_t, read_namelist
   use case_values, only: case_values_t
-  use case_schema, only: key_t, key_table_t, case_schema_of, find_group, find_key, is_group_of_cases, text_kind
+  use case_schema, only: key_t, key_table_t, case_schema_of, find_group, find_key, without_number, &
+    is_group_of_cases, text_kind
   use case_loader, only: load_model
   use case_text, only: resolved_text
   use problem_list, only: problem_list_t, behind_file
@@ -146,7 +147,7 @@ contains
     dot = index(name, '.', back=.true.)
     group = find_group(table%groups, name(:max(0, dot - 1)))
     if (group == 0) return
-    place = find_key(table%keys, table%groups(group), name(dot + 1:scan(name//'[', '[(') - 1))
+    place = find_key(table%keys, table%groups(group), without_number(name(dot + 1:)))
     if (place > 0) key = table%keys(place)
     if (scan(name, '[(') > 0) key%count = 1
   end function key_of_case

@@ -14,6 +14,7 @@ module study_sweep
   use case_file, only: read_case_values
   use case_text, only: resolved_text
   use case_values, only: case_values_t
+  use case_schema, only: without_number
   use accuracy_presets, only: with_preset
   use command_line, only: command_line_t
   use study_definition, only: study_t
@@ -197,7 +198,7 @@ contains
       associate (key => values%keys(place))
         name = trim(key%group)//'.'//trim(key%name)
       end associate
-      if (.not. any([(lowercase(keys(k)(:scan(keys(k)//'[', '[(') - 1)) == name, k=1, size(keys))])) cycle
+      if (.not. any([(lowercase(without_number(keys(k))) == name, k=1, size(keys))])) cycle
       said = '--accuracy '//options%accuracy
       if (i > size(settings) - size(options%overrides)) said = '--set '//printable(trim(settings(i)), 60)
       call fail(error, said//': the study varies '//name, status_command_line)
