@@ -6,7 +6,7 @@ module face_balance
   use kinds, only: dp
   implicit none
   private
-  public :: guess_full, balance, guess_yielding, balance_yielding, respond
+  public :: guess_full, balance, guess_yielding, balance_yielding, respond, least_inflow, most_rounds
 
   real(dp), parameter :: least_inflow = 1e-13_dp  !! over the largest source, with which a ruptured node fills again
   real(dp), parameter :: lowest_suction = 1e-14_dp   !! of a full node of a face that gives way, over the largest pressure of a face

@@ -14,12 +14,11 @@ module ring_film
   use kinds, only: dp
   use asperities, only: asperities_t
   use bearing_size, only: bearing_t
+  use face_balance, only: least_inflow, most_rounds
   implicit none
   private
   public :: ring_face_t, ring_loads_t
 
-  integer, parameter :: most_rounds = 60          !! of the search for the part that is full
-  real(dp), parameter :: least_inflow = 1e-13_dp  !! over the largest source, with which a ruptured node fills again
   real(dp), parameter :: drag = 1e-5_dp           !! resistance to squeeze of a ruptured face, over that of a full one: a ring whose
                                                   !! asperities carry more than its load leaves the wall fast
 

@@ -15,9 +15,10 @@ module guide_element
   use face_film, only: face_loads_t, face_motion_t, face_tangent_t, faces_t
   implicit none
   private
-  public :: guide_element_t, guide_loads_t, ring_now_t, most_guide_states
+  public :: guide_element_t, guide_loads_t, ring_now_t, most_guide_states, deepest
 
   integer, parameter :: most_guide_states = 10   !! of all elements of a guide
+  real(dp), parameter :: deepest = -3   !! least gap of a film over the roughness for which the model of asperities holds
 
   !> A piston ring.
   type :: ring_now_t

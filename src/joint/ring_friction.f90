@@ -20,7 +20,7 @@ module ring_friction
   use chain_motion, only: motion_t, tilting_t
   use piston_skirt, only: skirt_t
   use guide_case, only: guide_case_t
-  use guide_element, only: guide_element_t, guide_loads_t
+  use guide_element, only: guide_element_t, guide_loads_t, deepest
   use ring_case, only: most_piston_rings
   use ring_film, only: ring_face_t, ring_loads_t
   implicit none
@@ -29,7 +29,6 @@ module ring_friction
 
   character(len=6), parameter :: names(most_piston_rings) = ['ring_1', 'ring_2', 'ring_3', 'ring_4', 'ring_5', 'ring_6']
   real(dp), parameter :: shear = 3.18_dp, martin = 2.446_dp
-  real(dp), parameter :: deepest = -3   !! least gap over the roughness for which the model of asperities holds
   real(dp), parameter :: least_load = 0.1_dp   !! of that by tension: suction of the cylinder does not lift a ring off
 
   type :: ring_t

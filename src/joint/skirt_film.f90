@@ -9,12 +9,10 @@ module skirt_film
   use piston_skirt, only: skirt_t, n_corners, corner_names
   use face_film, only: face_film_t, face_motion_t, face_springs_t, faces_t, no_loads, tangent_found, tangent_acts
   use guide_case, only: guide_case_t
-  use guide_element, only: guide_element_t, guide_loads_t
+  use guide_element, only: guide_element_t, guide_loads_t, deepest
   implicit none
   private
   public :: skirt_film_t
-
-  real(dp), parameter :: deepest = -3   !! least gap over the roughness for which the model of asperities holds
 
   type, extends(guide_element_t) :: skirt_film_t
     type(face_film_t) :: film
