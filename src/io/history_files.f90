@@ -157,6 +157,7 @@ contains
     type(summary_row_t), allocatable :: rows(:)
     integer :: i
     call table%clear()
+    table%digits = 17   ! every bit
     call add_histories(table, histories)
     call read_rows(table%text(:table%used), rows)
     is_known = .false.
