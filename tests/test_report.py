@@ -379,12 +379,12 @@ def check_answers(checks: Assertions) -> None:
                  "cycle_joint_fmep": ("2e3", "Pa"), "cycle_work_contact": ("-0.25", "J")}
     parts = losses_of(Answers(SimpleNamespace(summary=of_losses)))
     wanted = [("Ring 1", 7e3), ("Ring 2", 3e3), ("Piston pin", 3e3), ("Crank pin", 6e3), ("Piston in its bore", 6e3)]
-    checks.check([name for name, _ in parts] == [name for name, _ in wanted] and all(abs(a - b) < 1e-6 for (_, a), (_, b) in zip(parts, wanted)), f"parts of FMEP: {parts}")
-    checks.check(abs(sum(value for _, value in parts) - 2.5e4) < 1e-6, "they are all of it")
+    checks.check([name for name, *_ in parts] == [name for name, _ in wanted] and all(abs(a - b) < 1e-6 for (_, a, _), (_, b) in zip(parts, wanted)), f"parts of FMEP: {parts}")
+    checks.check(abs(sum(value for _, value, _ in parts) - 2.5e4) < 1e-6, "they are all of it")
     film = {"cycle_skirt_fmep": ("4e3", "Pa"), "cycle_max_slap_speed": ("0.0464", "m/s"), "cycle_max_slap_speed_angle": ("378.3", "deg"),
             "cycle_min_skirt_film_thickness": ("1.145e-5", "m"), "cycle_min_skirt_film_thickness_angle": ("529.8", "deg")}
     parts = losses_of(Answers(SimpleNamespace(summary=of_losses | film)))
-    checks.check(parts[-2] == ("Skirt", 4e3) and abs(parts[-1][1] - 2e3) < 1e-6, f"the film of the skirt has its own part: {parts}")
+    checks.check(parts[-2] == ("Skirt", 4e3, 0.0) and abs(parts[-1][1] - 2e3) < 1e-6, f"the film of the skirt has its own part: {parts}")
     checks.check(("Hardest slap", "0.0464 m/s at 378.3°, film from 11.45 µm at 529.8°") in lines(SimpleNamespace(summary=rows | film))[2], "slap of a skirt on its film")
     text = section(SimpleNamespace(summary=of_losses))
     checks.check("<td>Crank pin</td><td>6 kPa</td><td>60 W</td><td>24 %</td>" in text and "<td>All losses (FMEP)</td><td>25 kPa</td><td>250 W</td>" in text, f"table of losses: {text}")
@@ -396,6 +396,14 @@ def check_answers(checks: Assertions) -> None:
     found = dict(lines(certified)[1])
     checks.check(html_of(found["Largest force"][0]).startswith('1.234 kN at <span class="loose">12.0</span>°; reversed <span class="loose">0.3024</span> kN'), f"certified answers: {found}")
     checks.check(html_of(Language("pt").say(found["Largest force"][0])).startswith('1,234 kN a <span class="loose">12,0</span>°'), f"in Portuguese: {Language('pt').say(found['Largest force'][0])}")
+    # 6123 Pa of the crank pin, known to 4 Pa; as much of the piston in its bore, the difference of 16 kPa (4 J, known to 0.001 J) and 10 kPa (known to 12 Pa)
+    known = {f"{name}_difference": (size, "") for name, size in (("cycle_fmep", "20"), ("crank_pin_cycle_joint_fmep", "-4"), ("cycle_work_guide", "0.001"), ("cycle_ring_fmep", "12"))}
+    known |= {"certified_until": ("1", "s"), "crank_pin_cycle_joint_fmep": ("6123.4", "Pa"), "cycle_fmep": ("25123.4", "Pa"), "cycle_work_guide": ("-4.03085", "J")}
+    text = section(SimpleNamespace(summary=of_losses | known))
+    for name, wanted in (("Crank pin", ("6.12<i>3</i> kPa", "61.2<i>3</i> W", "24.4 %")), ("Piston in its bore", ("6.1<i>23</i> kPa", "61.<i>23</i> W", "24.<i>4</i> %")),
+                         ("Ring 1", ("<i>7</i> kPa", "<i>70</i> W", "<i>27.9</i> %")), ("All losses (FMEP)", ("25.1<i>2</i> kPa", "251.<i>2</i> W", ""))):
+        cells = "".join(f"<td>{cell}</td>" for cell in (name, *wanted)).replace("<i>", '<span class="loose">').replace("</i>", "</span>")
+        checks.check(cells in text, f"certified losses: {name}: {text}")
     said = warnings(SimpleNamespace(summary=rows))
     checks.check(len(said) == 2 and "piston pin changes by 65 %" in said[0] and "run.until=periodic" in said[0], f"a motion that has not settled: {said}")
     checks.check(said[1].startswith("50 of 51 contacts at the crank pin are faster"), f"contacts beyond the theory: {said}")

@@ -111,7 +111,7 @@ def draw_losses(axes: Axes, rows: Answers) -> int:
     """The parts of FMEP as bars with their power; without a gas the losses of the bearings. Returns their number."""
     of_gas = losses_of(rows)
     imep, power = rows("cycle_imep") or 1.0, rows("cycle_indicated_power") or 0.0
-    parts = [(name, value * power / imep) for name, value in of_gas] or [
+    parts = [(name, value * power / imep) for name, value, _ in of_gas] or [
         (name.capitalize(), sum(rows(f"{pre}cycle_mean_{part}_power") or 0.0 for part in ("film", "friction"))) for pre, name in PLACES.values()]
     parts = [(name, watts) for name, watts in parts if watts][::-1]
     total = f" (FMEP {number(1e-5 * (rows('cycle_fmep') or 0.0))} bar)" if of_gas else ""

@@ -6,7 +6,7 @@ All values are those of the last whole cycle; those of a run without one are of 
 import html
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from gudgeon.language import Language
 from gudgeon.names import PLACES
@@ -38,6 +38,11 @@ class Answers:
         """How far the runs of the certificate are apart; 0 without a certificate, infinite where it does not have this row."""
         found = self(f"{name}_difference") if self.is_certified else 0.0
         return math.inf if found is None else abs(found)
+
+    def total(self, of: Mapping[str, float]) -> tuple[float, float]:
+        """The sum of rows, each times a factor, and its difference; rows that are not there count as 0."""
+        there = {name: factor for name, factor in of.items() if self(name) is not None}
+        return sum(factor * (self(name) or 0.0) for name, factor in there.items()), sum(abs(factor) * self.difference(name) for name, factor in there.items())
 
     def figure(self, name: str, factor: float = 1.0, offset: float = 0.0, form: str = ".4g") -> str:
         """A value times a factor; empty without this row."""
@@ -88,7 +93,7 @@ def temperature(rows: Answers, pre: str) -> str:
 def losses(rows: Answers, pre: str) -> str:
     """Loss of a bearing: of its film and of its friction together."""
     names = [name for part in ("film", "friction") if rows(name := f"{pre}cycle_mean_{part}_power") is not None]
-    return f"{number(sum(rows(name) or 0.0 for name in names), sum(map(rows.difference, names)))} W" if names else ""
+    return f"{number(*rows.total(dict.fromkeys(names, 1.0)))} W" if names else ""
 
 
 def touching(rows: Answers, pre: str) -> str:
@@ -169,18 +174,18 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
     return found
 
 
-def losses_of(rows: Answers) -> list[tuple[str, float]]:
-    """The parts of FMEP with their values [Pa]: piston rings, bearings, the film of the skirt, what else the bore takes, elastic members."""
+def losses_of(rows: Answers) -> list[tuple[str, float, float]]:
+    """The parts of FMEP with their values and differences [Pa]: piston rings, bearings, the film of the skirt, what else the bore takes, elastic members."""
     work, imep = rows("cycle_work_gas"), rows("cycle_imep")
     if not work or not imep or not rows("cycle_fmep"):
         return []
-    found = [(f"Ring {number}", rows(f"cycle_ring_{number}_fmep") or 0.0) for number in range(1, 7)]
-    for pre, name in PLACES.values():
-        found.append((name.capitalize(), (rows(f"{pre}cycle_joint_fmep") or 0.0) - (rows(f"{pre}cycle_work_contact") or 0.0) * imep / work))
-    found.append(("Skirt", skirt := rows("cycle_skirt_fmep") or 0.0))
-    found.append(("Piston in its bore", -(rows("cycle_work_guide") or 0.0) * imep / work - (rows("cycle_ring_fmep") or 0.0) - skirt))
-    found.append(("Elastic members", -(rows("cycle_work_elastic") or 0.0) * imep / work))
-    return [(name, value) for name, value in found if abs(value) > 1e-3 * abs(rows("cycle_fmep") or 0.0)]
+    taken = -imep / work
+    parts = [(f"Ring {number}", {f"cycle_ring_{number}_fmep": 1.0}) for number in range(1, 7)]
+    parts += [(name.capitalize(), {f"{pre}cycle_joint_fmep": 1.0, f"{pre}cycle_work_contact": taken}) for pre, name in PLACES.values()]
+    parts += [("Skirt", {"cycle_skirt_fmep": 1.0}), ("Piston in its bore", {"cycle_work_guide": taken, "cycle_ring_fmep": -1.0, "cycle_skirt_fmep": -1.0}),
+              ("Elastic members", {"cycle_work_elastic": taken})]
+    found = [(name, *rows.total(of)) for name, of in parts]
+    return [part for part in found if abs(part[1]) > 1e-3 * abs(rows("cycle_fmep") or 0.0)]
 
 
 def losses_section(rows: Answers, say: Callable[[str], str]) -> str:
@@ -188,11 +193,17 @@ def losses_section(rows: Answers, say: Callable[[str], str]) -> str:
     found = losses_of(rows)
     if not found:
         return ""
-    largest, total, power = max(abs(value) for _, value in found), rows("cycle_fmep") or 1.0, rows("cycle_indicated_power") or 0.0
-    line = '<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td class="bar"><i style="width: {:.1f}%"></i></td></tr>'
-    body = "".join(line.format(html.escape(say(name)), say(f"{number(1e-3 * value)} kPa"), say(f"{number(value * power / (rows('cycle_imep') or 1.0))} W"),
-                               say(f"{100 * value / total:.3g} %".replace("-", "−")), 100 * max(value, 0.0) / largest) for name, value in found)
-    body += line.format(html.escape(say("All losses (FMEP)")), say(f"{number(1e-3 * total)} kPa"), say(f"{number(total * power / (rows('cycle_imep') or 1.0))} W"), "", 0.0)
+    total, of_total = rows.total({"cycle_fmep": 1.0})
+    largest, watts = max(abs(value) for _, value, _ in found), (rows("cycle_indicated_power") or 0.0) / (rows("cycle_imep") or 1.0)
+
+    def line(name: str, value: float, difference: float, share: str = "", width: float = 0.0) -> str:
+        texts = (name, f"{number(1e-3 * value, 1e-3 * difference)} kPa", f"{number(watts * value, abs(watts) * difference)} W", share)
+        return "<tr>" + "".join(f"<td>{html_of(say(text))}</td>" for text in texts) + f'<td class="bar"><i style="width: {width:.1f}%"></i></td></tr>'
+
+    def share(value: float, difference: float) -> str:
+        return f"{number(100 * value / total, 100 * (difference + abs(value / total) * of_total) / abs(total), '.3g')} %"
+
+    body = "".join(line(*part, share(*part[1:]), 100 * max(part[1], 0.0) / largest) for part in found) + line("All losses (FMEP)", total, of_total)
     return f'<section id="losses"><h2>{html.escape(say("Where the losses go"))}</h2><table>{body}</table></section>'
 
 
