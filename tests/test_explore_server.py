@@ -28,6 +28,9 @@ from gudgeon.report.explorer import LARGEST_REQUEST, Explorer, Server
 
 TOP = Path(__file__).resolve().parents[1]
 
+#: Seconds for what takes one or two on a quiet machine.
+ROOM = 60.0
+
 
 @contextlib.contextmanager
 def served(explorer: Explorer) -> Iterator[Server]:
@@ -45,7 +48,7 @@ def served(explorer: Explorer) -> Iterator[Server]:
 
 def asked(server: Server, path: str, body: bytes | None = None, **headers: str) -> tuple[int, bytes]:
     """Status and content of an answer; a header whose value is empty is left out."""
-    connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=30)
+    connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=ROOM)
     given = {"Host": f"127.0.0.1:{server.server_port}", "X-Token": server.token, **{name.replace("_", "-"): value for name, value in headers.items()}}
     connection.request("GET" if body is None else "POST", path, body, {name: value for name, value in given.items() if value})
     answer = connection.getresponse()
@@ -99,7 +102,7 @@ def check_shipped_cases(checks: Assertions) -> None:
     """Films of a skirt and of three bearings, several cylinders, a floating pin, a worn bore: their runs can be drawn."""
     for name in ("joints/skirt", "bearings/car_diesel", "cylinders/six_mwm", "pin/engine", "wear/worn_bore", "film/heat"):
         path = TOP / "cases" / f"{name}.nml"
-        explorer = Explorer(gudgeon.read(path), timeout=2.0)
+        explorer = Explorer(gudgeon.read(path), timeout=ROOM)
         head = head_of(explorer.run("a", 1, {}, "live"))
         checks.check(head["scene"]["rows"] > 100 and len(head["answers"]) > 1 and len(explorer.controls()) > 5, f"{name} is drawn", str(head.get("error")))
 
@@ -113,37 +116,36 @@ def check_command(checks: Assertions) -> None:
             return subprocess.Popen([sys.executable, "-m", "gudgeon", "explore", *words], env=headless, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
         path = Path(folder, "film.nml")
-        gudgeon.template("film").set({"lubrication.law": "finite_bearing"}).to_nml(path)
+        gudgeon.template("film").set({"lubrication.law": "finite_bearing", "lubrication.table_points": 513}).to_nml(path)   # a table of half a minute
         began = time.monotonic()
         process = begun(str(path), "--set", "joint.clearance=31 um")
         address = process.stdout.readline().strip()
         seconds = time.monotonic() - began
         checks.check(address.startswith("http://127.0.0.1:"), "without a display it prints its address", address)
-        checks.check(seconds < 5, f"the address is there after {seconds:.1f} s")
+        checks.check(seconds < ROOM, f"the address is there after {seconds:.1f} s")
         parts = urllib.parse.urlsplit(address)
-        connection = http.client.HTTPConnection("127.0.0.1", parts.port, timeout=30)
+        connection = http.client.HTTPConnection("127.0.0.1", parts.port, timeout=ROOM)
         body = json.dumps({"page": "a", "request": 1, "values": {}, "tier": "full"})
         connection.request("POST", "/run", body, {"X-Token": parts.query.removeprefix("token=")})
         time.sleep(0.3)
         checks.check(not list(Path(folder).rglob("*.table")), "its table is being made")
         second = begun(str(path), "--port", str(parts.port))
-        said = second.communicate(timeout=30)[1]
+        said = second.communicate(timeout=ROOM)[1]
         checks.check(second.returncode == 1 and f"port {parts.port}" in said, "a port in use is told", said)
         process.send_signal(signal.SIGINT)
         try:
-            began = time.monotonic()
-            status = process.wait(10)
+            status = process.wait(ROOM / 2)
         except subprocess.TimeoutExpired:
             status = None
             process.kill()
         said = process.stderr.read()
         checks.check(status == 0 and "Traceback" not in said, "Ctrl-C ends it", f"{status} {said}")
-        checks.check(time.monotonic() - began < 2, "at once", f"{time.monotonic() - began:.1f} s")
+        checks.check(not list(Path(folder).rglob("*.table")), "before its table is complete")
         checks.check("ssh -L" in said, "tells how to reach it from another machine")
         alone = TOP / "cases" / "bearings" / "main_bearing.nml"
         for words, wanted in (((str(alone),), "has no mechanism"), (("nothing",), "no template nothing"), ((str(path), "--keys", "joint.x"), "no key joint.x"), ((str(path), "--set", "joint.clearance=-1"), "clearance")):
             process = begun(*words)
-            said = process.communicate(timeout=30)[1]
+            said = process.communicate(timeout=ROOM)[1]
             checks.check(process.returncode == 2 and wanted in said and "Traceback" not in said, f"{words[-1]} is refused", said)
 
 

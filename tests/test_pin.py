@@ -358,7 +358,7 @@ def random_scenes(run: Runner, scenes: int = 60, seed: int = 7) -> None:
         out = run.folder / f"scene_{number}"
         path = run.file(text)
         done = subprocess.run([run.program, "-q", "-o", out, *(part for change in changes for part in ("--set", change)), str(path)],
-                              capture_output=True, text=True, check=False, timeout=120)
+                              capture_output=True, text=True, check=False, timeout=600)
         check(done.returncode == 0 or (done.returncode == 4 and "evaluations" in done.stderr), f"scene {number} runs to its end", done.stderr[:300])
         if done.returncode == 0:
             summary = pd.read_csv(out / f"{path.stem}.summary.csv", dtype=str).set_index("quantity")["value"]

@@ -213,7 +213,8 @@ run -o "$work/file" cases/flores/ideal.nml
 check "a results folder that is a file: exit status 5, got $status" [ "$status" = 5 -a "$(wc -l <"$work/err")" = 1 ]
 "$gudgeon" -o "$work/i" -s integrator.revolutions=4000 cases/sim_I.nml >"$work/out" 2>"$work/err" &
 pid=$!
-sleep 1
+tries=0
+while [ "$(wc -l 2>/dev/null <"$work/i/sim_I.csv.part" || echo 0)" -le 100 ] && [ $tries -lt 3000 ]; do tries=$((tries + 1)); sleep 0.02; done
 kill -TERM $pid   # a shell starts background commands with SIGINT ignored
 wait $pid
 status=$?

@@ -91,7 +91,7 @@ class Browser:
                 "goog:loggingPrefs": {"browser": "ALL"},
             }
         }
-        for _ in range(50):
+        for _ in range(300):
             try:
                 self.session = self.call("POST", "/session", {"capabilities": capabilities})["sessionId"]
                 # a headless page may have no focus, without which elements have no focus events

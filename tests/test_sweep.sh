@@ -385,7 +385,7 @@ for signal in KILL TERM; do
   "$gudgeon" sweep -o "$work/$signal" "$work/long.nml" >"$work/out" 2>"$work/err" &
   pid=$!
   tries=0
-  while [ "$(ls "$work/$signal/long.chunks" 2>/dev/null | grep -c 'runs.csv$')" -lt 5 ] && [ $tries -lt 1000 ]; do
+  while [ "$(ls "$work/$signal/long.chunks" 2>/dev/null | grep -c 'runs.csv$')" -lt 5 ] && [ $tries -lt 3000 ]; do
     tries=$((tries + 1))
     sleep 0.02
   done
@@ -395,8 +395,8 @@ for signal in KILL TERM; do
   chunks=$(ls "$work/$signal/long.chunks" | grep -c 'runs.csv$')
   check "$signal: stopped before the end, $chunks chunks" [ "$chunks" -ge 5 -a "$chunks" -lt 200 -a ! -e "$work/$signal/long.runs.csv" ]
   tries=0   # the processes of a killed sweep end with it
-  while pgrep -f "sweep -o $work/$signal" >/dev/null && [ $tries -lt 50 ]; do tries=$((tries + 1)); sleep 0.02; done
-  check "$signal: no process is left" [ $tries -lt 50 ]
+  while pgrep -f "sweep -o $work/$signal" >/dev/null && [ $tries -lt 1500 ]; do tries=$((tries + 1)); sleep 0.02; done
+  check "$signal: no process is left" [ $tries -lt 1500 ]
   [ "$signal" = TERM ] && check "interrupted: exit status 4, got $status" [ "$status" = 4 ]
   [ "$signal" = TERM ] && check "interrupted: the message names the command that continues" grep -q 'interrupted after .* of 3000 runs; the same command' "$work/err"
   run sweep -o "$work/$signal" "$work/long.nml"
@@ -411,7 +411,7 @@ for attempt in 1 2 3; do
   "$gudgeon" sweep -j 2 -o "$work/lost" "$work/long.nml" >"$work/out" 2>"$work/err" &
   pid=$!
   tries=0
-  while [ "$(ls "$work/lost/long.chunks" 2>/dev/null | grep -c 'runs.csv$')" -lt 5 ] && [ $tries -lt 1000 ]; do
+  while [ "$(ls "$work/lost/long.chunks" 2>/dev/null | grep -c 'runs.csv$')" -lt 5 ] && [ $tries -lt 3000 ]; do
     tries=$((tries + 1))
     sleep 0.02
   done
@@ -451,7 +451,7 @@ END
 (ulimit -t 100; exec "$gudgeon" sweep --check "$work/large_grid.nml") >"$work/out" 2>"$work/err"
 check "a large grid with a wrong last value, status $?" grep -q 'run 3000: .*viscosity = -1.000000000E-09: must be > 0' "$work/err"
 for signal in INT TERM; do
-  timeout -k 10 -s $signal 0.3 "$gudgeon" sweep -o "$work/large" "$work/large.nml" 2>/dev/null
+  timeout -k 60 -s $signal 0.3 "$gudgeon" sweep -o "$work/large" "$work/large.nml" 2>/dev/null
   check "$signal at the start of a large sweep, status $?" [ $? != 137 ]
 done
 
