@@ -149,6 +149,10 @@ done
 check "seven templates, not ${templates:-0}" [ "${templates:-0}" = 7 ]
 "$gudgeon" -q -o "$work/kinds" --name other - <"$work/film.nml"
 check "a case on standard input under another name" cmp "$work/kinds/film.csv" "$work/kinds/other.csv"
+for subject in case study results; do
+  run --reference $subject
+  check "plain words in the reference of $subject" [ "$(grep -ciwE 'march(ed|es)?|witness|patience|takes rows' "$work/out")" = 0 -a "$status" = 0 ]
+done
 run --reference joint
 check "reference of one group" [ "$(grep -c '^## ' "$work/out")" = 1 -a "$(grep -c '^| `clearance` | m ' "$work/out")" = 1 ]
 

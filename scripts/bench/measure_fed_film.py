@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What do supply, an elastic bore and thickening oil change in the film of a piston pin, and what does the march cost?
+"""What do supply, an elastic bore and thickening oil change in the film of a piston pin, and what does its computation cost?
 
     scripts/bench/measure_fed_film.py [--grids 96x8,192x16]
 
 The fed films of simulations I and IV (cases/film/sim_I_fed.nml, sim_IV_fed.nml) with other supplies and bores, on each grid; the times
-of marches that grow in cells and in steps. Writes data/measured/fed_film.md.
+of computations with more and more cells and steps. Writes data/measured/fed_film.md.
 """
 import argparse
 import csv
@@ -32,7 +32,7 @@ COSTS = ((48, 4, 360), (96, 4, 360), (96, 8, 360), (96, 8, 720), (192, 8, 360), 
 
 
 def march(program: Path, folder: Path, case: str, settings: tuple[str, ...]) -> dict[str, float] | None:
-    """Numbers of the summary of a run and its processor time [s]; None where the film cannot be marched."""
+    """Numbers of the summary of a run and its processor time [s]; None where the film cannot be solved."""
     words = [word for setting in settings for word in ("--set", setting)]
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     done = subprocess.run([program, "-q", TOP / "cases" / "film" / f"{case}_fed.nml", "--out", folder, *words], capture_output=True,
@@ -70,7 +70,7 @@ def main() -> None:
                         1e6 * found["film_history_quick_min_film_thickness"], 1e-6 * found["film_history_max_film_pressure"],
                         1e-6 * found["film_history_quick_max_film_pressure"], found["film_history_least_fill"],
                         1e6 * found["film_history_mean_side_flow"], found["film_history_cycles"]))
-        text += ["\n## Cost of simulation I\n", "Processor time of the march alone (the run without it is taken off), for a cycle of 720 degrees.\n",
+        text += ["\n## Cost of simulation I\n", "Processor time of the film with memory alone (the run without it is subtracted), for a cycle of 720 degrees.\n",
                  "| cells | steps in a cycle | rigid [s/cycle] | ring of 2.5, 15 modes [s/cycle] |", "|---|---|---|---|"]
         for around, along, rows in COSTS:
             times = []

@@ -120,7 +120,8 @@ contains
     call list%add('along', self%along, 'cells along half of it', '>= 2 and <= 128', '8')
     call list%add('substeps', self%substeps, 'steps between two rows', '>= 1 and <= 64', '1')
     call list%add('most_cycles', self%most_cycles, 'largest number of cycles', '>= 1 and <= 1000', '10')
-    call list%add('cycle_tolerance', self%cycle_tolerance, 'relative change of the oil from cycle to cycle that ends the march', &
+    call list%add('cycle_tolerance', self%cycle_tolerance, &
+      'relative change of the oil from cycle to cycle at which the film counts as settled', &
       range='> 0 and <= 0.1', default='1.0e-3', usual='1e-5 to 1e-2')
   end subroutine march_parameters
 

@@ -113,7 +113,7 @@ module summary_quantities
       'lowest natural frequency of the rod along its axis, with the piston, crank pin at rest'), &
     quantity_t('crankshaft_frequency', 'Hz', &
       'natural frequency of the crank and the flywheel on the elastic shaft, with the mean inertia of rod and piston'), &
-    quantity_t('film_history_cycles', '1', 'cycles that the film with memory was marched (film_history)'), &
+    quantity_t('film_history_cycles', '1', 'cycles over which the film with memory was solved (film_history)'), &
     quantity_t('film_history_cycle_change', '1', 'change of its oil from the end of a cycle to that of the next, over the oil'), &
     quantity_t('film_history_min_film_thickness', 'm', 'thinnest film of the last cycle'), &
     quantity_t('film_history_max_film_pressure', 'Pa', 'its largest pressure, above that of cavitation'), &

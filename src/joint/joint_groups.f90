@@ -96,8 +96,8 @@ contains
     type(supply_case_t) :: supply
     type(bore_case_t) :: bore
     type(shape_case_t) :: shape
-    call list%group('film_history', 'Film with memory under the load of the run, marched over its last cycle when it has ended', &
-      .true., place)
+    call list%group('film_history', &
+      'Film with memory under the load of the run, solved step by step over its last cycle when it has ended', .true., place)
     call march%parameters(list)
     if (list%sets) history%march = march
     if (list%is_absent()) deallocate (history%march)

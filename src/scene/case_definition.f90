@@ -425,7 +425,7 @@ contains
     call list%add('samples_per_revolution', self%samples_per_revolution, &
       'number of rows for each revolution', '>= 1 and <= 1000000', '720')
     call list%add('angle_origin_deg', self%angle_origin_deg, &
-      'one of the crank angles at which sampling = ''crank_angle'' takes rows', 'degrees', any_angle, '0.0', &
+      'one of the crank angles at which sampling = ''crank_angle'' writes rows', 'degrees', any_angle, '0.0', &
       usual='0 to 720')
     call list%add('interval', self%interval, 'time between rows; 0: given by samples_per_revolution', 's', '> 0', default='0.0', &
       usual='1e-9 to 1')
