@@ -1,19 +1,16 @@
 !> Balance of the flows in the film of one face, on a grid of n cells across half of it and m intervals along it: pressures of the
 !> nodes by Reynolds' condition (no suction; a ruptured node into which oil flows is full again) or with suction left to cut off,
-!> and what further sources do to them. A face on two springs gives way, which takes oil in: the rates of the springs follow with
-!> the pressures that load them.
+!> and what further sources do to them.
 module face_balance
   use kinds, only: dp
   implicit none
   private
-  public :: guess_full, balance, guess_yielding, balance_yielding, respond, least_inflow, most_rounds
+  public :: guess_full, balance, respond
+  public :: pair_conductances, pair_nodes, refine, change_full, assemble, solve_symmetric, substitute, least_inflow, most_rounds
 
   real(dp), parameter :: least_inflow = 1e-13_dp  !! over the largest source, with which a ruptured node fills again
-  real(dp), parameter :: lowest_suction = 1e-14_dp   !! of a full node of a face that gives way, over the largest pressure of a face
-                                                  !! at rest, which the rates may cancel
   integer, parameter :: sweeps = 3                !! of Gauss and Seidel over the guess of that part
   integer, parameter :: most_rounds = 60          !! of the search for the part that is full
-  integer, parameter :: most_plain = 10           !! steps of Newton's method before they are shortened
 
 contains
 
@@ -118,17 +115,18 @@ contains
         end do
       end do
       if (cuts_suction) exit
-      call change_full(n, m, along, round, source, p, least_inflow*maxval(abs(source)), 0.0_dp, full, changes)
+      call change_full(n, m, along, round, source, p, least_inflow*maxval(abs(source)), 0.0_dp, .false., full, changes)
       if (.not. changes) exit
     end do
   end subroutine balance
 
   !> Find which nodes are full, from the pressures for which those balance that were.
-  pure subroutine change_full(n, m, along, round, source, p, least, lowest, full, changes)
+  pure subroutine change_full(n, m, along, round, source, p, least, lowest, one_by_one, full, changes)
     integer, intent(in) :: n, m
     real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1), p(0:n + 1, 0:m)
     real(dp), intent(in) :: least    !! inflow with which a ruptured node fills again
     real(dp), intent(in) :: lowest   !! pressure of a full node [Pa]
+    logical, intent(in) :: one_by_one   !! change the first of them alone
     logical, intent(inout) :: full(n, m - 1)
     logical, intent(out) :: changes
     real(dp) :: inflow
@@ -146,154 +144,10 @@ contains
         end if
         if (is_full .neqv. full(i, j)) changes = .true.
         full(i, j) = is_full
+        if (changes .and. one_by_one) return
       end do
     end do
   end subroutine change_full
-
-  !> `guess_full` of a face that gives way, see `balance_yielding`.
-  pure subroutine guess_yielding(n, m, along, round, source, by_rate, weight, load, drag, full)
-    integer, intent(in) :: n, m
-    real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1)
-    real(dp), intent(in) :: by_rate(n, m - 1, 2), weight(n, m - 1, 2), load(2), drag
-    logical, intent(inout) :: full(n, m - 1)
-    real(dp) :: along_pair(n/2, m/2), round_pair(0:n/2, m/2 - 1), source_pair(n/2, m/2 - 1), p(0:n/2 + 1, 0:m/2), rate(2)
-    real(dp), dimension(n/2, m/2 - 1, 2) :: by_rate_pair, weight_pair
-    logical :: full_pair(n/2, m/2 - 1)
-    integer :: k
-    if (mod(n, 2) + mod(m, 2) > 0) return
-    call pair_conductances(n, m, along, round, along_pair, round_pair)
-    call pair_nodes(n, m, source, source_pair)
-    do k = 1, 2
-      call pair_nodes(n, m, by_rate(:, :, k), by_rate_pair(:, :, k))
-      call pair_nodes(n, m, weight(:, :, k), weight_pair(:, :, k))
-    end do
-    full_pair = .true.
-    call balance_yielding(n/2, m/2, along_pair, round_pair, source_pair, by_rate_pair, weight_pair, load, drag, .false., &
-      full_pair, rate, p)
-    call refine(n, m, along, round, source + rate(1)*by_rate(:, :, 1) + rate(2)*by_rate(:, :, 2), p, full)
-  end subroutine guess_yielding
-
-  !> `balance` of a face that gives way on two springs, with the rates v of these: the sources are those of a face at rest and v
-  !> times those of the rates, and each spring, whose own force is in its load, resists with a drag,
-  !>
-  !>     drag v_k = load_k + sum of weight_k p
-  !>
-  !> Pressures are linear in v while the part that is full stays, or that which is cut off.
-  pure subroutine balance_yielding(n, m, along, round, source, by_rate, weight, load, drag, cuts_suction, full, rate, p)
-    integer, intent(in) :: n, m
-    real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1)
-    real(dp), intent(in) :: by_rate(n, m - 1, 2)   !! sources over the rate of each spring [m^2]
-    real(dp), intent(in) :: weight(n, m - 1, 2)    !! load of each spring over the pressure [m^2]
-    real(dp), intent(in) :: load(2)                !! of each spring without the pressures [N]
-    real(dp), intent(in) :: drag                   !! [N s/m]
-    logical, intent(in) :: cuts_suction
-    logical, intent(inout) :: full(n, m - 1)
-    real(dp), intent(out) :: rate(2)               !! [m/s]
-    real(dp), intent(out) :: p(0:n + 1, 0:m)
-    real(dp) :: part(3, n, m - 1)   ! pressures of a face at rest, and over the rates
-    real(dp) :: squeezed(n, m - 1)  ! sources by the rates
-    logical :: changes
-    integer :: pass
-    p = 0
-    do pass = 1, most_rounds
-      call find_parts(n, m, along, round, source, by_rate, full, part)
-      if (cuts_suction) then
-        rate = cut_rate(n*(m - 1), weight, part, load, drag)
-      else
-        rate = balanced_rate(n*(m - 1), weight, part, full, load, drag)
-      end if
-      p(1:n, 1:m - 1) = part(1, :, :) + rate(1)*part(2, :, :) + rate(2)*part(3, :, :)
-      if (cuts_suction) exit
-      squeezed = rate(1)*by_rate(:, :, 1) + rate(2)*by_rate(:, :, 2)
-      call change_full(n, m, along, round, source + squeezed, p, least_inflow*maxval(abs(source) + abs(squeezed)), &
-        -lowest_suction*maxval(abs(part(1, :, :))), full, changes)
-      if (.not. changes) exit
-    end do
-  end subroutine balance_yielding
-
-  !> Pressures of the full nodes of a face at rest, and those over the rate of each spring; 0 at others.
-  pure subroutine find_parts(n, m, along, round, source, by_rate, full, part)
-    integer, intent(in) :: n, m
-    real(dp), intent(in) :: along(n, m), round(0:n, m - 1), source(n, m - 1), by_rate(n, m - 1, 2)
-    logical, intent(in) :: full(n, m - 1)
-    real(dp), intent(out) :: part(3, n, m - 1)
-    real(dp) :: a(0:n + 1, n*m + 2), x(n*m + 2), over_rate(2, n*m + 2)
-    integer :: number(n, m)
-    integer :: i, j, k
-    call assemble(n, m, along, round, full, k, number, a)
-    x(:k + n + 2) = 0
-    over_rate(:, :k + n + 2) = 0
-    do j = 1, m - 1
-      do i = 1, n
-        if (.not. full(i, j)) cycle
-        x(number(i, j)) = source(i, j)
-        over_rate(:, number(i, j)) = by_rate(i, j, :)
-      end do
-    end do
-    call solve_symmetric(k, n, a, x)
-    call substitute(2, k, n, a, over_rate)
-    part = 0
-    do j = 1, m - 1
-      do i = 1, n
-        if (.not. full(i, j)) cycle
-        part(1, i, j) = x(number(i, j))
-        part(2:, i, j) = over_rate(:, number(i, j))
-      end do
-    end do
-  end subroutine find_parts
-
-  !> The rates for which the springs balance, with the pressures of the nodes that count.
-  pure function balanced_rate(n, weight, part, counts, load, drag) result(rate)
-    integer, intent(in) :: n
-    real(dp), intent(in) :: weight(n, 2), part(3, n), load(2), drag
-    logical, intent(in) :: counts(n)
-    real(dp) :: rate(2), a(2, 2), b(2)
-    integer :: i, k
-    a = reshape([drag, 0.0_dp, 0.0_dp, drag], [2, 2])
-    b = load
-    do i = 1, n
-      if (.not. counts(i)) cycle
-      do k = 1, 2
-        b(k) = b(k) + weight(i, k)*part(1, i)
-        a(k, :) = a(k, :) - weight(i, k)*part(2:, i)
-      end do
-    end do
-    rate = [a(2, 2)*b(1) - a(1, 2)*b(2), a(1, 1)*b(2) - a(2, 1)*b(1)]/(a(1, 1)*a(2, 2) - a(1, 2)*a(2, 1))
-  end function balanced_rate
-
-  !> The rates for which the springs balance where suction is cut off: that is linear while the nodes without suction stay. Newton's
-  !> method finds them in few steps; where it runs in circles its steps end where the first node changes (Katzenelson 1965).
-  pure function cut_rate(n, weight, part, load, drag) result(rate)
-    integer, intent(in) :: n
-    real(dp), intent(in) :: weight(n, 2), part(3, n), load(2), drag
-    real(dp) :: rate(2), next(2), share, nothing
-    real(dp), dimension(n) :: pressure, next_pressure
-    logical, dimension(n) :: counts, changes
-    integer :: pass, first
-    rate = 0
-    pressure = part(1, :)
-    nothing = lowest_suction*maxval(abs(pressure))
-    counts = pressure > 0
-    do pass = 1, most_plain + n
-      next = balanced_rate(n, weight, part, counts, load, drag)
-      next_pressure = part(1, :) + next(1)*part(2, :) + next(2)*part(3, :)
-      changes = abs(next_pressure) > nothing .and. ((next_pressure > 0) .neqv. counts)
-      share = 1
-      first = 0
-      if (pass > most_plain .and. any(changes)) then
-        first = minloc(pressure/(pressure - next_pressure), 1, mask=changes)
-        share = max(pressure(first)/(pressure(first) - next_pressure(first)), 0.0_dp)
-      end if
-      rate = rate + share*(next - rate)
-      if (.not. any(changes)) exit
-      pressure = pressure + share*(next_pressure - pressure)
-      if (first > 0) then
-        counts(first) = .not. counts(first)
-      else
-        counts = pressure > 0
-      end if
-    end do
-  end function cut_rate
 
   !> The symmetric matrix of the balances of the full nodes, in the form of `solve_symmetric`.
   pure subroutine assemble(n, m, along, round, full, k, number, a)

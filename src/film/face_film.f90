@@ -25,7 +25,7 @@ module face_film
   use asperities, only: asperities_t
   use bearing_size, only: bearing_t
   use monotone_cubic, only: monotone_cubic_t
-  use face_balance, only: guess_full, balance, guess_yielding, balance_yielding
+  use face_balance, only: guess_full, balance
   implicit none
   private
   public :: face_film_t, face_motion_t, face_loads_t, face_springs_t, face_tangent_t, faces_t, no_loads, &
@@ -53,6 +53,7 @@ module face_film
     real(dp) :: stiffness          !! K, of each [N/m]
     real(dp) :: deflection(2)      !! w [m]
     real(dp) :: rate(2)            !! w' [m/s]
+    logical :: balance = .true.    !! they do at these rates
   end type face_springs_t
 
   !> Loads on the piston, of one face or of both.

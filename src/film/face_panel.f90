@@ -1,5 +1,6 @@
 !> Elastic faces: the rigid panel on its two springs, see `face_film`.
 submodule (face_film) face_panel
+  use face_yield, only: guess_yielding, balance_yielding
   implicit none
 
 contains
@@ -51,7 +52,8 @@ contains
     full = .true.
     associate (n => self%around, m => self%along, drag => springs%stiffness*relaxation)
       if (.not. self%cuts_suction) call guess_yielding(n, m, along, round, source, by_rate, weight, load, drag, full)
-      call balance_yielding(n, m, along, round, source, by_rate, weight, load, drag, self%cuts_suction, full, springs%rate, p)
+      call balance_yielding(n, m, along, round, source, by_rate, weight, load, drag, self%cuts_suction, full, springs%rate, p, &
+        springs%balance)
     end associate
   end procedure find_yielding
 

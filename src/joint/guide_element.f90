@@ -46,6 +46,7 @@ module guide_element
     real(dp) :: deflection(n_corners)     !! of elastic faces at their ends, away from the wall [m]
     real(dp) :: spring_energy             !! stored in them [J]
     real(dp) :: spring_power              !! its rate [W]
+    logical :: springs_balance            !! at the rates of these deflections; else the loads are not known
     type(ring_now_t) :: ring(most_piston_rings)
   end type guide_loads_t
 

@@ -196,6 +196,7 @@ contains
     now%friction_ratio = 0
     now%force = 0
     now%moment = 0
+    now%springs_balance = .true.
     do k = 1, self%n_elements
       call self%slots(k)%element%find_loads(self%skirt_t, motion, y, now)
     end do

@@ -150,6 +150,7 @@ contains
       end if
       now%rates(self%rates%first + 2*k - 2:self%rates%first + 2*k - 1) = springs(k)%rate
     end do
+    now%springs_balance = all(springs%balance)
     if (now%tangent%role /= tangent_found) return
     now%tangent%motion = at
     now%tangent%loads = now%skirt

@@ -21,7 +21,8 @@ contains
     if (allocated(self%gas)) call self%load_gas(y, now, in_domain)
     if (.not. in_domain) return
     if (allocated(self%chain%train)) call load_train(self, y, now)
-    call load_guide(self, y, now)
+    call load_guide(self, y, now, in_domain)
+    if (.not. in_domain) return
     call self%chain%accelerate(now%motion, now%loads, now%accelerations, now%crank_moment, solvable)
     if (solvable) call add_guide_friction(self, joints, now, solvable)
     in_domain = solvable
@@ -80,15 +81,18 @@ contains
   end subroutine load_train
 
   !> Add the loads of the guide to those of joints and gas; the friction force only if it follows from the loads of the piston pin
-  !> known so far.
-  pure subroutine load_guide(self, y, now)
+  !> known so far. `in_domain` is false if the springs of elastic faces do not balance.
+  pure subroutine load_guide(self, y, now, in_domain)
     class(scene_t), intent(in) :: self
     real(dp), intent(in) :: y(self%n)
     type(evaluation_t), intent(inout) :: now
+    logical, intent(out) :: in_domain
+    in_domain = .true.
     if (.not. allocated(self%guide)) return
     call self%chain%move_piston(now%motion)
     if (self%guide%is_loose) call move_centre(now%motion)
     call self%guide%find_loads(now%motion, y, now%guide, now%loads)
+    in_domain = now%guide%springs_balance
     associate (friction => now%guide%friction_force)
       if (.not. self%guide%is_loose .and. normal_is_known(self)) &
         friction = friction + now%guide%friction_ratio*abs(normal_force(self, now))

@@ -71,6 +71,7 @@ contains
     character(len=:), allocatable :: text
     text = leaving_body(scene, y)
     if (film_at_wall(scene) /= '') text = text//', or '//film_at_wall(scene)//' went into the bore, through its asperities'
+    if (spring_states(scene) > 0) text = text//', or the springs of its faces balance at no rates'
     if (scene%chain%has_elastic_rod()) text = text//', or the elastic rod bent or stretched beyond the validity of its equations'
     if (index(text, ', or ') == 1) text = text(6:)
     if (text /= '') text = ' ('//text//')'
@@ -83,10 +84,18 @@ contains
     text = ''
     if (.not. allocated(scene%guide)) return
     if (scene%guide%is_loose .and. scene%guide%touching == 0) text = 'the skirt'
-    if (scene%guide%n_states == 0) return
+    if (scene%guide%n_states == spring_states(scene)) return
     if (text /= '') text = text//' or '
     text = text//'a piston ring'
   end function film_at_wall
+
+  !> Number of states of the springs of a skirt with elastic faces.
+  pure integer function spring_states(scene)
+    type(scene_t), intent(in) :: scene
+    spring_states = 0
+    if (.not. allocated(scene%guide)) return
+    if (scene%guide%filmed > 0) spring_states = scene%guide%slots(scene%guide%filmed)%element%n_states
+  end function spring_states
 
   !> Text that says that a film has left the range of temperatures, or an empty one.
   function hot_film_reason(scene, y) result(text)
