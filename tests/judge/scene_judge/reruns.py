@@ -5,8 +5,10 @@ The distance that two accurate runs may have is measured, not assumed. Two furth
 with an error of one tolerance (the relative tolerance times the size of each coordinate); one of them has the same relative error
 in constants of its laws, because a run makes errors all the time. Their distance from the reference at a later time shows to what
 an error of one tolerance has grown: it is one grown tolerance. A run makes at most one such error in every step, so its distance is
-measured in grown tolerances. Where a grown tolerance is of order one, states are not compared: the motion no longer depends on its
-start, and only statistics can agree.
+measured in grown tolerances. Where the run is beyond the allowed distance, further ones make the error shortly before: a pin that
+crept may by then vibrate on elastic walls, at a speed of which errors of the start show nothing. Where a grown tolerance is of order
+one, states are not compared: the motion no longer depends on its start, and only statistics can
+agree.
 """
 from __future__ import annotations
 
@@ -42,6 +44,7 @@ class Comparison:
     share: float = 0.0          # largest distance over the allowed distance, up to the horizon
     tolerances: float = 0.0     # largest distance in grown tolerances
     time: float = 0.0           # time of the largest distance [s]
+    before: float = math.inf    # time of the last row before one beyond the allowed distance [s]
     horizon: float = 0.0        # [s]
     rows: int = 0               # number of rows that were compared
     statistics: dict[str, float] = dataclasses.field(default_factory=dict)   # shares, by name
@@ -137,13 +140,13 @@ class Reruns:
         self.other = "adams" if judged.text("integrator.method") == "radau" or (
             judged.text("integrator.method") == "auto" and not film_steps and judged.summary.get("step_limited_by") != "stability") else "radau"
 
-    def run(self, span: float, rows: int, **more: str) -> Run:
+    def run(self, span: float, rows: int, state: str = "", **more: str) -> Run:
         settings = {**self.settings, "integrator.end_time": repr(span), "output.interval": repr(span / rows)}
         settings.update({key.replace("__", "."): value for key, value in more.items()})
-        return run_case(self.program, self.case, settings, self.limit)
+        return run_case(self.program, self.case, settings, self.limit, state)
 
-    def reference(self, span: float, rows: int, change: dict[str, str]) -> Run:
-        return self.run(span, rows, integrator__method=f"'{self.other}'",
+    def reference(self, span: float, rows: int, change: dict[str, str], state: str = "") -> Run:
+        return self.run(span, rows, state, integrator__method=f"'{self.other}'",
                         integrator__relative_tolerance=repr(max(self.tolerance / 100, FINEST)), **change)
 
     def neighbour_start(self, scales: Scales, off: float) -> dict[str, str]:
@@ -220,7 +223,43 @@ class Reruns:
         scales = scales_of(reference, states(reference))
         while len(neighbours) < 2 + MORE:
             neighbours = neighbours + self.neighbours(self.span, ROWS, max(self.tolerance, 10 * FINEST), reference, scales)
-        return compare_states(run, reference, [one for one in neighbours if not one.status], self.tolerance, self.revolutions())
+        neighbours = [one for one in neighbours if not one.status]
+        found = compare_states(run, reference, neighbours, self.tolerance, self.revolutions())
+        if found.share <= 1 or not 0 < found.before < math.inf:
+            return found
+        late = self.late_neighbours(reference, scales, found.before)
+        return compare_states(run, reference, neighbours + late, self.tolerance, self.revolutions()) if late else found
+
+    def late_neighbours(self, reference: Run, scales: Scales, time: float) -> list[Run]:
+        """Runs near the reference that make the error of their coordinates at a time; none if the reference does not go on from there."""
+        off, found = max(self.tolerance, 10 * FINEST), []
+        until = self.reference(time, ROWS, {})
+        kept = sum(t < time * (1 - 1e-9) for t in reference.times)
+        for _ in range(MORE):
+            run = self.reference(self.span, ROWS, {}, self.erroneous(until.state, scales, off))
+            first = next((i for i, t in enumerate(run.times) if t > time * (1 - 1e-9)), len(run.times)) if not run.status else 0
+            if run.status or kept + len(run.times) - first < len(reference.times):
+                continue
+            columns = {name: reference.columns[name][:kept] + column[first:] for name, column in run.columns.items()}
+            events = [event for event in reference.events if float(event["time[s]"]) < time] + run.events
+            found.append(dataclasses.replace(run, columns=columns, events=events))
+        return found
+
+    def erroneous(self, state: str, scales: Scales, off: float) -> str:
+        """The text of a state with an error of `off` times its size in every coordinate."""
+        sizes = {"crank_angle": scales.angle, "crank_speed": scales.speed}
+        for (group, prefix), (size, rate) in zip(loose_joints(self.judged), scales.joints):
+            for key, arm in (("offset", 1.0), ("tilt", skirt_arm(self.judged))) if group == "guide" else (("eccentricity", 1.0),):
+                sizes |= {f"{prefix}{key}": size / arm, f"{prefix}{key}_rate": rate / arm}
+        lines = []
+        for line in state.split("&so_far")[0].splitlines():
+            name, _, rest = line.strip().partition(" = ")
+            values, mark, words = rest.partition("!")
+            if name in sizes:
+                rest = ", ".join(repr(float(one) + self.random.choice((-1.0, 1.0)) * off * sizes[name]) for one in values.split(","))
+                line = f"  {name} = {rest}   {mark}{words}"
+            lines.append(line)
+        return "\n".join(lines) + "\n&so_far" + "&so_far".join(state.split("&so_far")[1:])
 
     def revolutions(self) -> float:
         travel = self.judged.columns["crank_angle"]
@@ -273,6 +312,8 @@ def compare_states(run: Run, reference: Run, neighbours: list[Run], tolerance: f
         found.rows += 1
         last = i
         apart = distance(ours[i], theirs[i], scales)
+        if apart > allowed:
+            found.before = min(found.before, run.times[max(i - 1, 0)])
         if not apart / allowed <= found.share:
             found.share, found.tolerances, found.time = apart / allowed, apart / grown, run.times[i]
     else:

@@ -28,6 +28,7 @@ class Run:
     summary: dict[str, str] = dataclasses.field(default_factory=dict)
     worn: list[dict[str, str]] = dataclasses.field(default_factory=list)
     folder: Path = Path()      # of the case file
+    state: str = ""            # text of the state at the end
 
     def number(self, key: str, default: float = 0.0) -> float:
         """A value of the case; `default` if its group is absent."""
@@ -127,6 +128,7 @@ def read_run(folder: Path, name: str, status: int = 0, message: str = "") -> Run
     for suffix in (".resolved.nml", ".csv", ".summary.csv"):
         if not (folder / f"{name}{suffix}").exists():
             return run
+    run.state = (folder / f"{name}.state.nml").read_text() if (folder / f"{name}.state.nml").exists() else ""
     run.case = read_case((folder / f"{name}.resolved.nml").read_text())
     run.every = read_columns(folder / f"{name}.csv")
     run.columns = without_carried(run.case, run.every)
@@ -139,12 +141,16 @@ def read_run(folder: Path, name: str, status: int = 0, message: str = "") -> Run
     return run
 
 
-def run_case(program: Path, case: Path, settings: dict[str, str], limit: float = 300.0) -> Run:
-    """Run one case with additional settings, in a temporary folder. Status -1: it took more than `limit` seconds."""
+def run_case(program: Path, case: Path, settings: dict[str, str], limit: float = 300.0, state: str = "") -> Run:
+    """Run one case with additional settings, in a temporary folder, from the text of a state if one is given. Status -1: it took more
+    than `limit` seconds."""
     with tempfile.TemporaryDirectory(prefix="judged") as out:
         words = [str(program), "-q", "-j", "1", "-o", out]
         for key, value in settings.items():
             words += ["--set", f"{key}={value}"]
+        if state:
+            (Path(out) / "begin.state.nml").write_text(state)
+            words += ["--from", f"{out}/begin.state.nml"]
         try:
             done = subprocess.run([*words, str(case)], capture_output=True, text=True, timeout=limit, check=False)
         except subprocess.TimeoutExpired:
