@@ -7,8 +7,7 @@ in constants of its laws, because a run makes errors all the time. Their distanc
 an error of one tolerance has grown: it is one grown tolerance. A run makes at most one such error in every step, so its distance is
 measured in grown tolerances. Where the run is beyond the allowed distance, further ones make the error shortly before: a pin that
 crept may by then vibrate on elastic walls, at a speed of which errors of the start show nothing. Where a grown tolerance is of order
-one, states are not compared: the motion no longer depends on its start, and only statistics can
-agree.
+one, states are not compared: the motion no longer depends on its start, and only statistics can agree.
 """
 from __future__ import annotations
 
