@@ -5,7 +5,7 @@ module stop_reason
   use number_text, only: short_text
   use ode_method, only: ode_settings_t, step_too_small, tolerance_too_small, start_outside, left_domain
   use ode_solver, only: step_limit_reached, integration_interrupted, chattering, evaluation_limit_reached
-  use scene_problem, only: scene_t, evaluation_t, phase_free
+  use scene_problem, only: scene_t, evaluation_t
   use joint_places, only: in_order, spot_title
   use film_heat, only: hottest
   use chain_motion, only: tilting_t
@@ -227,11 +227,9 @@ contains
     logical :: in_domain
     integer :: i
     call scene%evaluate(t, y, now, in_domain)
-    text = 't = '//short_text(t, digits)//' s, crank angle '//short_text(now%motion%crank_angle/degree, digits)//' deg, phase '
-    if (size(scene%joints) == 0) text = text//trim(phase_names(phase_free))
+    text = 't = '//short_text(t, digits)//' s, crank angle '//short_text(now%motion%crank_angle/degree, digits)//' deg'
     do i = 1, size(scene%joints)
-      if (i > 1) text = text//', '
-      text = text//trim(phase_names(scene%joints(i)%phase))
+      text = text//trim(merge(', phase', ',      ', i == 1))//' '//trim(phase_names(scene%joints(i)%phase))
       if (.not. has_plain_names(scene)) text = text//' at the '//joint_name(scene, i)
     end do
   end function place
