@@ -12,7 +12,7 @@ module scene_problem
   use crank_rod, only: accelerate_crank_rod
   use ideal_chain, only: accelerate_ideal_chain
   use joint_evaluation, only: joint_evaluation_t, clear_loads
-  use clearance_joint, only: clearance_joint_t, most_bearings, n_phases, phase_free, phase_film, phase_contact
+  use clearance_joint, only: clearance_joint_t, most_bearings, n_phases, phase_film, phase_contact
   use joint_events, only: penetration_and_rate
   use sticking, only: hold_surfaces
   use carried_bearing, only: carried_bearing_t
@@ -27,7 +27,7 @@ module scene_problem
   private
   public :: scene_t, evaluation_t, work_part_t
   public :: by_gas, by_drive, by_damping, by_guide, by_elastic
-  public :: phase_free, phase_film, phase_contact
+  public :: phase_film, phase_contact
   public :: event_none, event_contact_begins, event_contact_ends, of_guide, of_wear, of_reeds
 
   !> Events reported in the trace.
