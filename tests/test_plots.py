@@ -44,6 +44,8 @@ from gudgeon.plots.figure_map import read_figures
 from gudgeon.plots.quantities import QUANTITIES, once_a_cycle
 from gudgeon.program import release_program
 from gudgeon.report import page as report_page
+from matplotlib.figure import Figure as Drawing
+from matplotlib.transforms import Bbox
 from gudgeon.results import (
     FineResults,
     MissingResult,
@@ -400,7 +402,7 @@ class WarmFilm(unittest.TestCase):
 class OnePage(unittest.TestCase):
     """The short report: case, answers, losses and plots, all on the page."""
 
-    def test_page(self) -> None:
+    def made(self, more: dict[str, str]) -> Run:
         angle = np.radians(np.arange(0, 721, 2.0))
         columns = {"time": angle / 100, "crank_angle": angle, "film_thickness": 3e-6 + 1e-6 * np.sin(angle), "pin_force_x": 2e3 * np.cos(angle), "pin_force_y": 0 * angle,
                    "cylinder_pressure": 1e5 + angle, "crank_moment": np.sin(angle), "crank_speed": 300 + angle}
@@ -411,8 +413,11 @@ class OnePage(unittest.TestCase):
         case = {"mechanism": {"crank_length": 0.045, "rod_length": 0.15}, "initial": {"crank_speed": 314.159265358979}, "combustion": {"bore": 0.08}, "case": {"title": "An engine"},
                 "joint": {"clearance": 8e-6, "bearing_radius": 0.012, "bearing_length": 0.03}, "lubrication": {"oil": "SAE 30", "temperature": 373.15, "viscosity": 0.0}}
         made = run(columns, case)
-        made.summary.update({name: (value, "") for name, value in rows.items()})
-        drawing = short.draw(made, "engine")
+        made.summary.update({name: (value, "") for name, value in (rows | more).items()})
+        return made
+
+    def test_page(self) -> None:
+        drawing = short.draw(self.made({}), "engine")
         np.testing.assert_allclose(drawing.get_size_inches() * 25.4, (210, 297), atol=0.2)
         self.assertEqual(drawing.get_suptitle(), "An engine")
         said = {text.get_text() for axes in drawing.axes for text in axes.texts}
@@ -421,12 +426,45 @@ class OnePage(unittest.TestCase):
         np.testing.assert_allclose([bar.get_width() for bar in bars.patches], [40, 60])   # piston pin, ring 1: 8 and 12 kPa of 1 MPa at 5 kW
         titles = [axes.get_title(loc="left") for axes in drawing.axes if axes.lines]
         self.assertEqual(titles, ["film thickness [µm]", "force [kN]", "cylinder pressure [bar]", "crank moment [N m]"])
+        self.fits(drawing)
+
+    def fits(self, drawing: Drawing) -> None:
+        """All texts are on the page, and no table covers another one or a plot."""
         drawing.draw_without_rendering()
         page = drawing.bbox
-        for text in [text for axes in drawing.axes for text in axes.texts]:
-            box = text.get_window_extent()
-            self.assertTrue(box.x0 >= 0 and box.y0 >= 0 and box.x1 <= page.x1 and box.y1 <= page.y1, text.get_text())
+        blocks = []
+        for axes in drawing.axes:
+            boxes = [text.get_window_extent() for text in axes.texts]
+            for text, box in zip(axes.texts, boxes):
+                self.assertTrue(box.x0 >= 0 and box.y0 >= 0 and box.x1 <= page.x1 and box.y1 <= page.y1, text.get_text())
+            if axes.lines:
+                self.assertGreater(axes.get_window_extent().height / drawing.dpi, 0.7, "a plot that can be read")
+            if boxes or axes.lines:
+                blocks.append((axes.get_title(loc="left"), Bbox.union([*boxes, axes.get_tightbbox()])))
+        for i, (name, box) in enumerate(blocks):
+            for other, under in blocks[i + 1 :]:
+                self.assertFalse(Bbox.intersection(box, under) is not None and Bbox.intersection(box, under).height > 2, f"{name} covers {other}")
         plt.close(drawing)
+
+    def test_long_tables_have_room(self) -> None:
+        """All rows that a run may have: they are there, and two plots make room for them."""
+        more = {f"{pre}{name}": value for pre in ("", "small_end_", "crank_pin_", "main_bearing_") for name, value in (
+            ("min_film_thickness", "2e-6"), ("cycle_min_film_thickness", "2e-6"), ("cycle_min_film_thickness_angle", "270"), ("cycle_max_film_pressure", "5e7"),
+            ("cycle_max_force", "12345"), ("cycle_reversed_load", "2345"), ("cycle_degrees_under_reversed_load", "123"), ("cycle_mean_film_power", "40"),
+            ("cycle_mean_film_temperature", "390"), ("cycle_mean_film_side_flow", "1e-6"), ("contacts", "7"), ("cycle_contact_share", "0.1"), ("cycle_impacts", "12"),
+            ("cycle_max_impact_speed", "1.25"), ("cycle_wear_depth_100h_bore", "2.5e-6"), ("cycle_joint_fmep", "8e3"))}
+        more |= {f"cycle_ring_{number}_fmep": "2e3" for number in range(1, 7)} | {
+            "cycle_skirt_fmep": "4e3", "cycle_work_elastic": "-1", "cycle_work_guide": "-4", "cycle_fmep": "6e4", "cycle_max_gas_temperature": "1234", "cycle_wall_heat_flow": "21",
+            "cycle_leak_share": "0.01", "cycle_indicated_efficiency": "0.46", "cycle_mass_flow": "0.0075", "cycle_volumetric_efficiency": "0.84",
+            "cycle_isentropic_efficiency": "0.92", "cycle_discharge_temperature": "488", "cycle_suction_loss": "51", "cycle_discharge_loss": "31",
+            "cycle_max_suction_valve_speed": "2.3", "cycle_max_discharge_valve_speed": "4.1", "cycle_max_cylinder_pressure": "1e7", "cycle_mean_crank_speed": "300",
+            "cycle_speed_fluctuation": "0.1", "cycle_max_drive_torque": "14.77", "cycle_slap_speed": "0.48", "cycle_slap_angle": "373", "cycle_slap_corner": "guide_3",
+            "cycle_slap_energy": "0.028", "cycle_slap_impacts": "73", "pin_swing": "0.1", "pin_drift_per_revolution": "0.01", "cycle_one_way_fmep": "4e3"}
+        drawing = short.draw(self.made(more), "engine")
+        said = {text.get_text() for axes in drawing.axes for text in axes.texts}
+        self.assertLessEqual({"Largest drive torque", "Hardest slap", "Piston pin", "Wear of the bore in 100 h"}, said)
+        self.assertEqual(len([axes for axes in drawing.axes if axes.lines]), 2)
+        self.fits(drawing)
 
 
 class WithoutLibrary(unittest.TestCase):

@@ -265,7 +265,7 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
     rows = browser.run("return gudgeon.charts.find(c => c.timed).div.data[0].x.length")
     checks.check(rows == browser.run("return gudgeon.scene.rows"), f"{name}: all rows again")
     answers = browser.run("return [...document.querySelectorAll('#answers tr')].map(r => r.textContent)")
-    checks.check(1 <= len(answers) <= 12, f"{name}: answers: {answers}")
+    checks.check(len(answers) >= 1, f"{name}: answers: {answers}")
     checks.check(browser.run("return document.querySelector('section').id") == "answers", f"{name}: answers come first")
     messages = browser.messages()
     checks.check(not messages, f"{name}: console: {messages}")
@@ -350,17 +350,17 @@ def check_answers(checks: Assertions) -> None:
             "cycle_slap_energy": ("0.0286", "J"), "cycle_slap_impacts": ("73", "1"), "crank_pin_cycle_impacts": ("20", "1"),
             "crank_pin_cycle_max_impact_speed": ("1.386", "m/s"), "crank_pin_cycle_wear_depth_100h_bore": ("2.5e-6", "m"),
             "cycle_fmep": ("1e4", "Pa"), "cycle_one_way_fmep": ("4e3", "Pa"), "cycle_mean_crank_speed": ("314.159265358979", "rad/s"), "cycle_is_settled": ("no", ""),
-            "film_thickness_change": ("0.65", "1")}
+            "film_thickness_change": ("0.65", "1"), "cycle_max_drive_torque": ("14.77", "N.m"), "pin_swing": ("0.1", "rad")}
     places, ours, others = lines(SimpleNamespace(summary=rows))
     said = {name: texts for name, texts in ours} | {name: [text] for name, text in others}
     wanted = {"Thinnest film": ["2.5 µm at 643.2°", ""], "Deepest penetration": ["", "56.2 µm"], "Largest force": ["1.234 kN at 12.0°; reversed 0.3024 kN over 53°", ""],
               "Mean loss": ["120 W", ""], "In contact": ["", "75 %, 20 impacts at up to 1.386 m/s"], "Wear of the bore in 100 h": ["", "2.5 µm"],   # of the cycle, not the 78 µm, 50 % and 9 kN of the whole run
               "Film temperature": ["", "100 °C"], "Oil flow": ["", "60 cm³/min"],
               "Hardest slap": ["0.4894 m/s at 373.4°, corner 3, 28.6 mJ; 73 impacts"],
-              "Mean effective pressures": ["IMEP 9.8, BMEP 9.7, FMEP 0.1 (bearings 0.04, not fed back) bar"]}
+              "Mean effective pressures": ["IMEP 9.8, BMEP 9.7, FMEP 0.1 (bearings 0.04, not fed back) bar"],
+              "Crank speed": ["3000 rpm"], "Largest drive torque": ["14.77 N m"], "Piston pin": ["swings by 5.73°"]}   # none is left out, however many there are
     checks.check(places == ["piston pin", "crank pin"], f"bearings with answers: {places}")
     checks.check(said == wanted, f"answers: {said}")
-    checks.check(len(ours) + len(others) <= 10, "ten lines at most")
     gases = ({"cycle_max_gas_temperature": ("1235.43", "K"), "cycle_heat_to_walls": ("33.48", "J"), "cycle_leak_share": ("0.01007", "1"), "cycle_indicated_efficiency": ("0.4666", "1")},
              {"cycle_max_gas_temperature": ("491.4", "K"), "cycle_wall_heat_flow": ("21.5", "W"), "cycle_leak_flow": ("2.47e-5", "kg/s"), "cycle_mass_flow": ("7.544e-3", "kg/s"),
               "cycle_volumetric_efficiency": ("0.8439", "1"), "cycle_isentropic_efficiency": ("0.9247", "1"), "cycle_discharge_temperature": ("488.4", "K"),

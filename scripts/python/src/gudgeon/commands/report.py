@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("case", metavar="RUN", help="case file, trace, or name of a run in results/")
     parser.add_argument("-o", "--out", type=Path, metavar="PATH", help="file of the page, or its folder (default: RUN.html beside the trace)")
     parser.add_argument("--short", action="store_true",
-                        help="one A4 page (PDF, or PNG or SVG by the ending of -o): case, answers, losses, four plots of the last cycle")
+                        help="one A4 page (PDF, or PNG or SVG by the ending of -o): case, answers, losses, up to four plots of the last cycle")
     parser.add_argument("--cycles", nargs="+", metavar="COLUMN",
                         help="columns whose cycles and orders are shown, even if the run has not settled")
     add_results(parser)

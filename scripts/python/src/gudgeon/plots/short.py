@@ -1,4 +1,4 @@
-"""A run on one A4 page: its case in engineering units, its answers, where the losses go, four plots of the last cycle."""
+"""A run on one A4 page: its case in engineering units, its answers, where the losses go, and plots of the last cycle: four, or two beside long tables."""
 
 import textwrap
 from collections.abc import Callable, Sequence
@@ -17,7 +17,7 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import MultipleLocator
 
 A4 = (8.27, 11.69)  # inch
-LINE, SPACE = 0.115, 9.0  # heights of a line of 7 points, and of all tables and plots [inch]
+LINE, SPACE, LEAST = 0.115, 9.0, 1.2  # heights of a line of 7 points, of all tables and plots, and of a plot at least [inch]
 
 #: The plots, of which the first four that the run has are drawn: title with unit, factor, columns.
 PLOTS: tuple[tuple[str, float, tuple[str, ...]], ...] = (
@@ -85,11 +85,15 @@ def draw(run: Run, name: str) -> Drawing:
                write(axes["machine"], "Machine", (), [(said, [text]) for said, text in others], (0.4, 0.6)))
     wide = write(axes["bearings"], title(run), places, ours, (0.22, *[0.78 / max(len(places), 1)] * len(places)))
     losses = 0.2 * draw_losses(axes["losses"], Answers(run)) + 0.1
-    plot = max(0.5 * (SPACE - tall - wide - losses), 1.2)   # what the tables leave
-    axes["case"].get_subplotspec().get_gridspec().set_height_ratios([tall, max(wide, 0.1), losses, plot, plot])
+    left = SPACE - tall - wide - losses   # what the tables leave
+    plots = [0.5 * left] * 2 if left >= 2 * LEAST else [max(left, LEAST), 0.01]
+    axes["case"].get_subplotspec().get_gridspec().set_height_ratios([tall, max(wide, 0.1), losses, *plots])
     rows = last_cycle(run)
     chosen = [(said, factor, found) for said, factor, names in PLOTS if (found := [one for one in names if one in run or f"{one}_x" in run])]
-    for axis, (said, factor, found) in zip((axes[letter] for letter in "abcd"), chosen):
+    letters = "abcd" if plots[1] >= LEAST else "ab"
+    for letter in "cd"[: 4 - len(letters)]:
+        axes[letter].remove()
+    for axis, (said, factor, found) in zip((axes[letter] for letter in letters), chosen):
         draw_cycle(axis, run, rows, factor, found)
         axis.set_title(said, loc="left")
     return drawing

@@ -1,4 +1,4 @@
-"""The answers at the top of the page of a run: some ten lines that an engineer wants, from the rows of the run's summary alone.
+"""The answers at the top of the page of a run: what an engineer wants, by its importance, from the rows of the run's summary alone.
 
 All values are those of the last whole cycle; those of a run without one are of the whole run.
 """
@@ -140,13 +140,21 @@ OF_BEARINGS: tuple[tuple[str, Callable[[Answers, str], str]], ...] = (
 
 
 def machine(rows: Answers) -> list[tuple[str, str]]:
-    """Lines of the machine."""
+    """Lines of the machine, by their importance."""
     found = []
     if pressures := [f"{name} {text}" for name in ("IMEP", "BMEP", "FMEP") if (text := rows.figure(f"cycle_{name.lower()}", 1e-5))]:
         text = f" (bearings {rows.figure('cycle_one_way_fmep', 1e-5)}, not fed back)" if rows("cycle_one_way_fmep") else ""
         found.append(("Mean effective pressures", ", ".join(pressures) + text + " bar"))
     if powers := [f"{said} {text}" for said in ("indicated", "brake") if (text := rows.shown(f"cycle_{said}_power", "kW", 1e-3))]:
         found.append(("Power", ", ".join(powers)))
+    if text := rows.shown("cycle_max_cylinder_pressure", "bar", 1e-5):
+        found.append(("Cylinder pressure", text))
+    if text := rows.shown(rows.of("", "cycle_mean_crank_speed", "mean_crank_speed"), "rpm", 30 / math.pi):
+        if (rows("cycle_speed_fluctuation") or 0.0) > 1e-12:
+            text += f", fluctuates by {rows.figure('cycle_speed_fluctuation', 100, form='.3g')} %"
+        found.append(("Crank speed", text))
+    if text := rows.shown(rows.of("", "cycle_max_drive_torque", "max_drive_torque"), "N m", 1):
+        found.append(("Largest drive torque", text))
     gas = [f"{name} {text}" for name, text in (
         ("up to", rows.shown("cycle_max_gas_temperature", "°C", 1, -273.15)), ("to the walls", rows.shown("cycle_heat_to_walls", "J", 1)),
         ("to the walls", rows.shown("cycle_wall_heat_flow", "W", 1)), ("leak", rows.shown("cycle_leak_share", "%", 100)),
@@ -160,14 +168,6 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
         found.append(("Gas", ", ".join(gas)))
     if text := slap(rows):
         found.append(("Hardest slap", text))
-    if text := rows.shown("cycle_max_cylinder_pressure", "bar", 1e-5):
-        found.append(("Cylinder pressure", text))
-    if text := rows.shown(rows.of("", "cycle_mean_crank_speed", "mean_crank_speed"), "rpm", 30 / math.pi):
-        if (rows("cycle_speed_fluctuation") or 0.0) > 1e-12:
-            text += f", fluctuates by {rows.figure('cycle_speed_fluctuation', 100, form='.3g')} %"
-        found.append(("Crank speed", text))
-    if text := rows.shown("cycle_max_drive_torque", "N m", 1):
-        found.append(("Largest drive torque", text))
     if swing := rows.figure("pin_swing", 180 / math.pi, form=".3g"):
         drift = rows.figure("pin_drift_per_revolution", 180 / math.pi, form=".3g")
         found.append(("Piston pin", f"swings by {swing}°" + (f", drifts by {drift}° a revolution" if drift else "")))
@@ -208,13 +208,12 @@ def losses_section(rows: Answers, say: Callable[[str], str]) -> str:
 
 
 def lines(run: Run) -> tuple[list[str], list[tuple[str, list[str]]], list[tuple[str, str]]]:
-    """Names of the bearings; the lines of the bearings, with a text for each; and those of the machine. There are ten at most."""
+    """Names of the bearings; the lines of the bearings, with a text for each; and those of the machine."""
     rows = Answers(run)
     places = [(pre, name) for pre, name in PLACES.values() if rows(f"{pre}min_film_thickness") is not None]
     ours = [(name, [text(rows, pre) for pre, _ in places]) for name, text in OF_BEARINGS]
     ours = [(name, texts) for name, texts in ours if any(texts)]
-    others = machine(rows)
-    return [name for _, name in places], ours, others[: max(0, 10 - len(ours))]
+    return [name for _, name in places], ours, machine(rows)
 
 
 def section(run: Run, language: Language | None = None) -> str:
