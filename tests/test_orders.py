@@ -118,6 +118,7 @@ def runs(folder: Path) -> None:
         [*PLOT, "orders", folder / "sim_IV.csv", "--settle", "0"], capture_output=True, text=True, check=False
     )
     check(told.returncode == 0, "the script runs", told.stderr)
+    check("film thickness [µm], strongest orders: " in told.stdout and " bar\n" in told.stdout and "e+0" not in told.stdout, "it prints readable units", told.stdout)
     for kind in ("orders.csv", "work.csv", "cycles.png", "orders.png", "bearings.png", "indicator.png"):
         check((folder / f"sim_IV.{kind}").stat().st_size > 100, f"it writes {kind}")
     (folder / "sim_IV.indicator.png").unlink()
@@ -170,7 +171,7 @@ def sections_of_pages() -> None:
     text = section(settled(0.0))
     check("4 cycles of one revolution" in text and text.count("data:image/png") == 2, "a settled run: cycles and pictures", text[:200])
     check("<td>crank speed</td><td>100</td><td>3: 2</td>" in text, "a settled run: mean and strongest order")
-    check("<td>drive</td><td>3.5</td>" in text and "<td>film, crank pin</td><td>-3.4</td>" in text, "a settled run: work")
+    check("<td>drive</td><td>3.5 J</td>" in text and "<td>film, crank pin</td><td>−3.4 J</td>" in text and "<td>100 mJ</td>" in text, "a settled run: work")
     check("None: the motion has not settled. The mean of crank speed drifts by" in section(settled(1.0)), "a run that drifts has no section")
     check("data:image/png" in section(settled(1.0), ["crank_speed"]), "a run that drifts has a section if columns are requested")
     check("None: no whole cycle" in section(settled(0.0, 1)), "a run that is too short has no section")

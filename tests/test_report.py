@@ -32,7 +32,7 @@ from measured import use_virtual_environment
 use_virtual_environment()
 
 from gudgeon.language import Language
-from gudgeon.report.answers import Answers, html_of, lines, losses_of, number, section, warnings
+from gudgeon.report.answers import Answers, amount, html_of, lines, losses_of, number, section, warnings
 
 TOP = Path(__file__).resolve().parents[1]
 
@@ -353,11 +353,11 @@ def check_answers(checks: Assertions) -> None:
             "film_thickness_change": ("0.65", "1"), "cycle_max_drive_torque": ("14.77", "N.m"), "pin_swing": ("0.1", "rad")}
     places, ours, others = lines(SimpleNamespace(summary=rows))
     said = {name: texts for name, texts in ours} | {name: [text] for name, text in others}
-    wanted = {"Thinnest film": ["2.5 µm at 643.2°", ""], "Deepest penetration": ["", "56.2 µm"], "Largest force": ["1.234 kN at 12.0°; reversed 0.3024 kN over 53°", ""],
+    wanted = {"Thinnest film": ["2.5 µm at 643.2°", ""], "Deepest penetration": ["", "56.2 µm"], "Largest force": ["1.234 kN at 12.0°; reversed 302.4 N over 53°", ""],
               "Mean loss": ["120 W", ""], "In contact": ["", "75 %, 20 impacts at up to 1.386 m/s"], "Wear of the bore in 100 h": ["", "2.5 µm"],   # of the cycle, not the 78 µm, 50 % and 9 kN of the whole run
               "Film temperature": ["", "100 °C"], "Oil flow": ["", "60 cm³/min"],
               "Hardest slap": ["0.4894 m/s at 373.4°, corner 3, 28.6 mJ; 73 impacts"],
-              "Mean effective pressures": ["IMEP 9.8, BMEP 9.7, FMEP 0.1 (bearings 0.04, not fed back) bar"],
+              "Mean effective pressures": ["IMEP 9.8 bar, BMEP 9.7 bar, FMEP 0.1 bar (bearings 4 kPa, not fed back)"],
               "Crank speed": ["3000 rpm"], "Largest drive torque": ["14.77 N m"], "Piston pin": ["swings by 5.73°"]}   # none is left out, however many there are
     checks.check(places == ["piston pin", "crank pin"], f"bearings with answers: {places}")
     checks.check(said == wanted, f"answers: {said}")
@@ -385,7 +385,16 @@ def check_answers(checks: Assertions) -> None:
             "cycle_min_skirt_film_thickness": ("1.145e-5", "m"), "cycle_min_skirt_film_thickness_angle": ("529.8", "deg")}
     parts = losses_of(Answers(SimpleNamespace(summary=of_losses | film)))
     checks.check(parts[-2] == ("Skirt", 4e3, 0.0) and abs(parts[-1][1] - 2e3) < 1e-6, f"the film of the skirt has its own part: {parts}")
-    checks.check(("Hardest slap", "0.0464 m/s at 378.3°, film from 11.45 µm at 529.8°") in lines(SimpleNamespace(summary=rows | film))[2], "slap of a skirt on its film")
+    checks.check(("Hardest slap", "46.4 mm/s at 378.3°, film from 11.45 µm at 529.8°") in lines(SimpleNamespace(summary=rows | film))[2], "slap of a skirt on its film")
+    for value, unit, text in ((-600.7, "W", "−600.7 W"), (130.6, "N", "130.6 N"), (3.934, "N", "3.934 N"), (5.966e-9, "m", "5.966 nm"), (6.322e-7, "m", "0.6322 µm"), (1.13, "s", "1.13 s"),
+                              (8.8858e5, "bar", "8.886 bar"), (71.85, "bar", "71.85 Pa"), (5522, "N m", "5.522 kN m"), (4.825e-6, "m", "4.825 µm"), (-1.033e-8, "J", "−10.33 nJ"), (0.4894, "m/s", "0.4894 m/s"),
+                              (0.0464, "m/s", "46.4 mm/s"), (0.0, "W", "0 W"), (1e-13, "J", "1e−13 J"), (314.2, "cm³/min", "314.2 cm³/min")):
+        checks.check(amount(value, unit) == text, f"units as engineers write them: {amount(value, unit)}, wanted {text}")
+    said = {text for _, texts in ours for text in texts} | {text for _, text in others}
+    portuguese.unknown.clear()
+    spoken = {text: portuguese.say(text) for text in said}
+    checks.check(not portuguese.unknown, f"answers in Portuguese: {portuguese.unknown}")
+    checks.check(spoken["1.234 kN at 12.0°; reversed 302.4 N over 53°"] == "1,234 kN a 12,0°; invertida 302,4 N durante 53°", f"a duration: {spoken}")
     text = section(SimpleNamespace(summary=of_losses))
     checks.check("<td>Crank pin</td><td>6 kPa</td><td>60 W</td><td>24 %</td>" in text and "<td>All losses (FMEP)</td><td>25 kPa</td><td>250 W</td>" in text, f"table of losses: {text}")
     for value, difference, text in ((123.456, 0.02, "123.5"), (123.456, 0.3, "123.<i>5</i>"), (123.456, 0.6, "12<i>3.5</i>"), (123.456, 30, "1<i>23.5</i>"), (-0.005966, 2e-5, "−0.0059<i>66</i>"),
@@ -394,7 +403,7 @@ def check_answers(checks: Assertions) -> None:
         checks.check(found == text.replace("<i>", '<span class="loose">').replace("</i>", "</span>"), f"certified digits: {found}")
     certified = SimpleNamespace(summary=rows | {"certified_until": ("1", "s"), "cycle_max_force_difference": ("-0.3", "N")})
     found = dict(lines(certified)[1])
-    checks.check(html_of(found["Largest force"][0]).startswith('1.234 kN at <span class="loose">12.0</span>°; reversed <span class="loose">0.3024</span> kN'), f"certified answers: {found}")
+    checks.check(html_of(found["Largest force"][0]).startswith('1.234 kN at <span class="loose">12.0</span>°; reversed <span class="loose">302.4</span> N'), f"certified answers: {found}")
     checks.check(html_of(Language("pt").say(found["Largest force"][0])).startswith('1,234 kN a <span class="loose">12,0</span>°'), f"in Portuguese: {Language('pt').say(found['Largest force'][0])}")
     # 6123 Pa of the crank pin, known to 4 Pa; as much of the piston in its bore, the difference of 16 kPa (4 J, known to 0.001 J) and 10 kPa (known to 12 Pa)
     known = {f"{name}_difference": (size, "") for name, size in (("cycle_fmep", "20"), ("crank_pin_cycle_joint_fmep", "-4"), ("cycle_work_guide", "0.001"), ("cycle_ring_fmep", "12"))}

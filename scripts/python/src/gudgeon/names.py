@@ -116,6 +116,21 @@ def prefixed(unit: str, values: np.ndarray) -> tuple[str, float]:
     return prefix + unit, 1.0 / size
 
 
+def readable(unit: str, value: float) -> tuple[str, float]:
+    """The unit in which an engineer writes a value, and the factor to it: lengths of films in µm, speeds in m/s and pressures of a gas
+    ("bar", of a value in Pa) in bar, unless they are far too small or large for that; all others by `prefixed`."""
+    size = abs(value)
+    if 0 < size < 1e-10:   # rounding, of which no prefix tells anything
+        return ("Pa" if unit == "bar" else unit), 1.0
+    if unit == "bar" and not 0 < size < 1e4:
+        return unit, 1e-5
+    if unit == "m" and 1e-7 <= size < 1e-3:
+        return "µm", 1e6
+    if unit == "m/s" and 0.1 <= size < 1e3:
+        return unit, 1.0
+    return prefixed("Pa" if unit == "bar" else unit, np.array([value], dtype=float))
+
+
 def plain_unit(unit: str) -> str:
     """A unit in typographic form; empty for a number without unit."""
     if unit in ("-", "1", ""):

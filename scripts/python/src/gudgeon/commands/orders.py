@@ -22,7 +22,8 @@ from gudgeon import language
 from gudgeon.commands import Names, add_output, add_results, number, save
 from gudgeon.cycles import orders, whole_cycles, work
 from gudgeon.plots import cycles as pictures
-from gudgeon.report.cycles import COLUMNS, chosen
+from gudgeon.report.answers import number as figure
+from gudgeon.report.cycles import COLUMNS, chosen, readable_work
 from gudgeon.results import located
 
 
@@ -52,11 +53,13 @@ def run(options: argparse.Namespace) -> int:
         ["column", "order", "amplitude", "phase_deg", "scatter"]
     ].to_csv(out / f"{name}.orders.csv", index=False)
     print(f"{name}: {cycles.number} cycles")
-    print(done.to_string(index=False, float_format=lambda value: f"{value:.5g}"))
+    if len(done):
+        print(readable_work(done).to_string(index=False))
     for column, table in tables.items():
         strongest = table[table["order"] > 0].nlargest(4, "amplitude")
-        said = ", ".join(f"{row.order:g}: {row.amplitude:.4g}" for row in strongest.itertuples())
-        print(f"{column} [{cycles.run.units.get(column, '')}], strongest orders: {said}")
+        shown = pictures.shown(cycles, column)
+        said = ", ".join(f"{row.order:g}: {figure(shown.factor * row.amplitude)}" for row in strongest.itertuples())
+        print(f"{shown.label}, strongest orders: {said}")
     print(out / f"{name}.work.csv", out / f"{name}.orders.csv")
     save(pictures.draw_means(cycles, columns), options, out, f"{name}.cycles")
     save(pictures.draw_orders(cycles, columns, options.highest), options, out, f"{name}.orders")

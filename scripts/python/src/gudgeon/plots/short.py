@@ -10,7 +10,7 @@ from gudgeon.names import PLACES
 from gudgeon.plots.bearing import last_cycle, run_cycle
 from gudgeon.plots.columns import COLOURS, crank_angles, values_of
 from gudgeon.plots.style import BLUE
-from gudgeon.report.answers import FIRM, Answers, lines, losses_of, number, title
+from gudgeon.report.answers import FIRM, Answers, amount, lines, losses_of, number, title
 from gudgeon.results import MissingResult, Run
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -118,13 +118,13 @@ def draw_losses(axes: Axes, rows: Answers) -> int:
     parts = [(name, value * power / imep) for name, value, _ in of_gas] or [
         (name.capitalize(), sum(rows(f"{pre}cycle_mean_{part}_power") or 0.0 for part in ("film", "friction"))) for pre, name in PLACES.values()]
     parts = [(name, watts) for name, watts in parts if watts][::-1]
-    total = f" (FMEP {number(1e-5 * (rows('cycle_fmep') or 0.0))} bar)" if of_gas else ""
+    total = f" (FMEP {amount(rows('cycle_fmep') or 0.0, 'bar')})" if of_gas else ""
     if not parts:
         axes.axis("off")
         return 0
     axes.set_title(language.current.keep(language.current.say("Where the losses go") + language.current.say(total)), loc="left", fontweight="bold")
     bars = axes.barh([name for name, _ in parts], [watts for _, watts in parts], color=BLUE, height=0.6)
-    axes.bar_label(bars, [f"{number(watts)} W" for _, watts in parts], padding=3, fontsize=7)
+    axes.bar_label(bars, [amount(watts, "W") for _, watts in parts], padding=3, fontsize=7)
     axes.margins(x=0.12)
     axes.xaxis.set_visible(False)
     axes.spines["bottom"].set_visible(False)

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Mapping
 
 from gudgeon.language import Language
-from gudgeon.names import PLACES
+from gudgeon.names import PLACES, readable
 from gudgeon.results import Run
 
 #: Shown together behind a value: the crank angle at which it occurs.
@@ -50,8 +50,9 @@ class Answers:
         return "" if value is None else number(factor * (value + offset), abs(factor) * self.difference(name), form)
 
     def shown(self, name: str, unit: str, factor: float = 1.0, offset: float = 0.0, form: str = ".4g") -> str:
-        """A value in a unit, with its crank angle if there is one; empty without this row."""
-        text, angle = self.figure(name, factor, offset, form), self.figure(name + ANGLE, form=".1f")
+        """A value in a unit, or with a prefix to it that suits the value, with its crank angle if there is one; empty without this row."""
+        unit, prefix = readable(unit, factor * ((self(name) or 0.0) + offset))
+        text, angle = self.figure(name, factor * prefix, offset, form), self.figure(name + ANGLE, form=".1f")
         return text and f"{text} {unit}" + (f" at {angle}°" if angle else "")
 
     def of(self, pre: str, in_cycle: str, in_run: str) -> str:
@@ -70,6 +71,12 @@ def number(value: float, difference: float = 0.0, form: str = ".4g") -> str:
     return text.replace("-", "−")
 
 
+def amount(value: float, unit: str, difference: float = 0.0) -> str:
+    """A value with its unit, which has a prefix that suits it."""
+    unit, factor = readable(unit, value)
+    return f"{number(factor * value, factor * difference)} {unit}"
+
+
 def html_of(text: str) -> str:
     """A text in HTML, with its LOOSE digits as such."""
     loose = "".join(map(chr, FIRM))
@@ -80,7 +87,7 @@ def gap(rows: Answers, pre: str, is_film: bool) -> str:
     """The thinnest film; or the deepest penetration, where that is negative."""
     name = rows.of(pre, "cycle_min_film_thickness", "min_film_thickness")
     value = rows(name)
-    return "" if value is None or (value >= 0) != is_film else rows.shown(name, "µm", 1e6 if is_film else -1e6)
+    return "" if value is None or (value >= 0) != is_film else rows.shown(name, "m", 1.0 if is_film else -1.0)
 
 
 def temperature(rows: Answers, pre: str) -> str:
@@ -93,77 +100,80 @@ def temperature(rows: Answers, pre: str) -> str:
 def losses(rows: Answers, pre: str) -> str:
     """Loss of a bearing: of its film and of its friction together."""
     names = [name for part in ("film", "friction") if rows(name := f"{pre}cycle_mean_{part}_power") is not None]
-    return f"{number(*rows.total(dict.fromkeys(names, 1.0)))} W" if names else ""
+    value, difference = rows.total(dict.fromkeys(names, 1.0))
+    return amount(value, "W", difference) if names else ""
 
 
 def touching(rows: Answers, pre: str) -> str:
     """Share of the time in contact, where there has been any, with the number of impacts and the speed of the hardest one."""
-    name, speed = rows.of(pre, "cycle_contact_share", "contact_time_fraction"), rows.figure(f"{pre}cycle_max_impact_speed")
+    name, fastest = rows.of(pre, "cycle_contact_share", "contact_time_fraction"), f"{pre}cycle_max_impact_speed"
     if rows(name) is None or not (rows(f"{pre}contacts") or rows(name)):
         return ""
-    impacts = rows.figure(f"{pre}cycle_impacts", form=".0f") if rows(f"{pre}cycle_impacts") else ""
-    return f"{rows.figure(name, 100, form='.3g')} %" + (f", {impacts} impacts at up to {speed} m/s" if impacts and speed else "")
+    impacts, speed = rows.figure(f"{pre}cycle_impacts", form=".0f") if rows(f"{pre}cycle_impacts") else "", rows(fastest)
+    hardest = f", {impacts} impacts at up to {amount(speed, 'm/s', rows.difference(fastest))}" if impacts and speed is not None else ""
+    return f"{rows.figure(name, 100, form='.3g')} %" + hardest
 
 
 def force(rows: Answers, pre: str) -> str:
     """The largest force, and that along the rod in the other sense."""
-    text = rows.shown(rows.of(pre, "cycle_max_force", "max_pin_force"), "kN", 1e-3)
-    back, degrees = rows.figure(f"{pre}cycle_reversed_load", 1e-3), rows.figure(f"{pre}cycle_degrees_under_reversed_load", form=".0f")
+    text = rows.shown(rows.of(pre, "cycle_max_force", "max_pin_force"), "N")
+    back, degrees = rows.shown(f"{pre}cycle_reversed_load", "N"), rows.figure(f"{pre}cycle_degrees_under_reversed_load", form=".0f")
     if not (text and back and degrees):
         return text
-    return text + (f"; reversed {back} kN over {degrees}°" if (rows(f"{pre}cycle_reversed_load") or 0.0) > 0 else "; never reversed")
+    return text + (f"; reversed {back} over {degrees}°" if (rows(f"{pre}cycle_reversed_load") or 0.0) > 0 else "; never reversed")
 
 
 def slap(rows: Answers) -> str:
     """The hardest impact of the skirt, or of one with a film its fastest end and the least film."""
-    if (speed := rows.shown("cycle_max_slap_speed", "m/s")) and (film := rows.shown("cycle_min_skirt_film_thickness", "µm", 1e6)):
+    if (speed := rows.shown("cycle_max_slap_speed", "m/s")) and (film := rows.shown("cycle_min_skirt_film_thickness", "m")):
         return f"{speed}, film from {film}"
-    speed, energy, impacts = (rows.figure(f"cycle_slap_{name}", factor, form=form) for name, factor, form in (("speed", 1, ".4g"), ("energy", 1e3, ".4g"), ("impacts", 1, ".0f")))
+    speed, energy = rows.shown("cycle_slap_speed", "m/s"), rows.shown("cycle_slap_energy", "J")
+    impacts = rows.figure("cycle_slap_impacts", form=".0f")
     if not (speed and energy and impacts):
         return ""
     corner = rows.summary["cycle_slap_corner"][0].removeprefix("guide_")
-    return f"{speed} m/s at {rows.figure('cycle_slap_angle', form='.1f')}°, corner {corner}, {energy} mJ; {impacts} impacts"
+    return f"{speed} at {rows.figure('cycle_slap_angle', form='.1f')}°, corner {corner}, {energy}; {impacts} impacts"
 
 
 #: Lines of bearings: name, and the text for the rows with a prefix.
 OF_BEARINGS: tuple[tuple[str, Callable[[Answers, str], str]], ...] = (
     ("Thinnest film", lambda rows, pre: gap(rows, pre, True)),
     ("Deepest penetration", lambda rows, pre: gap(rows, pre, False)),
-    ("Largest film pressure", lambda rows, pre: rows.shown(rows.of(pre, "cycle_max_film_pressure", "max_film_pressure"), "MPa", 1e-6)),
+    ("Largest film pressure", lambda rows, pre: rows.shown(rows.of(pre, "cycle_max_film_pressure", "max_film_pressure"), "Pa")),
     ("Largest force", force),
     ("Mean loss", losses),
     ("Film temperature", temperature),
     ("Oil flow", lambda rows, pre: rows.shown(rows.of(pre, "cycle_mean_film_side_flow", "mean_film_side_flow"), "cm³/min", 6e7)),
     ("In contact", touching),
-    ("Wear of the bore in 100 h", lambda rows, pre: rows.shown(f"{pre}cycle_wear_depth_100h_bore", "µm", 1e6)),
+    ("Wear of the bore in 100 h", lambda rows, pre: rows.shown(f"{pre}cycle_wear_depth_100h_bore", "m")),
 )
 
 
 def machine(rows: Answers) -> list[tuple[str, str]]:
     """Lines of the machine, by their importance."""
     found = []
-    if pressures := [f"{name} {text}" for name in ("IMEP", "BMEP", "FMEP") if (text := rows.figure(f"cycle_{name.lower()}", 1e-5))]:
-        text = f" (bearings {rows.figure('cycle_one_way_fmep', 1e-5)}, not fed back)" if rows("cycle_one_way_fmep") else ""
-        found.append(("Mean effective pressures", ", ".join(pressures) + text + " bar"))
-    if powers := [f"{said} {text}" for said in ("indicated", "brake") if (text := rows.shown(f"cycle_{said}_power", "kW", 1e-3))]:
+    if pressures := [f"{name} {text}" for name in ("IMEP", "BMEP", "FMEP") if (text := rows.shown(f"cycle_{name.lower()}", "bar"))]:
+        text = f" (bearings {rows.shown('cycle_one_way_fmep', 'bar')}, not fed back)" if rows("cycle_one_way_fmep") else ""
+        found.append(("Mean effective pressures", ", ".join(pressures) + text))
+    if powers := [f"{said} {text}" for said in ("indicated", "brake") if (text := rows.shown(f"cycle_{said}_power", "W"))]:
         found.append(("Power", ", ".join(powers)))
-    if text := rows.shown("cycle_max_cylinder_pressure", "bar", 1e-5):
+    if text := rows.shown("cycle_max_cylinder_pressure", "bar"):
         found.append(("Cylinder pressure", text))
     if text := rows.shown(rows.of("", "cycle_mean_crank_speed", "mean_crank_speed"), "rpm", 30 / math.pi):
         if (rows("cycle_speed_fluctuation") or 0.0) > 1e-12:
             text += f", fluctuates by {rows.figure('cycle_speed_fluctuation', 100, form='.3g')} %"
         found.append(("Crank speed", text))
-    if text := rows.shown(rows.of("", "cycle_max_drive_torque", "max_drive_torque"), "N m", 1):
+    if text := rows.shown(rows.of("", "cycle_max_drive_torque", "max_drive_torque"), "N m"):
         found.append(("Largest drive torque", text))
     gas = [f"{name} {text}" for name, text in (
-        ("up to", rows.shown("cycle_max_gas_temperature", "°C", 1, -273.15)), ("to the walls", rows.shown("cycle_heat_to_walls", "J", 1)),
-        ("to the walls", rows.shown("cycle_wall_heat_flow", "W", 1)), ("leak", rows.shown("cycle_leak_share", "%", 100)),
+        ("up to", rows.shown("cycle_max_gas_temperature", "°C", 1, -273.15)), ("to the walls", rows.shown("cycle_heat_to_walls", "J")),
+        ("to the walls", rows.shown("cycle_wall_heat_flow", "W")), ("leak", rows.shown("cycle_leak_share", "%", 100)),
         ("leak", rows.shown("cycle_leak_flow", "g/s", 1000)), ("efficiency", rows.shown("cycle_indicated_efficiency", "%", 100)),
         ("delivers", rows.shown("cycle_mass_flow", "g/s", 1000)), ("volumetric efficiency", rows.shown("cycle_volumetric_efficiency", "%", 100)),
         ("isentropic efficiency", rows.shown("cycle_isentropic_efficiency", "%", 100)), ("delivery temperature", rows.shown("cycle_discharge_temperature", "°C", 1, -273.15)),
-        ("lost in the suction valve", rows.shown("cycle_suction_loss", "W", 1)), ("in the discharge valve", rows.shown("cycle_discharge_loss", "W", 1)),
-        ("suction valve hits with", rows.shown("cycle_max_suction_valve_speed", "m/s", 1)),
-        ("discharge valve hits with", rows.shown("cycle_max_discharge_valve_speed", "m/s", 1))) if text]
+        ("lost in the suction valve", rows.shown("cycle_suction_loss", "W")), ("in the discharge valve", rows.shown("cycle_discharge_loss", "W")),
+        ("suction valve hits with", rows.shown("cycle_max_suction_valve_speed", "m/s")),
+        ("discharge valve hits with", rows.shown("cycle_max_discharge_valve_speed", "m/s"))) if text]
     if gas:
         found.append(("Gas", ", ".join(gas)))
     if text := slap(rows):
@@ -195,9 +205,11 @@ def losses_section(rows: Answers, say: Callable[[str], str]) -> str:
         return ""
     total, of_total = rows.total({"cycle_fmep": 1.0})
     largest, watts = max(abs(value) for _, value, _ in found), (rows("cycle_indicated_power") or 0.0) / (rows("cycle_imep") or 1.0)
+    (of_pressure, pascals), (of_power, factor) = readable("Pa", total), readable("W", watts * total)   # one unit, so that parts can be compared
+    watts *= factor
 
     def line(name: str, value: float, difference: float, share: str = "", width: float = 0.0) -> str:
-        texts = (name, f"{number(1e-3 * value, 1e-3 * difference)} kPa", f"{number(watts * value, abs(watts) * difference)} W", share)
+        texts = (name, f"{number(pascals * value, pascals * difference)} {of_pressure}", f"{number(watts * value, abs(watts) * difference)} {of_power}", share)
         return "<tr>" + "".join(f"<td>{html_of(say(text))}</td>" for text in texts) + f'<td class="bar"><i style="width: {width:.1f}%"></i></td></tr>'
 
     def share(value: float, difference: float) -> str:

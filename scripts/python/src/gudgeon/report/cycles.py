@@ -10,6 +10,7 @@ import pandas as pd
 from gudgeon.cycles import Cycles, orders, whole_cycles, work
 from gudgeon.language import Language
 from gudgeon.plots import cycles as cycle_pictures
+from gudgeon.report.answers import amount, number
 from gudgeon.results import MissingResult, Run
 from matplotlib.figure import Figure as Drawing
 
@@ -57,7 +58,7 @@ def section(run: Run, wanted: list[str] | None = None, language: Language | None
             picture(cycle_pictures.draw_means(cycles, columns), means, language),
             picture(cycle_pictures.draw_orders(cycles, columns, HIGHEST), by_order, language),
             table(strongest(cycles, columns), "Strongest orders (amplitude; order 0: mean)", language),
-            table(done.map(number), "Work in the last cycle", language) if len(done := work(run)) else "",
+            table(done, "Work in the last cycle", language) if len(done := readable_work(work(run))) else "",
         )
     )
 
@@ -94,8 +95,11 @@ def strongest(cycles: Cycles, columns: list[str]) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def number(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+def readable_work(done: pd.DataFrame) -> pd.DataFrame:
+    """The work of a cycle as texts, each with its unit."""
+    columns = {"work[J]": ("work", "J"), "mean_effective_pressure[Pa]": ("mean effective pressure", "bar")}
+    return pd.DataFrame({"quantity": done["quantity"]} | {said: [amount(value, unit) for value in done[name]] for name, (said, unit) in columns.items() if name in done}) \
+        if len(done) else done
 
 
 def paragraph(text: str) -> str:
