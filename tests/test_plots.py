@@ -446,6 +446,27 @@ class OnePage(unittest.TestCase):
                 self.assertFalse(Bbox.intersection(box, under) is not None and Bbox.intersection(box, under).height > 2, f"{name} covers {other}")
         plt.close(drawing)
 
+    def test_numbered_bearings(self) -> None:
+        """Nine bearings of an engine: a line for each in a table, and both kinds where the losses go."""
+        bearings = [f"main_bearing_{number}" for number in range(1, 6)] + [f"crank_pin_{number}" for number in range(1, 5)]
+        more = {f"{bearing}_{name}": value for bearing in bearings for name, value in (
+            ("min_film_thickness", "2e-6"), ("cycle_min_film_thickness", "2.345e-6"), ("cycle_min_film_thickness_angle", "642.2"), ("cycle_max_film_pressure", "1.086e8"),
+            ("cycle_max_force", "23280"), ("cycle_reversed_load", "4136"), ("cycle_degrees_under_reversed_load", "149"), ("cycle_mean_film_power", "98.92"),
+            ("cycle_mean_film_side_flow", "2e-6"), ("cycle_joint_fmep", "1e3"))}
+        made = self.made(more | {"cycle_thinnest_bearing": "crank_pin_2", "cycle_bearings_power": "890.3"})
+        for row in ("min_film_thickness", "cycle_joint_fmep"):   # no bearing but these
+            del made.summary[row]
+        made.trace["crank_pin_2_film_thickness"] = made.trace["film_thickness"]
+        drawing = short.draw(made, "engine")
+        said = [text.get_text() for axes in drawing.axes for text in axes.texts]
+        self.assertLessEqual({bearing.replace("_", " ") for bearing in bearings} | {"2.345 µm at 642.2°, crank pin 2", "890.3 W"}, set(said))
+        self.assertEqual((said.count("108.6 MPa"), said.count("98.92 W")), (9, 9))
+        bars = next(axes for axes in drawing.axes if "FMEP" in axes.get_title(loc="left"))
+        widths = dict(zip([text.get_text() for text in bars.get_yticklabels()], [bar.get_width() for bar in bars.patches]))
+        self.assertEqual((widths["Main bearings"], widths["Crank pins"]), (25, 20))   # 5 and 4 kPa of 1 MPa at 5 kW
+        self.assertIn("crank pin 2: film thickness [µm]", [axes.get_title(loc="left") for axes in drawing.axes])
+        self.fits(drawing)
+
     def test_long_tables_have_room(self) -> None:
         """All rows that a run may have: they are there, and two plots make room for them."""
         more = {f"{pre}{name}": value for pre in ("", "small_end_", "crank_pin_", "main_bearing_") for name, value in (

@@ -32,7 +32,7 @@ from measured import use_virtual_environment
 use_virtual_environment()
 
 from gudgeon.language import Language
-from gudgeon.report.answers import Answers, amount, html_of, lines, losses_of, number, section, warnings
+from gudgeon.report.answers import Answers, amount, html_of, lines, losses_of, number, of_numbered, section, warnings
 
 TOP = Path(__file__).resolve().parents[1]
 
@@ -395,6 +395,21 @@ def check_answers(checks: Assertions) -> None:
     spoken = {text: portuguese.say(text) for text in said}
     checks.check(not portuguese.unknown, f"answers in Portuguese: {portuguese.unknown}")
     checks.check(spoken["1.234 kN at 12.0°; reversed 302.4 N over 53°"] == "1,234 kN a 12,0°; invertida 302,4 N durante 53°", f"a duration: {spoken}")
+    bearings = {f"{name}_{row}": value for name, film in (("main_bearing_10", "4e-6"), ("main_bearing_2", "3e-6"), ("crank_pin_1", "2e-6")) for row, value in (
+        ("min_film_thickness", ("1e-6", "m")), ("cycle_min_film_thickness", (film, "m")), ("cycle_min_film_thickness_angle", ("12", "deg")),
+        ("cycle_max_film_pressure", ("4.5e7", "Pa")), ("cycle_mean_film_power", ("0.25", "W")), ("cycle_joint_fmep", ("2e3", "Pa")))}
+    engine = SimpleNamespace(summary=of_losses | bearings | {"cycle_start": ("0", "s"), "cycle_thinnest_bearing": ("crank_pin_1", ""), "cycle_bearings_power": ("1234", "W"), "cycle_bmep": ("7.75e5", "Pa"),
+                                                               "cycle_brake_power": ("7.75e3", "W")})
+    heads, table = of_numbered(engine)
+    checks.check(heads == ["Thinnest film", "Largest film pressure", "Mean loss"], f"what is said of numbered bearings: {heads}")
+    checks.check(table == [("main bearing 2", ["3 µm at 12.0°", "45 MPa", "250 mW"]), ("main bearing 10", ["4 µm at 12.0°", "45 MPa", "250 mW"]),
+                           ("crank pin 1", ["2 µm at 12.0°", "45 MPa", "250 mW"])], f"numbered bearings in their order: {table}")
+    checks.check(lines(engine)[2][:2] == [("Thinnest film", "2 µm at 12.0°, crank pin 1"), ("Loss of all bearings", "1.234 kW")], f"of all bearings: {lines(engine)[2]}")
+    parts = {name: value for name, value, _ in losses_of(Answers(engine))}
+    checks.check([parts.get(name) for name in ("Main bearing 2", "Main bearing 10", "Crank pin 1")] == [2e3] * 3, f"their parts in the losses: {parts}")
+    portuguese.unknown.clear()
+    text = section(engine, portuguese)
+    checks.check("<td>mancal principal 10</td><td>4 µm a 12,0°</td>" in text and "<td>Pino da manivela 1</td>" in text and not portuguese.unknown, f"in Portuguese: {portuguese.unknown}, {text}")
     text = section(SimpleNamespace(summary=of_losses))
     checks.check("<td>Crank pin</td><td>6 kPa</td><td>60 W</td><td>24 %</td>" in text and "<td>All losses (FMEP)</td><td>25 kPa</td><td>250 W</td>" in text, f"table of losses: {text}")
     for value, difference, text in ((123.456, 0.02, "123.5"), (123.456, 0.3, "123.<i>5</i>"), (123.456, 0.6, "12<i>3.5</i>"), (123.456, 30, "1<i>23.5</i>"), (-0.005966, 2e-5, "−0.0059<i>66</i>"),

@@ -1,5 +1,6 @@
 """A run on one A4 page: its case in engineering units, its answers, where the losses go, and plots of the last cycle: four, or two beside long tables."""
 
+import re
 import textwrap
 from collections.abc import Callable, Sequence
 
@@ -10,7 +11,7 @@ from gudgeon.names import PLACES
 from gudgeon.plots.bearing import last_cycle, run_cycle
 from gudgeon.plots.columns import COLOURS, crank_angles, values_of
 from gudgeon.plots.style import BLUE
-from gudgeon.report.answers import FIRM, Answers, amount, lines, losses_of, number, title
+from gudgeon.report.answers import FIRM, Answers, amount, lines, losses_of, number, numbered_bearings, of_numbered, title
 from gudgeon.results import MissingResult, Run
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -71,25 +72,40 @@ def write(axes: Axes, heading: str, head: Sequence[str], rows: Sequence[tuple[st
     return depth
 
 
+def widths_of(head: Sequence[str], rows: Sequence[tuple[str, Sequence[str]]]) -> list[float]:
+    """Widths of columns as shares, by their longest texts; those of more than 24 letters take more lines."""
+    say: Callable[[str], str] = language.current.say
+    longest = [min(max(len(say(cell)) for cell in column) + 3, 24) for column in zip(["", *head], *([name, *texts] for name, texts in rows))]
+    return [one / sum(longest) for one in longest]
+
+
 def draw(run: Run, name: str) -> Drawing:
     """The page. Raises MissingResult for a run without rows."""
     if len(run["time"]) < 3:
         raise MissingResult(f"{name}: the trace has no cycle")
     drawing = plt.figure(figsize=A4)
-    axes = drawing.subplot_mosaic([["case", "machine"], ["bearings", "bearings"], ["losses", "losses"], ["a", "b"], ["c", "d"]],
-                                  height_ratios=[1.5, 1.6, 0.9, 1.6, 1.6])
+    axes = drawing.subplot_mosaic([["case", "machine"], ["bearings", "bearings"], ["numbered", "numbered"], ["losses", "losses"], ["a", "b"], ["c", "d"]],
+                                  height_ratios=[1.5, 1.6, 0.1, 0.9, 1.6, 1.6])
     drawing.get_layout_engine().set(rect=(0.05, 0.03, 0.9, 0.94))
     drawing.suptitle(language.current.keep(str(run.parameter("case", "title", "")) or name), fontsize=12, fontweight="bold")
     places, ours, others = lines(run)
     tall = max(write(axes["case"], "Case", (), [(said, [text]) for said, text in case_lines(run)], (0.3, 0.7)),
                write(axes["machine"], "Machine", (), [(said, [text]) for said, text in others], (0.4, 0.6)))
-    wide = write(axes["bearings"], title(run), places, ours, (0.22, *[0.78 / max(len(places), 1)] * len(places)))
+    wide, heading = [], title(run)
+    for letter, head, rows_of in (("bearings", places, ours), ("numbered", *of_numbered(run))):
+        if rows_of:
+            even = (0.22, *[0.78 / len(head)] * len(head))
+            wide.append(write(axes[letter], heading, head, rows_of, even if letter == "bearings" else widths_of(head, rows_of)))
+            heading = ""
+        else:
+            axes[letter].remove()
+            wide.append(0.01)
     losses = 0.2 * draw_losses(axes["losses"], Answers(run)) + 0.1
-    left = SPACE - tall - wide - losses   # what the tables leave
+    left = SPACE - tall - sum(wide) - losses   # what the tables leave
     plots = [0.5 * left] * 2 if left >= 2 * LEAST else [max(left, LEAST), 0.01]
-    axes["case"].get_subplotspec().get_gridspec().set_height_ratios([tall, max(wide, 0.1), losses, *plots])
+    axes["case"].get_subplotspec().get_gridspec().set_height_ratios([tall, *wide, losses, *plots])
     rows = last_cycle(run)
-    chosen = [(said, factor, found) for said, factor, names in PLOTS if (found := [one for one in names if one in run or f"{one}_x" in run])]
+    chosen = [(said, factor, found) for said, factor, names in [*thinnest_film(run), *PLOTS] if (found := [one for one in names if one in run or f"{one}_x" in run])]
     letters = "abcd" if plots[1] >= LEAST else "ab"
     for letter in "cd"[: 4 - len(letters)]:
         axes[letter].remove()
@@ -97,6 +113,12 @@ def draw(run: Run, name: str) -> Drawing:
         draw_cycle(axis, run, rows, factor, found)
         axis.set_title(said, loc="left")
     return drawing
+
+
+def thinnest_film(run: Run) -> list[tuple[str, float, tuple[str, ...]]]:
+    """The plot of the thinnest film of an engine's numbered bearings, as in PLOTS."""
+    thinnest = run.summary.get("cycle_thinnest_bearing", ("", ""))[0]
+    return [(f"{name}: film thickness [µm]", 1e6, (f"{pre}film_thickness",)) for pre, name in numbered_bearings(Answers(run)) if pre == f"{thinnest}_"]
 
 
 def draw_cycle(axes: Axes, run: Run, rows: np.ndarray, factor: float, columns: Sequence[str]) -> None:
@@ -112,12 +134,18 @@ def draw_cycle(axes: Axes, run: Run, rows: np.ndarray, factor: float, columns: S
 
 
 def draw_losses(axes: Axes, rows: Answers) -> int:
-    """The parts of FMEP as bars with their power; without a gas the losses of the bearings. Returns their number."""
+    """The parts of FMEP as bars with their power, numbered bearings together, whose own powers are in their table; without a gas the losses
+    of the bearings. Returns their number."""
     of_gas = losses_of(rows)
     imep, power = rows("cycle_imep") or 1.0, rows("cycle_indicated_power") or 0.0
+    numbered = numbered_bearings(rows)
     parts = [(name, value * power / imep) for name, value, _ in of_gas] or [
-        (name.capitalize(), sum(rows(f"{pre}cycle_mean_{part}_power") or 0.0 for part in ("film", "friction"))) for pre, name in PLACES.values()]
-    parts = [(name, watts) for name, watts in parts if watts][::-1]
+        (name.capitalize(), sum(rows(f"{pre}cycle_mean_{part}_power") or 0.0 for part in ("film", "friction"))) for pre, name in [*PLACES.values(), *numbered]]
+    together: dict[str, float] = {}
+    for name, watts in parts:
+        name = re.sub(r" \d+$", "s", name) if name.lower() in dict(map(reversed, numbered)) else name
+        together[name] = together.get(name, 0.0) + watts
+    parts = [(name, watts) for name, watts in together.items() if watts][::-1]
     total = f" (FMEP {amount(rows('cycle_fmep') or 0.0, 'bar')})" if of_gas else ""
     if not parts:
         axes.axis("off")

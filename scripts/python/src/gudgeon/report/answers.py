@@ -149,9 +149,25 @@ OF_BEARINGS: tuple[tuple[str, Callable[[Answers, str], str]], ...] = (
 )
 
 
+def numbered_bearings(rows: Answers) -> list[tuple[str, str]]:
+    """Prefixes of the rows of an engine's numbered bearings, and their names: main bearings, then crank pins."""
+    found = [match for name in rows.summary if (match := re.fullmatch(r"(main_bearing|crank_pin)_(\d+)_min_film_thickness", name))]
+    return [(f"{one[1]}_{one[2]}_", f"{PLACES[one[1]][1]} {one[2]}") for one in sorted(found, key=lambda one: (one[1] == "crank_pin", int(one[2])))]
+
+
+def of_all_bearings(rows: Answers) -> list[tuple[str, str]]:
+    """The thinnest film of all numbered bearings, and their loss."""
+    thinnest, found = rows.summary.get("cycle_thinnest_bearing", ("", ""))[0] + "_", []
+    if name := dict(numbered_bearings(rows)).get(thinnest):
+        found.append(("Thinnest film", f"{gap(rows, thinnest, True)}, {name}"))
+    if power := rows.shown("cycle_bearings_power", "W"):
+        found.append(("Loss of all bearings", power))
+    return found
+
+
 def machine(rows: Answers) -> list[tuple[str, str]]:
     """Lines of the machine, by their importance."""
-    found = []
+    found = of_all_bearings(rows)
     if pressures := [f"{name} {text}" for name in ("IMEP", "BMEP", "FMEP") if (text := rows.shown(f"cycle_{name.lower()}", "bar"))]:
         text = f" (bearings {rows.shown('cycle_one_way_fmep', 'bar')}, not fed back)" if rows("cycle_one_way_fmep") else ""
         found.append(("Mean effective pressures", ", ".join(pressures) + text))
@@ -191,7 +207,7 @@ def losses_of(rows: Answers) -> list[tuple[str, float, float]]:
         return []
     taken = -imep / work
     parts = [(f"Ring {number}", {f"cycle_ring_{number}_fmep": 1.0}) for number in range(1, 7)]
-    parts += [(name.capitalize(), {f"{pre}cycle_joint_fmep": 1.0, f"{pre}cycle_work_contact": taken}) for pre, name in PLACES.values()]
+    parts += [(name.capitalize(), {f"{pre}cycle_joint_fmep": 1.0, f"{pre}cycle_work_contact": taken}) for pre, name in [*PLACES.values(), *numbered_bearings(rows)]]
     parts += [("Skirt", {"cycle_skirt_fmep": 1.0}), ("Piston in its bore", {"cycle_work_guide": taken, "cycle_ring_fmep": -1.0, "cycle_skirt_fmep": -1.0}),
               ("Elastic members", {"cycle_work_elastic": taken})]
     found = [(name, *rows.total(of)) for name, of in parts]
@@ -219,28 +235,45 @@ def losses_section(rows: Answers, say: Callable[[str], str]) -> str:
     return f'<section id="losses"><h2>{html.escape(say("Where the losses go"))}</h2><table>{body}</table></section>'
 
 
+def of_bearings(rows: Answers, places: list[tuple[str, str]]) -> list[tuple[str, list[str]]]:
+    """The lines of bearings, which have these prefixes and names, with a text for each."""
+    found = [(name, [text(rows, pre) for pre, _ in places]) for name, text in OF_BEARINGS]
+    return [(name, texts) for name, texts in found if any(texts)]
+
+
 def lines(run: Run) -> tuple[list[str], list[tuple[str, list[str]]], list[tuple[str, str]]]:
-    """Names of the bearings; the lines of the bearings, with a text for each; and those of the machine."""
+    """Names of the bearings; the lines of the bearings, with a text for each; and those of the machine. Numbered bearings have their
+    table from `of_numbered`."""
     rows = Answers(run)
     places = [(pre, name) for pre, name in PLACES.values() if rows(f"{pre}min_film_thickness") is not None]
-    ours = [(name, [text(rows, pre) for pre, _ in places]) for name, text in OF_BEARINGS]
-    ours = [(name, texts) for name, texts in ours if any(texts)]
-    return [name for _, name in places], ours, machine(rows)
+    return [name for _, name in places], of_bearings(rows, places), machine(rows)
+
+
+def of_numbered(run: Run) -> tuple[list[str], list[tuple[str, list[str]]]]:
+    """The answers of an engine's numbered bearings: what they are, and a line for each bearing with their texts."""
+    rows = Answers(run)
+    places = numbered_bearings(rows)
+    found = of_bearings(rows, places)
+    return [name for name, _ in found], [(name, [texts[i] for _, texts in found]) for i, (_, name) in enumerate(places)]
 
 
 def section(run: Run, language: Language | None = None) -> str:
     """The section as HTML; empty if the summary has none of these rows."""
     say = (language or Language()).say
     names, ours, others = lines(run)
-    if not (ours or others):
+    heads, numbered = of_numbered(run)
+    if not (ours or others or numbered):
         return ""
     cell = html_of
-    head = "".join(f"<th>{cell(say(name))}</th>" for name in names)
-    body = "".join(f"<tr><td>{cell(say(name))}</td>" + "".join(f"<td>{cell(say(text))}</td>" for text in texts) + "</tr>" for name, texts in ours)
-    bearings = f"<table><tr><th></th>{head}</tr>{body}</table>" if ours else ""
-    of_machine = "".join(f"<tr><td>{cell(say(name))}</td><td>{cell(say(text))}</td></tr>" for name, text in others)
-    return (f'<section id="answers"><h2>{cell(say(title(run)))}</h2><div class="answers">{bearings}'
-            f"<table>{of_machine}</table></div></section>") + losses_section(Answers(run), say)
+
+    def table(lines: list[tuple[str, list[str]]], head: list[str] | None = None) -> str:
+        first = f"<tr><th></th>{''.join(f'<th>{cell(say(name))}</th>' for name in head)}</tr>" if head else ""
+        body = "".join(f"<tr><td>{cell(say(name))}</td>" + "".join(f"<td>{cell(say(text))}</td>" for text in texts) + "</tr>" for name, texts in lines)
+        return f"<table>{first}{body}</table>" if lines else ""
+
+    of_machine = table([(name, [text]) for name, text in others])
+    return (f'<section id="answers"><h2>{cell(say(title(run)))}</h2><div class="answers">{table(ours, names)}{of_machine}{table(numbered, heads)}'
+            "</div></section>") + losses_section(Answers(run), say)
 
 
 def warnings(run: Run) -> list[str]:
