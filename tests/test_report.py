@@ -335,6 +335,33 @@ def check_screens(browser: Browser, page: Path, checks: Assertions, pictures: Pa
     checks.check(not (said := browser.messages()), f"console: {said}")
 
 
+def summarised(summary: dict[str, tuple[str, str]], case: dict | None = None) -> SimpleNamespace:
+    """A run of which there is a summary."""
+    return SimpleNamespace(summary=summary, case=case or {})
+
+
+def check_shaft(checks: Assertions) -> None:
+    """Six cylinders on a shaft that twists: what the shaft does, and where it does so."""
+    rows = {"cycle_start": ("0", "s"), "cycle_mean_crank_speed": ("209.4395102", "rad/s"), "cycle_speed_fluctuation": ("0.27425", "1"), "front_irregularity": ("0.28758", "1"),
+            "cyclic_irregularity": ("0", "1"), "cycle_max_station_1_twist": ("1.19e-3", "rad"), "cycle_max_station_9_twist": ("3.269695e-2", "rad"), "max_station_1_twist": ("0.5", "rad"),
+            "cycle_front_twist_order_0.5": ("1.15e-3", "rad"), "cycle_front_twist_order_6": ("1.754763e-2", "rad"), "cycle_segment_1_torque_order_6": ("9e5", "N.m"),
+            "cycle_max_segment_7_torque": ("8954.85", "N.m"), "cycle_max_segment_8_torque": ("8940.5", "N.m"), "max_segment_1_torque": ("9e9", "N.m")}
+    engine = summarised(rows, {"cylinder_1": {"full": False}, "cylinder_2": {"full": True}, "cylinder_10": {"full": False}})
+    found = dict(lines(engine)[2])
+    wanted = {"Forces and plots": "cylinder 2 of 3", "Largest twist of the shaft": "32.7 mrad, station 9 against the crank of cylinder 2",
+              "Crank speed": "2000 rpm, fluctuates by 27.4 % at the crank of cylinder 2, 28.8 % at the front end, 0 % at the driven end",
+              "Strongest order of the twist": "order 6, 17.55 mrad of the front end against the driven end", "Largest torque in the shaft": "8.955 kN m, segment 7"}
+    checks.check(found == wanted, f"answers of a shaft: {found}")
+    portuguese = Language("pt")
+    said = [portuguese.say(text) for line in wanted.items() for text in line]
+    checks.check(not portuguese.unknown and "32,7 mrad, estação 9 em relação à manivela do cilindro 2" in said, f"a shaft in Portuguese: {portuguese.unknown}, {said}")
+    of_run = {name: value for name, value in rows.items() if not name.startswith("cycle_")}
+    found = dict(lines(summarised(of_run))[2])
+    checks.check(found.get("Largest twist of the shaft", "").startswith("500 mrad, station 1") and "Strongest order of the twist" not in found, f"a run without a cycle: {found}")
+    found = dict(lines(summarised({"cycle_start": ("0", "s"), "cycle_max_crankshaft_twist": ("3.6375e-3", "rad")}))[2])
+    checks.check(found == {"Largest twist of the shaft": "3.638 mrad"}, f"a shaft of one crank and a flywheel: {found}")
+
+
 def check_answers(checks: Assertions) -> None:
     """The answers are the values of the summary, in the units of an engineer."""
     rows = {"min_film_thickness": ("1e-6", "m"), "cycle_start": ("0", "s"), "cycle_revolutions": ("2", "1"),
@@ -351,7 +378,7 @@ def check_answers(checks: Assertions) -> None:
             "crank_pin_cycle_max_impact_speed": ("1.386", "m/s"), "crank_pin_cycle_wear_depth_100h_bore": ("2.5e-6", "m"),
             "cycle_fmep": ("1e4", "Pa"), "cycle_one_way_fmep": ("4e3", "Pa"), "cycle_mean_crank_speed": ("314.159265358979", "rad/s"), "cycle_is_settled": ("no", ""),
             "film_thickness_change": ("0.65", "1"), "cycle_max_drive_torque": ("14.77", "N.m"), "pin_swing": ("0.1", "rad")}
-    places, ours, others = lines(SimpleNamespace(summary=rows))
+    places, ours, others = lines(summarised(rows))
     said = {name: texts for name, texts in ours} | {name: [text] for name, text in others}
     wanted = {"Thinnest film": ["2.5 µm at 643.2°", ""], "Deepest penetration": ["", "56.2 µm"], "Largest force": ["1.234 kN at 12.0°; reversed 302.4 N over 53°", ""],
               "Mean loss": ["120 W", ""], "In contact": ["", "75 %, 20 impacts at up to 1.386 m/s"], "Wear of the bore in 100 h": ["", "2.5 µm"],   # of the cycle, not the 78 µm, 50 % and 9 kN of the whole run
@@ -371,21 +398,21 @@ def check_answers(checks: Assertions) -> None:
              "lost in the suction valve 51.1 W, in the discharge valve 31.8 W, suction valve hits with 2.35 m/s, discharge valve hits with 4.1 m/s", "volumetric efficiency 89.22 %")
     portuguese = Language("pt")
     for summary, text in zip(gases, texts):
-        found = dict(lines(SimpleNamespace(summary={"cycle_start": ("0", "s")} | summary))[2])["Gas"]
+        found = dict(lines(summarised({"cycle_start": ("0", "s")} | summary))[2])["Gas"]
         checks.check(found == text, f"answers of the gas: {found}")
         checks.check(len(portuguese.say(found)) > 10 and not portuguese.unknown, f"answers of the gas in Portuguese: {portuguese.unknown}")
     of_losses = {"cycle_work_gas": ("200", "J"), "cycle_imep": ("8e5", "Pa"), "cycle_fmep": ("2.5e4", "Pa"), "cycle_indicated_power": ("8e3", "W"), "cycle_work_guide": ("-4", "J"),
                  "cycle_ring_fmep": ("1e4", "Pa"), "cycle_ring_1_fmep": ("7e3", "Pa"), "cycle_ring_2_fmep": ("3e3", "Pa"), "crank_pin_cycle_joint_fmep": ("6e3", "Pa"),
                  "cycle_joint_fmep": ("2e3", "Pa"), "cycle_work_contact": ("-0.25", "J")}
-    parts = losses_of(Answers(SimpleNamespace(summary=of_losses)))
+    parts = losses_of(Answers(summarised(of_losses)))
     wanted = [("Ring 1", 7e3), ("Ring 2", 3e3), ("Piston pin", 3e3), ("Crank pin", 6e3), ("Piston in its bore", 6e3)]
     checks.check([name for name, *_ in parts] == [name for name, _ in wanted] and all(abs(a - b) < 1e-6 for (_, a, _), (_, b) in zip(parts, wanted)), f"parts of FMEP: {parts}")
     checks.check(abs(sum(value for _, value, _ in parts) - 2.5e4) < 1e-6, "they are all of it")
     film = {"cycle_skirt_fmep": ("4e3", "Pa"), "cycle_max_slap_speed": ("0.0464", "m/s"), "cycle_max_slap_speed_angle": ("378.3", "deg"),
             "cycle_min_skirt_film_thickness": ("1.145e-5", "m"), "cycle_min_skirt_film_thickness_angle": ("529.8", "deg")}
-    parts = losses_of(Answers(SimpleNamespace(summary=of_losses | film)))
+    parts = losses_of(Answers(summarised(of_losses | film)))
     checks.check(parts[-2] == ("Skirt", 4e3, 0.0) and abs(parts[-1][1] - 2e3) < 1e-6, f"the film of the skirt has its own part: {parts}")
-    checks.check(("Hardest slap", "46.4 mm/s at 378.3°, film from 11.45 µm at 529.8°") in lines(SimpleNamespace(summary=rows | film))[2], "slap of a skirt on its film")
+    checks.check(("Hardest slap", "46.4 mm/s at 378.3°, film from 11.45 µm at 529.8°") in lines(summarised(rows | film))[2], "slap of a skirt on its film")
     for value, unit, text in ((-600.7, "W", "−600.7 W"), (130.6, "N", "130.6 N"), (3.934, "N", "3.934 N"), (5.966e-9, "m", "5.966 nm"), (6.322e-7, "m", "0.6322 µm"), (1.13, "s", "1.13 s"),
                               (8.8858e5, "bar", "8.886 bar"), (71.85, "bar", "71.85 Pa"), (5522, "N m", "5.522 kN m"), (4.825e-6, "m", "4.825 µm"), (-1.033e-8, "J", "−10.33 nJ"), (0.4894, "m/s", "0.4894 m/s"),
                               (0.0464, "m/s", "46.4 mm/s"), (0.0, "W", "0 W"), (1e-13, "J", "1e−13 J"), (314.2, "cm³/min", "314.2 cm³/min")):
@@ -398,7 +425,7 @@ def check_answers(checks: Assertions) -> None:
     bearings = {f"{name}_{row}": value for name, film in (("main_bearing_10", "4e-6"), ("main_bearing_2", "3e-6"), ("crank_pin_1", "2e-6")) for row, value in (
         ("min_film_thickness", ("1e-6", "m")), ("cycle_min_film_thickness", (film, "m")), ("cycle_min_film_thickness_angle", ("12", "deg")),
         ("cycle_max_film_pressure", ("4.5e7", "Pa")), ("cycle_mean_film_power", ("0.25", "W")), ("cycle_joint_fmep", ("2e3", "Pa")))}
-    engine = SimpleNamespace(summary=of_losses | bearings | {"cycle_start": ("0", "s"), "cycle_thinnest_bearing": ("crank_pin_1", ""), "cycle_bearings_power": ("1234", "W"), "cycle_bmep": ("7.75e5", "Pa"),
+    engine = summarised(of_losses | bearings | {"cycle_start": ("0", "s"), "cycle_thinnest_bearing": ("crank_pin_1", ""), "cycle_bearings_power": ("1234", "W"), "cycle_bmep": ("7.75e5", "Pa"),
                                                                "cycle_brake_power": ("7.75e3", "W")})
     heads, table = of_numbered(engine)
     checks.check(heads == ["Thinnest film", "Largest film pressure", "Mean loss"], f"what is said of numbered bearings: {heads}")
@@ -410,30 +437,30 @@ def check_answers(checks: Assertions) -> None:
     portuguese.unknown.clear()
     text = section(engine, portuguese)
     checks.check("<td>mancal principal 10</td><td>4 µm a 12,0°</td>" in text and "<td>Pino da manivela 1</td>" in text and not portuguese.unknown, f"in Portuguese: {portuguese.unknown}, {text}")
-    text = section(SimpleNamespace(summary=of_losses))
+    text = section(summarised(of_losses))
     checks.check("<td>Crank pin</td><td>6 kPa</td><td>60 W</td><td>24 %</td>" in text and "<td>All losses (FMEP)</td><td>25 kPa</td><td>250 W</td>" in text, f"table of losses: {text}")
     for value, difference, text in ((123.456, 0.02, "123.5"), (123.456, 0.3, "123.<i>5</i>"), (123.456, 0.6, "12<i>3.5</i>"), (123.456, 30, "1<i>23.5</i>"), (-0.005966, 2e-5, "−0.0059<i>66</i>"),
                                     (1.234e-9, 1e-12, "1.23<i>4</i>e−09"), (1.234, math.inf, "<i>1.234</i>"), (1.234, math.nan, "<i>1.234</i>"), (0.0, 0.0, "0")):
         found = html_of(number(value, difference))
         checks.check(found == text.replace("<i>", '<span class="loose">').replace("</i>", "</span>"), f"certified digits: {found}")
-    certified = SimpleNamespace(summary=rows | {"certified_until": ("1", "s"), "cycle_max_force_difference": ("-0.3", "N")})
+    certified = summarised(rows | {"certified_until": ("1", "s"), "cycle_max_force_difference": ("-0.3", "N")})
     found = dict(lines(certified)[1])
     checks.check(html_of(found["Largest force"][0]).startswith('1.234 kN at <span class="loose">12.0</span>°; reversed <span class="loose">302.4</span> N'), f"certified answers: {found}")
     checks.check(html_of(Language("pt").say(found["Largest force"][0])).startswith('1,234 kN a <span class="loose">12,0</span>°'), f"in Portuguese: {Language('pt').say(found['Largest force'][0])}")
     # 6123 Pa of the crank pin, known to 4 Pa; as much of the piston in its bore, the difference of 16 kPa (4 J, known to 0.001 J) and 10 kPa (known to 12 Pa)
     known = {f"{name}_difference": (size, "") for name, size in (("cycle_fmep", "20"), ("crank_pin_cycle_joint_fmep", "-4"), ("cycle_work_guide", "0.001"), ("cycle_ring_fmep", "12"))}
     known |= {"certified_until": ("1", "s"), "crank_pin_cycle_joint_fmep": ("6123.4", "Pa"), "cycle_fmep": ("25123.4", "Pa"), "cycle_work_guide": ("-4.03085", "J")}
-    text = section(SimpleNamespace(summary=of_losses | known))
+    text = section(summarised(of_losses | known))
     for name, wanted in (("Crank pin", ("6.12<i>3</i> kPa", "61.2<i>3</i> W", "24.4 %")), ("Piston in its bore", ("6.1<i>23</i> kPa", "61.<i>23</i> W", "24.<i>4</i> %")),
                          ("Ring 1", ("<i>7</i> kPa", "<i>70</i> W", "<i>27.9</i> %")), ("All losses (FMEP)", ("25.1<i>2</i> kPa", "251.<i>2</i> W", ""))):
         cells = "".join(f"<td>{cell}</td>" for cell in (name, *wanted)).replace("<i>", '<span class="loose">').replace("</i>", "</span>")
         checks.check(cells in text, f"certified losses: {name}: {text}")
-    said = warnings(SimpleNamespace(summary=rows))
+    said = warnings(summarised(rows))
     checks.check(len(said) == 2 and "piston pin changes by 65 %" in said[0] and "run.until=periodic" in said[0], f"a motion that has not settled: {said}")
     checks.check(said[1].startswith("50 of 51 contacts at the crank pin are faster"), f"contacts beyond the theory: {said}")
     for name in [name for name in rows if "cycle_" in name]:
         del rows[name]
-    _, ours, others = lines(SimpleNamespace(summary=rows))
+    _, ours, others = lines(summarised(rows))
     of_run = dict(ours)
     checks.check(of_run["Thinnest film"] == ["1 µm", "3 µm"] and of_run["In contact"] == ["", "50 %"] and of_run["Film temperature"] == ["", "127 °C at the end"],
                  f"answers of a run without a cycle: {ours}")
@@ -453,6 +480,7 @@ def main() -> int:
         options.screenshots.mkdir(parents=True, exist_ok=True)
     checks = Assertions()
     check_answers(checks)
+    check_shaft(checks)
     with tempfile.TemporaryDirectory() as work:
         pages = options.page
         for case in CASES if not pages else ():

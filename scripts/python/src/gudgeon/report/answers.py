@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 
 from gudgeon.language import Language
 from gudgeon.names import PLACES, readable
-from gudgeon.results import Run
+from gudgeon.results import Run, numbered
 
 #: Shown together behind a value: the crank angle at which it occurs.
 ANGLE = "_angle"
@@ -21,10 +21,13 @@ FIRM = {loose: chr(digit) for digit, loose in zip(LOOSE, LOOSE.values())}
 
 
 class Answers:
-    """The rows of a summary as numbers."""
+    """The rows of a summary as numbers; how many cylinders there are, and which of them the trace shows."""
 
     def __init__(self, run: Run) -> None:
         self.summary = run.summary
+        cylinders = numbered(run.case, "cylinder")
+        self.cylinders = len(cylinders)
+        self.cylinder = 1 + next((i for i, one in enumerate(cylinders) if one.get("full")), 0)   # the full one
         self.of_cycle = "cycle_start" in run.summary
         self.is_certified = "certified_until" in run.summary
 
@@ -165,9 +168,41 @@ def of_all_bearings(rows: Answers) -> list[tuple[str, str]]:
     return found
 
 
+def largest(rows: Answers, pattern: str) -> re.Match[str] | None:
+    """The row with the largest value of those whose whole name has this pattern."""
+    found = [match for name in rows.summary if (match := re.fullmatch(pattern, name))]
+    return max(found, key=lambda match: rows(match[0]) or 0.0, default=None)
+
+
+def speed(rows: Answers) -> str:
+    """The mean speed, and by how much of it the speed fluctuates, on a shaft of several stations at its ends too."""
+    text = rows.shown(rows.of("", "cycle_mean_crank_speed", "mean_crank_speed"), "rpm", 30 / math.pi)
+    if not text or (rows("cycle_speed_fluctuation") or 0.0) <= 1e-12:
+        return text
+    own, front, driven = (f"{rows.figure(name, 100, form='.3g')} %" for name in ("cycle_speed_fluctuation", "front_irregularity", "cyclic_irregularity"))
+    ends = f" at the crank of cylinder {rows.cylinder}, {front} at the front end, {driven} at the driven end" if rows("front_irregularity") is not None else ""
+    return f"{text}, fluctuates by {own}{ends}"
+
+
+def shaft(rows: Answers) -> list[tuple[str, str]]:
+    """Lines of a shaft that twists."""
+    found = []
+    pre = "cycle_max" if rows.of_cycle else "max"
+    if text := rows.figure(f"{pre}_crankshaft_twist", 1e3):
+        found.append(("Largest twist of the shaft", f"{text} mrad"))
+    if most := largest(rows, rf"{pre}_station_(\d+)_twist"):
+        found.append(("Largest twist of the shaft", f"{rows.figure(most[0], 1e3)} mrad, station {most[1]} against the crank of cylinder {rows.cylinder}"))
+    if most := largest(rows, r"cycle_front_twist_order_([\d.]+)"):
+        found.append(("Strongest order of the twist", f"order {most[1]}, {rows.figure(most[0], 1e3)} mrad of the front end against the driven end"))
+    if most := largest(rows, rf"{pre}_segment_(\d+)_torque"):
+        found.append(("Largest torque in the shaft", f"{rows.shown(most[0], 'N m')}, segment {most[1]}"))
+    return found
+
+
 def machine(rows: Answers) -> list[tuple[str, str]]:
     """Lines of the machine, by their importance."""
-    found = of_all_bearings(rows)
+    found = [("Forces and plots", f"cylinder {rows.cylinder} of {rows.cylinders}")] if rows.cylinders > 1 else []
+    found += of_all_bearings(rows)
     if pressures := [f"{name} {text}" for name in ("IMEP", "BMEP", "FMEP") if (text := rows.shown(f"cycle_{name.lower()}", "bar"))]:
         text = f" (bearings {rows.shown('cycle_one_way_fmep', 'bar')}, not fed back)" if rows("cycle_one_way_fmep") else ""
         found.append(("Mean effective pressures", ", ".join(pressures) + text))
@@ -175,12 +210,11 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
         found.append(("Power", ", ".join(powers)))
     if text := rows.shown("cycle_max_cylinder_pressure", "bar"):
         found.append(("Cylinder pressure", text))
-    if text := rows.shown(rows.of("", "cycle_mean_crank_speed", "mean_crank_speed"), "rpm", 30 / math.pi):
-        if (rows("cycle_speed_fluctuation") or 0.0) > 1e-12:
-            text += f", fluctuates by {rows.figure('cycle_speed_fluctuation', 100, form='.3g')} %"
+    if text := speed(rows):
         found.append(("Crank speed", text))
     if text := rows.shown(rows.of("", "cycle_max_drive_torque", "max_drive_torque"), "N m"):
         found.append(("Largest drive torque", text))
+    found += shaft(rows)
     gas = [f"{name} {text}" for name, text in (
         ("up to", rows.shown("cycle_max_gas_temperature", "°C", 1, -273.15)), ("to the walls", rows.shown("cycle_heat_to_walls", "J")),
         ("to the walls", rows.shown("cycle_wall_heat_flow", "W")), ("leak", rows.shown("cycle_leak_share", "%", 100)),
@@ -221,11 +255,9 @@ def losses_section(rows: Answers, say: Callable[[str], str]) -> str:
         return ""
     total, of_total = rows.total({"cycle_fmep": 1.0})
     largest, watts = max(abs(value) for _, value, _ in found), (rows("cycle_indicated_power") or 0.0) / (rows("cycle_imep") or 1.0)
-    (of_pressure, pascals), (of_power, factor) = readable("Pa", total), readable("W", watts * total)   # one unit, so that parts can be compared
-    watts *= factor
 
     def line(name: str, value: float, difference: float, share: str = "", width: float = 0.0) -> str:
-        texts = (name, f"{number(pascals * value, pascals * difference)} {of_pressure}", f"{number(watts * value, abs(watts) * difference)} {of_power}", share)
+        texts = (name, amount(value, "Pa", difference), amount(watts * value, "W", abs(watts) * difference), share)
         return "<tr>" + "".join(f"<td>{html_of(say(text))}</td>" for text in texts) + f'<td class="bar"><i style="width: {width:.1f}%"></i></td></tr>'
 
     def share(value: float, difference: float) -> str:
