@@ -1709,7 +1709,12 @@ class Columns(unittest.TestCase):
         self.assertIn("load, 0.5 kN", [text.get_text() for text in left.texts])
         at, thickness = film.lines[0].get_data()
         np.testing.assert_allclose(thickness, 10 - np.hypot(8 * np.cos(np.radians(at) / 2), 6 * np.sin(np.radians(at) / 2)), atol=1e-6)
+        self.assertTrue(drawing.get_suptitle().endswith(("thinnest film 2 µm of 10 µm, crank at 0.0°", "crank at 360.0°")), drawing.get_suptitle())   # by the rows
+        made.summary.update(cycle_min_film_thickness=("1.98e-6", "m"), cycle_min_film_thickness_angle=("359.7", "deg"))
+        between = bearing_pictures.orbit(made, "piston_pin", "made")
+        self.assertIn("thinnest film 1.98 µm of 10 µm, crank at 359.7°", between.get_suptitle())   # by the summary, as the page has it
         plt.close(drawing)
+        plt.close(between)
 
     def test_a_missing_column_is_refused(self) -> None:
         with self.assertRaisesRegex(MissingResult, "no column film_thickness"):

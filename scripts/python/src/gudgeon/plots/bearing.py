@@ -73,7 +73,9 @@ def orbit(run: Run, place: str, name: str) -> Drawing:
     film.xaxis.set_major_locator(MultipleLocator(180))
     left.legend(loc="upper left", bbox_to_anchor=(0, 0.0), ncols=4, columnspacing=1, handlelength=1.2)
     where = "bearing" if "bearing_load" in run.case else place.replace("_", " ")
-    words = f"thinnest film {1e6 * thickness[thinnest]:.3g} µm of {1e6 * clearance:.4g} µm, crank at {angle[thinnest] % cycle:.1f}°"
+    least, then = (float(run.summary.get(f"{prefix}cycle_min_film_thickness{what}", (found, ""))[0])   # which may be between two rows
+                   for what, found in (("", thickness[thinnest]), ("_angle", angle[thinnest])))
+    words = f"thinnest film {1e6 * least:.3g} µm of {1e6 * clearance:.4g} µm, crank at {then % cycle:.1f}°"
     drawing.suptitle(f"{language.current.keep(name)}: {where}, {words}")
     return drawing
 
