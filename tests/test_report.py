@@ -12,6 +12,7 @@ import argparse
 import base64
 import json
 import math
+import re
 import shutil
 import socket
 import subprocess
@@ -37,9 +38,9 @@ from gudgeon.report.answers import Answers, amount, html_of, lines, losses_of, n
 TOP = Path(__file__).resolve().parents[1]
 
 #: A film without contact, a film with contacts and gas, dry contact, a piston with clearance in its bore (with clearance at the
-#: pin, with ideal pins), an ideal joint, dry contact with an elastic rod, clearance at both pins, a crank pin whose film heats up, a piston
-#: whose last cycle begins within that of the gas, three bearings.
-CASES = ("sim_I", "sim_V_oscillating", "dry_0500um", "piston_slap", "slider_clearance", "ideal", "dry_friction", "both_pins", "heat", "piston", "car_diesel")
+#: pin, with ideal pins), an ideal joint, dry contact with an elastic rod, clearance at both pins, a crank pin whose film heats up,
+#: numbered bearings of an engine, a shaft that twists, a piston whose last cycle begins within that of the gas, three bearings.
+CASES = ("sim_I", "sim_V_oscillating", "dry_0500um", "piston_slap", "slider_clearance", "ideal", "dry_friction", "both_pins", "heat", "inline_four_bearings", "six_mwm", "piston", "car_diesel")
 
 LARGEST_PAGE = 2_000_000  # bytes
 
@@ -154,6 +155,23 @@ class Browser:
         self.process.wait(10)
 
 
+#: How a value is written on the pages, and what it has to be.
+WRITTEN = """return [[130.6, 'N', '131 N'], [3.934, 'N', '3.93 N'], [5.966e-9, 'm', '5.97 nm'], [-6.322e-7, 'm', '-0.632 µm'], [1.13, 's', '1.13 s'], [999.7, 'N', '1.00 kN'],
+  [25248, 'N', '25.2 kN'], [0, 'N', '0.00 N'], [3e-13, 'Pa', '0.000300 nPa'], [1.2e8, 'Pa', '120 MPa']].map(([value, unit, text]) => [amount(value, unit), text]).filter(([a, b]) => a !== b);"""
+
+
+def check_state(browser: Browser, name: str, checks: Assertions) -> None:
+    """The line on the moment shown: the crank angle within the cycle, true minuses, units that suit their values; a twist is named where it is drawn."""
+    said = browser.run("return document.getElementById('state').textContent")
+    cycle = browser.run("return gudgeon.scene.cycle")
+    angle = float(said.split("crank ", 1)[1].split("°", 1)[0])
+    checks.check(cycle is None or 0 <= angle < cycle["degrees"] + 0.1, f"{name}: the crank angle is within the cycle: {said}")
+    checks.check(not re.search(r"\b0\.00 kN|e[+-]\d|-\d", said), f"{name}: values of the moment: {said}")
+    checks.check(not (wrong := browser.run(WRITTEN)), f"{name}: values as written and as wanted: {wrong}")
+    drawn = browser.run("return Boolean(gudgeon.scene.engine && gudgeon.scene.engine.largest > 0)")
+    checks.check(browser.run("return document.getElementById('twist-note').hidden") != drawn, f"{name}: the twist of the shaft is named where it is drawn")
+
+
 def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path | None) -> None:
     """Check one page as a reader uses it."""
     name = page.stem
@@ -202,6 +220,7 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
     for canvas in canvases:
         checks.check(browser.run(PAINTED, canvas), f"{name}: {canvas} is drawn")
         checks.check(browser.run(IMAGE, canvas) != before[canvas], f"{name}: {canvas} moves")
+    check_state(browser, name, checks)
     if browser.run("return gudgeon.scene.modes"):
         said = browser.run("return document.getElementById('state').textContent")
         checks.check("rod bent" in said and "drawn ×" in said, f"{name}: states the deflection of the rod: {said}")
@@ -424,13 +443,14 @@ def check_answers(checks: Assertions) -> None:
     checks.check(spoken["1.234 kN at 12.0°; reversed 302.4 N over 53°"] == "1,234 kN a 12,0°; invertida 302,4 N durante 53°", f"a duration: {spoken}")
     bearings = {f"{name}_{row}": value for name, film in (("main_bearing_10", "4e-6"), ("main_bearing_2", "3e-6"), ("crank_pin_1", "2e-6")) for row, value in (
         ("min_film_thickness", ("1e-6", "m")), ("cycle_min_film_thickness", (film, "m")), ("cycle_min_film_thickness_angle", ("12", "deg")),
-        ("cycle_max_film_pressure", ("4.5e7", "Pa")), ("cycle_mean_film_power", ("0.25", "W")), ("cycle_joint_fmep", ("2e3", "Pa")))}
+        ("cycle_max_film_pressure", ("4.5e7", "Pa")), ("cycle_mean_film_power", ("0.25", "W")), ("cycle_max_force", ("1234.5", "N")),
+        ("cycle_reversed_load", ("30", "N")), ("cycle_degrees_under_reversed_load", ("40", "deg")), ("cycle_joint_fmep", ("2e3", "Pa")))}
     engine = summarised(of_losses | bearings | {"cycle_start": ("0", "s"), "cycle_thinnest_bearing": ("crank_pin_1", ""), "cycle_bearings_power": ("1234", "W"), "cycle_bmep": ("7.75e5", "Pa"),
                                                                "cycle_brake_power": ("7.75e3", "W")})
     heads, table = of_numbered(engine)
-    checks.check(heads == ["Thinnest film", "Largest film pressure", "Mean loss"], f"what is said of numbered bearings: {heads}")
-    checks.check(table == [("main bearing 2", ["3 µm at 12.0°", "45 MPa", "250 mW"]), ("main bearing 10", ["4 µm at 12.0°", "45 MPa", "250 mW"]),
-                           ("crank pin 1", ["2 µm at 12.0°", "45 MPa", "250 mW"])], f"numbered bearings in their order: {table}")
+    checks.check(heads == ["Thinnest film", "Largest film pressure", "Largest force", "Mean loss"], f"what is said of numbered bearings: {heads}")
+    checks.check(table == [("main bearing 2", ["3 µm at 12.0°", "45 MPa", "1.234 kN", "250 mW"]), ("main bearing 10", ["4 µm at 12.0°", "45 MPa", "1.234 kN", "250 mW"]),
+                           ("crank pin 1", ["2 µm at 12.0°", "45 MPa", "1.234 kN", "250 mW"])], f"numbered bearings in their order: {table}")
     checks.check(lines(engine)[2][:2] == [("Thinnest film", "2 µm at 12.0°, crank pin 1"), ("Loss of all bearings", "1.234 kW")], f"of all bearings: {lines(engine)[2]}")
     parts = {name: value for name, value, _ in losses_of(Answers(engine))}
     checks.check([parts.get(name) for name in ("Main bearing 2", "Main bearing 10", "Crank pin 1")] == [2e3] * 3, f"their parts in the losses: {parts}")

@@ -117,9 +117,14 @@ def touching(rows: Answers, pre: str) -> str:
     return f"{rows.figure(name, 100, form='.3g')} %" + hardest
 
 
+def largest_force(rows: Answers, pre: str) -> str:
+    """The largest force, with its crank angle if there is one."""
+    return rows.shown(rows.of(pre, "cycle_max_force", "max_pin_force"), "N")
+
+
 def force(rows: Answers, pre: str) -> str:
     """The largest force, and that along the rod in the other sense."""
-    text = rows.shown(rows.of(pre, "cycle_max_force", "max_pin_force"), "N")
+    text = largest_force(rows, pre)
     back, degrees = rows.shown(f"{pre}cycle_reversed_load", "N"), rows.figure(f"{pre}cycle_degrees_under_reversed_load", form=".0f")
     if not (text and back and degrees):
         return text
@@ -139,7 +144,8 @@ def slap(rows: Answers) -> str:
 
 
 #: Lines of bearings: name, and the text for the rows with a prefix.
-OF_BEARINGS: tuple[tuple[str, Callable[[Answers, str], str]], ...] = (
+Lines = tuple[tuple[str, Callable[[Answers, str], str]], ...]
+OF_BEARINGS: Lines = (
     ("Thinnest film", lambda rows, pre: gap(rows, pre, True)),
     ("Deepest penetration", lambda rows, pre: gap(rows, pre, False)),
     ("Largest film pressure", lambda rows, pre: rows.shown(rows.of(pre, "cycle_max_film_pressure", "max_film_pressure"), "Pa")),
@@ -150,6 +156,9 @@ OF_BEARINGS: tuple[tuple[str, Callable[[Answers, str], str]], ...] = (
     ("In contact", touching),
     ("Wear of the bore in 100 h", lambda rows, pre: rows.shown(f"{pre}cycle_wear_depth_100h_bore", "m")),
 )
+
+#: Those of numbered bearings, short enough for a column each.
+OF_NUMBERED: Lines = tuple((name, largest_force if text is force else text) for name, text in OF_BEARINGS)
 
 
 def numbered_bearings(rows: Answers) -> list[tuple[str, str]]:
@@ -267,9 +276,9 @@ def losses_section(rows: Answers, say: Callable[[str], str]) -> str:
     return f'<section id="losses"><h2>{html.escape(say("Where the losses go"))}</h2><table>{body}</table></section>'
 
 
-def of_bearings(rows: Answers, places: list[tuple[str, str]]) -> list[tuple[str, list[str]]]:
+def of_bearings(rows: Answers, places: list[tuple[str, str]], listed: Lines = OF_BEARINGS) -> list[tuple[str, list[str]]]:
     """The lines of bearings, which have these prefixes and names, with a text for each."""
-    found = [(name, [text(rows, pre) for pre, _ in places]) for name, text in OF_BEARINGS]
+    found = [(name, [text(rows, pre) for pre, _ in places]) for name, text in listed]
     return [(name, texts) for name, texts in found if any(texts)]
 
 
@@ -285,7 +294,7 @@ def of_numbered(run: Run) -> tuple[list[str], list[tuple[str, list[str]]]]:
     """The answers of an engine's numbered bearings: what they are, and a line for each bearing with their texts."""
     rows = Answers(run)
     places = numbered_bearings(rows)
-    found = of_bearings(rows, places)
+    found = of_bearings(rows, places, OF_NUMBERED)
     return [name for name, _ in found], [(name, [texts[i] for _, texts in found]) for i, (_, name) in enumerate(places)]
 
 

@@ -619,8 +619,7 @@ def time_line(columns: dict[str, np.ndarray], run: Run) -> dict:
         return {
             "column": "film_thickness",
             "title": named_bearing(columns, "piston_pin") + "film thickness",
-            "unit": "µm",
-            "factor": 1e6,
+            "unit": "m",
             "range": [min(0.0, least), float(thickness.max())],
             "extremes": [least, float(thickness.max())],
         }
@@ -628,8 +627,7 @@ def time_line(columns: dict[str, np.ndarray], run: Run) -> dict:
     return {
         "column": "pin_force",
         "title": "pin force",
-        "unit": "kN",
-        "factor": 1e-3,
+        "unit": "N",
         "range": [0.0, largest],
         "extremes": [float(columns["pin_force"].min()), largest],
     }

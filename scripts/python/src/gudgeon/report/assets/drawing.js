@@ -12,6 +12,15 @@ const spoken = { words: {}, comma: false };   // words in the page's language, d
 const W = (text) => spoken.words[text] || text;
 const local = (text) => (spoken.comma ? text.replace(/(\d)\.(?=\d)/g, "$1,") : text);
 
+const withMinus = (text) => text.replace(/-(?=[\d.])/g, "−");
+// A value with three digits and the prefix to its unit that suits it; lengths from 0.1 µm to 1 mm in µm.
+const PREFIXES = [[1e-9, "n"], [1e-6, "µ"], [1e-3, "m"], [1, ""], [1e3, "k"], [1e6, "M"], [1e9, "G"]];
+function amount(value, unit) {
+  const size = Math.abs(Number(value.toPrecision(3))), fitting = PREFIXES.filter(([least]) => size >= least * (1 - 1e-9));
+  const [factor, prefix] = unit === "m" && size >= 1e-7 && size < 1e-3 ? [1e-6, "µ"] : size === 0 ? [1, ""] : fitting.pop() || PREFIXES[0];
+  return `${(value / factor).toPrecision(3)} ${prefix}${unit}`;
+}
+
 // Degrees of a crank angle [rad] within the cycle of a scene, as the summary counts them; what is left beyond the end of the axis of a
 // cycle that begins within it is at the beginning of that axis.
 function angleInCycle(cycle, radians) {
@@ -45,6 +54,7 @@ function drawingOf(scene, column, pressure, oil, moved = () => {}, others = null
   const beside = 2 * joint + Boolean(smallEnd) + Boolean(crankPin) + Boolean(mainBearing) + Boolean(bore);   // views beside that of the mechanism
   document.body.classList.toggle("unmagnified", !beside);
   document.body.classList.toggle("single", !scene.engine);
+  byId("twist-note").hidden = !(scene.engine && scene.engine.largest > 0);
   document.body.classList.toggle("contactless", scene.contacts.length === 0);
   document.body.classList.toggle("filmless", !scene.angles);
   document.body.classList.toggle("unsigned", !scene.signed);
@@ -375,9 +385,9 @@ function drawingOf(scene, column, pressure, oil, moved = () => {}, others = null
     }
     g.globalAlpha = 1;
     g.font = "11px system-ui, sans-serif";
-    const [least, most] = curve.extremes.map((value) => (curve.factor * value).toPrecision(3));
+    const [least, most] = curve.extremes.map((value) => amount(value, curve.unit));
     g.fillStyle = COLOUR.muted;
-    const text = local(`${curve.title} ${least} … ${most} ${curve.unit}`.replaceAll("-", "−"));
+    const text = local(withMinus(`${curve.title} ${least} … ${most}`));
     g.fillText(text, 10, 14);
     if (strip) {
       const x = 22 + g.measureText(text).width;
@@ -389,14 +399,14 @@ function drawingOf(scene, column, pressure, oil, moved = () => {}, others = null
   }
 
   function drawState() {
-    const degrees = at("crank_angle") * 180 / Math.PI;
-    const parts = [`t = ${(1e3 * now).toFixed(3)} ms`, `${W("crank")} ${degrees.toFixed(1)}° (${(degrees / 360).toFixed(2)} rev)`,
-      `${(at("crank_speed") * 30 / Math.PI).toFixed(0)} rpm`, `${W("pin force")} ${(Math.hypot(near("pin_force_x"), near("pin_force_y")) / 1e3).toFixed(2)} kN`];
+    const degrees = at("crank_angle") * 180 / Math.PI, turn = scene.cycle && scene.cycle.degrees;
+    const parts = [`t = ${(1e3 * now).toFixed(3)} ms`, `${W("crank")} ${(degrees - (turn ? turn * Math.floor(degrees / turn) : 0)).toFixed(1)}° (${(degrees / 360).toFixed(2)} ${W("rev")})`,
+      `${(at("crank_speed") * 30 / Math.PI).toFixed(0)} rpm`, `${W("pin force")} ${amount(Math.hypot(near("pin_force_x"), near("pin_force_y")), "N")}`];
     if (joint) {
       const force = column.normal_force ? near("normal_force") : 0;
-      parts.push(`${W("film")} ${(1e6 * at("film_thickness")).toFixed(2)} µm`, ([W("free"), W("film acts"), W("contact")][near("phase")] || "")
-        + (force > 0 ? `, ${(force / 1e3).toFixed(2)} kN` : ""));
-      if (pressure && near("phase") === 1) parts.push(`${W("film pressure up to")} ${(near("film_peak") / 1e6).toPrecision(3)} MPa`);
+      parts.push(`${W("film")} ${amount(at("film_thickness"), "m")}`, ([W("free"), W("film acts"), W("contact")][near("phase")] || "")
+        + (force > 0 ? `, ${amount(force, "N")}` : ""));
+      if (pressure && near("phase") === 1) parts.push(`${W("film pressure up to")} ${amount(near("film_peak"), "Pa")}`);
     }
     if (column.pin_angle) parts.push(`${W("pin turned")} ${(at("pin_angle") * 180 / Math.PI).toFixed(2)}°`);
     if (bore) {
@@ -412,10 +422,9 @@ function drawingOf(scene, column, pressure, oil, moved = () => {}, others = null
     if (scene.engine && scene.engine.largest > 0) parts.push(`${W("front end twisted")} ${(1e3 * (twistOf(0) - twistOf(scene.engine.twists.length - 1))).toFixed(2)} mrad`);
     const inside = scene.contacts.find((c) => now >= c.begin && now <= c.end);
     if (inside) {
-      parts.push(`${W("this contact:")} ${(1e3 * (inside.end - inside.begin)).toPrecision(3)} ms, ${(inside.force / 1e3).toPrecision(3)} kN,`
-        + ` ${(1e6 * inside.penetration).toPrecision(3)} µm`);
+      parts.push(`${W("this contact:")} ${amount(inside.end - inside.begin, "s")}, ${amount(inside.force, "N")}, ${amount(inside.penetration, "m")}`);
     }
-    byId("state").replaceChildren(...parts.map((text) => Object.assign(document.createElement("span"), { textContent: local(text) })));
+    byId("state").replaceChildren(...parts.map((text) => Object.assign(document.createElement("span"), { textContent: local(withMinus(text)) })));
   }
 
   function draw() {
