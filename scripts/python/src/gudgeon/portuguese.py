@@ -381,6 +381,7 @@ TEXTS = {
     "{}, crank pin {}": "{}, pino da manivela {}",
     "{}, main bearing {}": "{}, mancal principal {}",
     "Loss of all bearings": "Perda em todos os mancais",
+    "Oil flow of all bearings": "Vazão de óleo de todos os mancais",
     "{} %, {} impacts at up to {}": "{} %, {} impactos a até {}",
     "Wear of the bore in 100 h": "Desgaste do mancal em 100 h",
     "Hardest slap": "Impacto mais forte da saia",

@@ -158,7 +158,7 @@ OF_BEARINGS: Lines = (
 )
 
 #: Those of numbered bearings, short enough for a column each.
-OF_NUMBERED: Lines = tuple((name, largest_force if text is force else text) for name, text in OF_BEARINGS)
+OF_NUMBERED: Lines = tuple((name, largest_force if text is force else text) for name, text in OF_BEARINGS if name != "Oil flow")
 
 
 def numbered_bearings(rows: Answers) -> list[tuple[str, str]]:
@@ -168,12 +168,15 @@ def numbered_bearings(rows: Answers) -> list[tuple[str, str]]:
 
 
 def of_all_bearings(rows: Answers) -> list[tuple[str, str]]:
-    """The thinnest film of all numbered bearings, and their loss."""
+    """The thinnest film of all numbered bearings, their loss and oil flow."""
     thinnest, found = rows.summary.get("cycle_thinnest_bearing", ("", ""))[0] + "_", []
     if name := dict(numbered_bearings(rows)).get(thinnest):
         found.append(("Thinnest film", f"{gap(rows, thinnest, True)}, {name}"))
     if power := rows.shown("cycle_bearings_power", "W"):
         found.append(("Loss of all bearings", power))
+    flow, difference = rows.total({rows.of(pre, "cycle_mean_film_side_flow", "mean_film_side_flow"): 6e7 for pre, _ in numbered_bearings(rows)})
+    if flow:
+        found.append(("Oil flow of all bearings", f"{number(flow, difference)} cm³/min"))
     return found
 
 
