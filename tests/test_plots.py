@@ -653,6 +653,15 @@ class Certified(unittest.TestCase):
         plt.close(drawing)
         return [(box.x0, box.x1) for box in found]
 
+    def test_the_page_says_until_when(self) -> None:
+        """In a unit that suits the time, without an exponent."""
+        for until, text in (("12.345", "12.35 s"), ("1.13", "1.13 s"), ("0.0421", "42.1 ms")):
+            made = replace(run({"time": [0.0, 20.0], "crank_angle": [0.0, 20.0]}), summary={"certified_until": (until, "s"), "status": ("done", "")})
+            (said,) = report_page.warnings(made)
+            self.assertTrue(said.startswith(f"The run is certified up to {text}: beyond"), said)
+            portuguese = language.Language("pt")
+            self.assertIn(f"certificada até {text.replace('.', ',')}: além", portuguese.say(said))
+
     def test_from_the_certified_time_to_the_end(self) -> None:
         ((begin, end),) = self.shaded("0.1", held=False)
         self.assertAlmostEqual(begin, 100, delta=0.2)

@@ -291,7 +291,7 @@ def warnings(run: Run) -> list[str]:
     found = answers.warnings(run)
     if (until := run.certified_until) is not None:
         found.append(
-            f"The run is certified up to {1e3 * until:.4g} ms: beyond, shaded in the plots, single values are not reliable. How far "
+            f"The run is certified up to {answers.amount(until, 's')}: beyond, shaded in the plots, single values are not reliable. How far "
             "results of the whole run are is in the summary (..._difference)."
         )
     status = run.summary.get("status", ("unknown", ""))[0]
