@@ -44,8 +44,6 @@ from gudgeon.plots.figure_map import read_figures
 from gudgeon.plots.quantities import QUANTITIES, once_a_cycle
 from gudgeon.program import release_program
 from gudgeon.report import page as report_page
-from matplotlib.figure import Figure as Drawing
-from matplotlib.transforms import Bbox
 from gudgeon.results import (
     FineResults,
     MissingResult,
@@ -58,6 +56,8 @@ from gudgeon.results import (
     located,
     read_case,
 )
+from matplotlib.figure import Figure as Drawing
+from matplotlib.transforms import Bbox
 
 
 def run(columns: dict, case: dict | None = None, events: dict | None = None) -> Run:
