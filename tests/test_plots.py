@@ -429,7 +429,9 @@ class OnePage(unittest.TestCase):
         self.fits(drawing)
 
     def fits(self, drawing: Drawing) -> None:
-        """All texts are on the page, and no table covers another one or a plot."""
+        """All texts are on the page, values beside their units, and no table covers another one or a plot."""
+        broken = [text.get_text() for axes in drawing.axes for text in axes.texts if re.search(r"\d\n(kW|kN|bar|µm|%|cm³)", text.get_text())]
+        self.assertEqual(broken, [])
         drawing.draw_without_rendering()
         page = drawing.bbox
         blocks = []

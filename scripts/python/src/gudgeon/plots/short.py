@@ -62,7 +62,8 @@ def write(axes: Axes, heading: str, head: Sequence[str], rows: Sequence[tuple[st
     letters = 150 * axes.get_subplotspec().get_position(axes.figure).width
     edges, depth = np.concatenate(([0], np.cumsum(widths))), 0.0
     for cells in ([("", head)] if head else []) + list(rows):
-        texts = [textwrap.fill(say(text).translate(FIRM), max(int(letters * width), 8)) for text, width in zip([cells[0], *cells[1]], widths)]
+        said = [re.sub(r"(?<=\d) (?=[^\W\d_]|%)", "\u00a0", say(text).translate(FIRM)) for text in (cells[0], *cells[1])]   # a value stays beside its unit
+        texts = [textwrap.fill(text, max(int(letters * width), 8)).replace("\u00a0", " ") for text, width in zip(said, widths)]
         for line in "\n".join(texts).splitlines():
             language.current.keep(line)   # it is in the page's language
         for x, text in zip(edges, texts):
