@@ -482,7 +482,7 @@ class OnePage(unittest.TestCase):
             "cycle_isentropic_efficiency": "0.92", "cycle_discharge_temperature": "488", "cycle_suction_loss": "51", "cycle_discharge_loss": "31",
             "cycle_max_suction_valve_speed": "2.3", "cycle_max_discharge_valve_speed": "4.1", "cycle_max_cylinder_pressure": "1e7", "cycle_mean_crank_speed": "300",
             "cycle_speed_fluctuation": "0.1", "cycle_max_drive_torque": "14.77", "cycle_slap_speed": "0.48", "cycle_slap_angle": "373", "cycle_slap_corner": "guide_3",
-            "cycle_slap_energy": "0.028", "cycle_slap_impacts": "73", "pin_swing": "0.1", "pin_drift_per_revolution": "0.01", "cycle_one_way_fmep": "4e3"}
+            "cycle_slap_energy": "0.028", "cycle_slap_impacts": "73", "cycle_brake_power": "4862.4", "cycle_indicated_power": "4930.4", "pin_swing": "0.1", "pin_drift_per_revolution": "0.01", "cycle_one_way_fmep": "4e3"}
         drawing = short.draw(self.made(more), "engine")
         said = {text.get_text() for axes in drawing.axes for text in axes.texts}
         self.assertLessEqual({"Largest drive torque", "Hardest slap", "Piston pin", "Wear of the bore in 100 h"}, said)
