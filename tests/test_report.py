@@ -322,6 +322,17 @@ return {width: document.getElementById('views').clientWidth, row: first.map(c =>
   parted: all('.key').filter(k => k.getClientRects().length > 1).map(k => k.textContent)};"""
 
 
+#: Folded tables, opened: their height for each row [px], values that take several lines, and what is beyond the edge of the page.
+UNFOLDED = """const folded = [...document.querySelectorAll('.tables details')];
+const measure = (d) => { const rows = [...d.querySelectorAll('tr')], values = [...d.querySelectorAll('td:nth-child(2)')].filter(v => v.textContent.length <= 30);
+  return {rows: rows.length, height: d.offsetHeight / rows.length, broken: values.filter(v => { const r = document.createRange(); r.selectNodeContents(v); return new Set([...r.getClientRects()].map(b => Math.round(b.top))).size > 1; }).map(v => v.textContent),
+    outside: values.filter(v => v.getBoundingClientRect().right > document.documentElement.clientWidth).map(v => v.textContent)}; };
+folded.forEach(d => { d.open = true; });
+const found = folded.map(measure);
+folded.forEach(d => { d.open = false; });
+return found;"""
+
+
 def check_screens(browser: Browser, page: Path, checks: Assertions, pictures: Path | None) -> None:
     """The page on screens of all sizes, in the dark and on paper. The least contrasts are those of WCAG 2: 4.5 of a text, 3 of a line."""
     for wanted in (1400, 800, 400):
@@ -333,6 +344,8 @@ def check_screens(browser: Browser, page: Path, checks: Assertions, pictures: Pa
         checks.check(not fits["cut"] and not fits["parted"], f"{page.stem}: cut or parted texts", f"{wanted}: {fits}")
         checks.check(min(fits["views"]) >= 150 and fits["row"] > 0.75 * fits["width"], f"{page.stem}: views fill their rows", f"{wanted}: {fits}")
         checks.check(not (found := browser.run(CROWDED, '.modebar-group')), f"{page.stem}: crowded titles", f"{wanted}: {found}")
+        for table in browser.run(UNFOLDED):
+            checks.check((table["rows"] < 10 or table["height"] < 35) and not table["broken"] and not table["outside"], f"{page.stem}: values of folded tables stand on one line, within the page", f"{wanted}: {table}")
         if pictures:
             browser.screenshot(pictures / f"{page.stem}_{wanted}.png")
     browser.width_at(0)

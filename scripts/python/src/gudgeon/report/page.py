@@ -310,7 +310,11 @@ def contacts(run: Run) -> list[dict]:
 
 
 def rows_html(rows: list[tuple[str, ...]], heading: str = "") -> str:
-    cells = ["<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in rows]
+    def cell(text: str) -> str:   # long texts take several lines, a number never; a long name may be broken behind a "_"
+        kind = ' class="text"' if len(text) > 30 and " " in text else ""
+        return f"<td{kind}>{html.escape(text).replace('_', '_<wbr>')}</td>"
+
+    cells = ["<tr>" + "".join(map(cell, row)) + "</tr>" for row in rows]
     head = f'<tr><th colspan="3">{html.escape(heading)}</th></tr>' if heading else ""
     return head + "".join(cells)
 
@@ -541,9 +545,9 @@ def page(
         "wear": wear_section(worn, language) if worn else "",
         "answers": answers.section(run, language),
         "cycles": report_cycles.section(run, cycle_columns, language),
-        "summary": f"<table>{summary(False)}</table>",
-        "program": f"<table>{summary(True)}</table>",
-        "case": f"<table>{case}</table>",
+        "summary": f"<div><table>{summary(False)}</table></div>",
+        "program": f"<div><table>{summary(True)}</table></div>",
+        "case": f"<div><table>{case}</table></div>",
         "footer": html.escape(
             f"gudgeon {run.summary.get('version', ('', ''))[0]}. "
             + say(
