@@ -204,6 +204,10 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
     )
     checks.check(not covered, f"{name}: titles that the tool bar covers: {covered}")
 
+    several = [column for column in browser.run("return gudgeon.scene.columns") if column.endswith("film_thickness") and not column.startswith("ideal")]
+    films = browser.run("return gudgeon.charts.filter(c => c.curves.some(u => u.y.endsWith('film_thickness'))).map(c => [c.curves.map(u => u.y), c.div.data.filter(d => d.line.dash === 'solid').map(d => d.line.color)])")
+    checks.check(len(films) == bool(several) and (not films or (set(several) <= set(films[0][0]) and len(set(films[0][1])) == len(several))),
+                 f"{name}: one chart of all films, with a colour for each: {films} of {several}")
     checks.check(
         browser.run("return Math.abs(gudgeon.now - gudgeon.scene.start) < 1e-9"), f"{name}: opens at the time of the largest pin force"
     )

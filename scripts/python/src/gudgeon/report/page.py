@@ -154,21 +154,35 @@ def with_sizes(run: Run) -> dict[str, np.ndarray]:
     return columns
 
 
-def over_time(columns: dict[str, np.ndarray], run: Run) -> list[tuple[str, str, str, float]]:
-    """The plots over time: those of every run, of every bearing, and of the columns that the case asks for by name."""
-    def of_bearings(listed: Sequence[tuple[str, str, str, float]]) -> list[tuple[str, str, str, float]]:
-        return [(pre + name, (named_bearing(columns, place) + title).capitalize(), unit, factor)
-                for place, (pre, _) in PLACES.items() for name, title, unit, factor in listed]
+#: A plot over time: title, unit shown, factor, and the columns of its curves with their names.
+Listed = tuple[str, str, float, list[tuple[str, str]]]
 
-    found = of_bearings(FIRST_OF_BEARINGS) + list(OVER_TIME) + of_bearings(OF_BEARINGS)
+#: Colours of the bearings' curves in one chart, by place.
+OF_PLACE = dict(zip(PLACES, ("blue", "vermilion", "green", "purple")))
+
+
+def over_time(columns: dict[str, np.ndarray], run: Run) -> list[Listed]:
+    """The plots over time: those of every run, one for each quantity of the bearings, and those of the columns that the case asks for
+    by name."""
+
+    def of_bearings(listed: Sequence[tuple[str, str, str, float]]) -> list[Listed]:
+        found = []
+        for name, title, unit, factor in listed:
+            those = [(place, pre + name) for place, (pre, _) in PLACES.items() if pre + name in columns and is_informative(columns[pre + name])]
+            pre = named_bearing(columns, those[0][0]) if len(those) == 1 else ""
+            found.append(((pre + title).capitalize(), unit, factor, [(column, PLACES[place][1]) for place, column in those]))
+        return found
+
+    of_machine: list[Listed] = [(title, unit, factor, [(name, "")]) for name, title, unit, factor in OVER_TIME]
     if "crankpin_force" in columns:
-        found.insert(found.index(OVER_TIME[0]) + 1, ("crankpin_force", "Crank pin force", "kN", 1e-3))
-    known = {name for name, *_ in found} | {name for name in columns if name.endswith(("_x", "_y")) and name[:-2] in columns}
+        of_machine[0] = ("Forces on the pins", "kN", 1e-3, [("pin_force", "piston pin"), ("crankpin_force", "crank pin")])
+    found = of_bearings(FIRST_OF_BEARINGS) + of_machine + of_bearings(OF_BEARINGS)
+    known = {name for *_, curves in found for name, _ in curves} | {name for name in columns if name.endswith(("_x", "_y")) and name[:-2] in columns}
     asked = [part.strip() for part in str(run.parameter("output", "columns", "")).split(",")]
     for name in asked:
         if name in columns and name not in known and name not in ("time", "crank_angle"):
             unit, factor = UNITS.get(run.units.get(name, ""), (run.units.get(name, ""), 1.0))
-            found.append((name, name.replace("_", " ").capitalize(), unit, factor))
+            found.append((name.replace("_", " ").capitalize(), unit, factor, [(name, "")]))
     return found
 
 
@@ -183,53 +197,45 @@ def is_informative(values: np.ndarray) -> bool:
     return bool(np.ptp(values) > 0)
 
 
+def timed(name: str, factor: float, said: str, colour: str) -> dict:
+    """A curve over time."""
+    return {"name": said, "x": "time", "x_factor": 1e3, "y": name, "y_factor": factor, "colour": colour}
+
+
+def colour_of(bearing: str) -> str:
+    """Colour of a bearing, by its name."""
+    return next(OF_PLACE[place] for place, (_, name) in PLACES.items() if name == bearing)
+
+
 def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
     """The plots of the page, in the form that its script expects: curves refer to columns by name."""
     found = []
-    for name, title, unit, factor in over_time(columns, run):
-        if name not in columns or not is_informative(columns[name]):
-            continue
-        curves = [{"name": "this run", "x": "time", "x_factor": 1e3, "y": name, "y_factor": factor, "colour": "blue"}]
-        if name in APART:
+    for title, unit, factor, listed in over_time(columns, run):
+        listed = [(name, said) for name, said in listed if name in columns and is_informative(columns[name])]
+        if listed and listed[0][0] in APART:
+            name = listed[0][0]
             for run_name, said in ((name, title), (f"ideal {name}", f"{title} of the ideal joint's run")):
                 if run_name in columns and is_informative(columns[run_name]):
                     shown_unit, factor = prefixed(unit, columns[run_name])
-                    curve = {"name": said, "x": "time", "x_factor": 1e3, "y": run_name, "y_factor": factor, "colour": "blue"}
-                    if run_name != name:
-                        curve["colour"] = "ink"
-                    found.append({"title": said, "x": "time [ms]", "y": shown_unit, "timed": True, "curves": [curve]})
+                    colour = "blue" if run_name == name else "ink"
+                    found.append({"title": said, "x": "time [ms]", "y": shown_unit, "timed": True, "curves": [timed(run_name, factor, said, colour)]})
             continue
-        if f"ideal {name}" in columns:
-            curves.append(
-                {
-                    "name": "ideal joint",
-                    "x": "time",
-                    "x_factor": 1e3,
-                    "y": f"ideal {name}",
-                    "y_factor": factor,
-                    "colour": "ink",
-                    "dash": "dash",
-                }
-            )
-        found.append({"title": title, "x": "time [ms]", "y": unit, "timed": True, "curves": curves})
+        several, curves = len(listed) > 1, []
+        for name, said in listed:
+            colour = colour_of(said) if several else "blue"
+            curves.append(timed(name, factor, said if several else "this run", colour))
+            if f"ideal {name}" in columns:
+                curves.append(timed(f"ideal {name}", factor, f"{said}, ideal joint" if several else "ideal joint", colour if several else "ink") | {"dash": "dash"})
+        if curves:
+            found.append({"title": title, "x": "time [ms]", "y": unit, "timed": True, "curves": curves})
 
     for quantity, title, unit, factor in (
         ("gap", "Gaps of the skirt's corners (below 0: penetration)", "µm", 1e6),
         ("deflection", "Deflections of the skirt's faces", "µm", 1e6),
         ("force", "Forces on the skirt's corners", "kN", 1e-3),
     ):
-        curves = [
-            {
-                "name": said,
-                "x": "time",
-                "x_factor": 1e3,
-                "y": f"guide_{corner}_{quantity}",
-                "y_factor": factor,
-                "colour": colour,
-            }
-            for (corner, said), colour in zip(CORNERS.items(), ("blue", "green", "vermilion", "purple"))
-            if f"guide_{corner}_{quantity}" in columns
-        ]
+        curves = [timed(f"guide_{corner}_{quantity}", factor, said, colour)
+                  for (corner, said), colour in zip(CORNERS.items(), ("blue", "green", "vermilion", "purple")) if f"guide_{corner}_{quantity}" in columns]
         if curves:
             found.append({"title": title, "x": "time [ms]", "y": unit, "timed": True, "curves": curves})
 

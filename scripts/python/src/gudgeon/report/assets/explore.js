@@ -97,13 +97,16 @@
   // ---- curves over the crank angle of the cycle, kept runs behind
   const abscissa = ({ scene }, radians) => (scene.cycle ? angleInCycle(scene.cycle, radians) : radians * 180 / Math.PI);
   const atAbscissa = ({ scene: { cycle } }, degrees) => Math.PI / 180 * (cycle ? (degrees - angleInCycle(cycle, cycle.angle) + cycle.degrees) % cycle.degrees : degrees) + (cycle ? cycle.angle : 0);
+  // The curves of a run in a plot: those of several bearings have their own dashes, as the run has its colour.
+  const DASHES = [[], [7, 3], [2, 2], [9, 2, 2, 2]], PLOTLY_DASHES = ["solid", "dash", "dot", "dashdot"];
   function seriesOf(run, title) {
-    const plot = run.scene.plots.find((one) => one.title === title), curve = plot && plot.curves[0];
-    if (!curve) return null;
+    const plot = run.scene.plots.find((one) => one.title === title);
     const times = (name, factor) => Array.from(run.column[name], (v) => v * factor);
-    const x = plot.timed ? Array.from(run.column.crank_angle, (v) => abscissa(run, v)) : times(curve.x, curve.x_factor);
-    const fold = plot.timed && run.scene.cycle ? foldOf(x, run.scene.cycle.degrees) : -1;
-    return { x: fromFold(x, fold), y: fromFold(times(curve.y, curve.y_factor), fold) };
+    return (plot ? plot.curves : []).map((curve, k) => {
+      const x = plot.timed ? Array.from(run.column.crank_angle, (v) => abscissa(run, v)) : times(curve.x, curve.x_factor);
+      const fold = plot.timed && run.scene.cycle ? foldOf(x, run.scene.cycle.degrees) : -1;
+      return { name: curve.name, k, x: fromFold(x, fold), y: fromFold(times(curve.y, curve.y_factor), fold) };
+    });
   }
   function charts() {
     const { plots } = shown.scene, there = [...byId("charts").children].map((one) => one.dataset.title);
@@ -115,8 +118,8 @@
       }));
     }
     plots.forEach((plot, i) => {
-      const all = [...kept].reverse().map((run, j) => [seriesOf(run, plot.title), GHOSTS[kept.length - 1 - j]]);
-      drawChart(byId("charts").children[i], plot, [...all, [seriesOf(shown, plot.title), "blue"]].filter(([series]) => series));
+      const colours = [...GHOSTS.slice(0, kept.length).reverse(), "blue"];
+      drawChart(byId("charts").children[i], plot, [...[...kept].reverse(), shown].flatMap((run, j) => seriesOf(run, plot.title).map((series) => [series, colours[j]])));
     });
   }
   function nice(low, high, parts) {   // round values between two
@@ -133,11 +136,11 @@
       return high > low ? [low, high] : [low - 1, high + 1];
     };
     const cycle = plot.timed && shown.scene.cycle, [x0, x1] = cycle ? [0, cycle.degrees] : span("x"), [y0, y1] = span("y");
-    const X = (v) => 46 + (width - 60) * (v - x0) / (x1 - x0), Y = (v) => 22 + (height - 44) * (y1 - v) / (y1 - y0);
+    const X = (v) => 46 + (width - 60) * (v - x0) / (x1 - x0), top = plot.curves.length > 1 ? 40 : 22, Y = (v) => top + (height - top - 22) * (y1 - v) / (y1 - y0);
     g.font = "11px system-ui, sans-serif";
     if (plot.timed) {
       g.fillStyle = "rgba(127,127,127,0.25)";
-      for (const [from, to] of partsBeyond(shown.scene.certified, drawing.begin, drawing.end, (t) => abscissa(shown, drawing.angleAt(t)), [x0, x1])) g.fillRect(X(from), 22, X(to) - X(from), height - 44);
+      for (const [from, to] of partsBeyond(shown.scene.certified, drawing.begin, drawing.end, (t) => abscissa(shown, drawing.angleAt(t)), [x0, x1])) g.fillRect(X(from), top, X(to) - X(from), height - top - 22);
     }
     g.strokeStyle = COLOUR.line; g.lineWidth = 1; g.fillStyle = COLOUR.muted; g.textAlign = "right";
     for (const v of nice(y0, y1, 4)) { g.beginPath(); g.moveTo(46, Y(v)); g.lineTo(width - 14, Y(v)); g.stroke(); g.fillText(local(String(v)), 42, Y(v) + 4); }
@@ -146,8 +149,19 @@
     for (const v of cycle ? Array.from({ length: cycle.degrees / step + 1 }, (_, i) => i * step) : nice(x0, x1, 5)) g.fillText(local(String(v)), X(v), height - 8);
     g.textAlign = "left"; g.fillStyle = COLOUR.ink;
     g.fillText(plot.timed ? `${plot.title} [${plot.y}]` : `${plot.y}, ${plot.x}`, 46, 13);
-    g.save(); g.beginPath(); g.rect(46, 20, width - 60, height - 40); g.clip();
+    if (plot.curves.length > 1) {   // names of the bearings, from the right
+      let right = width - 14;
+      g.strokeStyle = COLOUR.ink; g.font = "10px system-ui, sans-serif";
+      for (const [k, curve] of [...plot.curves.entries()].reverse()) {
+        const wide = g.measureText(curve.name).width;
+        g.fillText(curve.name, right - wide, 32);
+        g.setLineDash(DASHES[k % 4]); g.beginPath(); g.moveTo(right - wide - 20, 28); g.lineTo(right - wide - 3, 28); g.stroke();
+        right -= wide + 28;
+      }
+    }
+    g.save(); g.beginPath(); g.rect(46, top - 2, width - 60, height - top - 18); g.clip();
     for (const [series, colour] of list) {
+      g.setLineDash(DASHES[series.k % 4]);
       g.beginPath();
       series.x.forEach((v, i) => { if (v !== null) g[i && series.x[i - 1] !== null ? "lineTo" : "moveTo"](X(v), Y(series.y[i])); });
       g.strokeStyle = COLOUR[colour]; g.lineWidth = colour === "blue" ? 1.5 : 1; g.globalAlpha = colour === "blue" ? 1 : 0.7; g.stroke(); g.globalAlpha = 1;
@@ -170,8 +184,8 @@
       await new Promise((done) => { script.onload = done; document.head.append(script); });
     }
     const plot = shown.scene.plots.find((one) => one.title === title), colours = [...GHOSTS.slice(0, kept.length).reverse(), "blue"];
-    const data = [...[...kept].reverse(), shown].map((run, i) => ({ series: seriesOf(run, title), name: run === shown ? W("now") : named(run), line: { color: COLOUR[colours[i]], width: 1.2 } }))
-      .filter(({ series }) => series).map(({ series, ...rest }) => ({ ...series, ...rest, type: "scatter", mode: "lines" }));
+    const several = plot.curves.length > 1, data = [...[...kept].reverse(), shown].flatMap((run, i) => seriesOf(run, title).map(({ x, y, k, name }) => ({ x, y, type: "scatter", mode: "lines",
+      name: [...(several ? [name] : []), ...(kept.length || !several ? [run === shown ? W("now") : named(run)] : [])].join(", "), line: { color: COLOUR[colours[i]], width: 1.2, dash: PLOTLY_DASHES[k % 4] } })));
     Plotly.newPlot("zoomed", data, { title: { text: plot.title }, paper_bgcolor: COLOUR.paper, plot_bgcolor: COLOUR.paper, font: { color: COLOUR.ink }, separators: spoken.comma ? ",." : ".,",
       xaxis: { title: { text: plot.timed ? W("crank angle [deg]") : plot.x } }, yaxis: { title: { text: plot.y } } }, { responsive: true, displaylogo: false });
   }
