@@ -12,6 +12,7 @@ from gudgeon.plots.bearing import last_cycle, run_cycle
 from gudgeon.plots.columns import COLOURS, crank_angles, values_of
 from gudgeon.plots.style import BLUE
 from gudgeon.report.answers import FIRM, Answers, amount, lines, losses_of, number, numbered_bearings, of_numbered, title
+from gudgeon.report.page import first_angle
 from gudgeon.results import MissingResult, Run
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -124,7 +125,8 @@ def thinnest_film(run: Run) -> list[tuple[str, float, tuple[str, ...]]]:
 
 def draw_cycle(axes: Axes, run: Run, rows: np.ndarray, factor: float, columns: Sequence[str]) -> None:
     """Columns over the crank angle of the last cycle."""
-    angle, order = crank_angles(run["crank_angle"][rows], run_cycle(run))
+    angle, order = crank_angles(run["crank_angle"][rows] - np.radians(first_angle(run)), run_cycle(run))
+    angle = angle + first_angle(run)
     for column, colour in zip(columns, COLOURS):
         place = next((said for pre, said in reversed(PLACES.values()) if column == f"{pre}film_thickness"), column.replace("crankpin", "crank pin").replace("_", " "))
         axes.plot(angle, factor * values_of(run, column)[rows][order], color=colour, label=place)

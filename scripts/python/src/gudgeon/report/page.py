@@ -17,6 +17,8 @@ import pandas as pd
 from gudgeon.language import Language
 from gudgeon.names import PLACES, prefixed
 from gudgeon.plots import film_pressure
+from gudgeon.plots.bearing import last_cycle as rows_of_last_cycle
+from gudgeon.plots.bearing import run_cycle
 from gudgeon.report import answers
 from gudgeon.results import Run, numbered
 
@@ -579,8 +581,8 @@ def wear_section(worn: list[tuple[str, pd.DataFrame]], language: Language) -> st
 
 
 def last_cycle(run: Run, columns: dict[str, np.ndarray]) -> dict[str, float] | None:
-    """Times at which the last whole cycle of the run begins and ends [s], the angle at its beginning [rad] and its length [degrees];
-    None without one in the trace."""
+    """Times at which the last whole cycle of the run begins and ends [s], the angle at its beginning [rad], its length and the beginning
+    of its axis [degrees]; None without one in the trace."""
     try:
         begin, length, turns = (float(run.summary[f"cycle_{name}"][0]) for name in ("start", "duration", "revolutions"))
     except (KeyError, ValueError):
@@ -588,7 +590,19 @@ def last_cycle(run: Run, columns: dict[str, np.ndarray]) -> dict[str, float] | N
     time = columns["time"]
     if not (length > 0 and time[0] <= begin + 0.01 * length and begin < time[-1]):
         return None
-    return {"begin": begin, "end": begin + length, "angle": float(np.interp(begin, time, columns["crank_angle"])), "degrees": 360 * turns}
+    angle = float(np.interp(begin, time, columns["crank_angle"]))
+    return {"begin": begin, "end": begin + length, "angle": angle, "degrees": 360 * turns, "from": first_angle(run)}
+
+
+def first_angle(run: Run) -> float:
+    """Where an axis of the crank angle in the last cycle begins [degrees]: at -360 for two revolutions whose largest pressure is within
+    90 degrees of 0 or 720, where an axis from 0 would cut it in two; else at 0."""
+    gas = next((name for name in ("cylinder_pressure", "gas_force") if name in run), None)
+    if gas is None or round(run_cycle(run) / np.pi) != 4:
+        return 0.0
+    rows = rows_of_last_cycle(run)
+    peak = np.degrees(run["crank_angle"][rows][np.argmax(run[gas][rows])]) % 720
+    return -360.0 if min(peak, 720 - peak) < 90 else 0.0
 
 
 def first_moment(columns: dict[str, np.ndarray], of_fields: Sequence[float] = (), cycle: dict[str, float] | None = None) -> float:

@@ -21,14 +21,15 @@ function amount(value, unit) {
   return `${(value / factor).toPrecision(3)} ${prefix}${unit}`;
 }
 
-// Degrees of a crank angle [rad] within the cycle of a scene, as the summary counts them; what is left beyond the end of the axis of a
-// cycle that begins within it is at the beginning of that axis.
+// Degrees of a crank angle [rad] within the cycle of a scene, as the summary counts them, or less a whole cycle beyond the end of its axis,
+// which begins at `cycle.from`; what is left beyond the end of a cycle that begins within the axis is at the beginning of the axis.
 function angleInCycle(cycle, radians) {
-  const from = cycle.angle * 180 / Math.PI, length = cycle.degrees;
-  const start = ((from % length) + length) % length;   // just before a whole cycle: its end, but for rounding
-  const angle = radians * 180 / Math.PI - from + (length - start < 1e-3 * length ? start - length : start);
-  return angle > 1.001 * length ? angle - length : angle;
+  const begin = cycle.angle * 180 / Math.PI, length = cycle.degrees;
+  const start = (((begin - cycle.from) % length) + length) % length;   // just before a whole cycle: its end, but for rounding
+  const angle = radians * 180 / Math.PI - begin + (length - start < 1e-3 * length ? start - length : start);
+  return cycle.from + (angle > 1.001 * length ? angle - length : angle);
 }
+const axisOf = (cycle) => [cycle.from, cycle.from + cycle.degrees];
 // The first of the abscissae in a cycle that is at the beginning of the axis again, -1 without one; and a list that begins with its value
 // there, with a gap where the run's end meets its beginning.
 const foldOf = (x, length) => x.findIndex((v, i) => i > 0 && v < x[i - 1] - length / 2);

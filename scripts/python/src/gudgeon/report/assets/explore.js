@@ -135,7 +135,7 @@
       for (const [series] of list) for (const v of series[axis]) if (v !== null) { low = Math.min(low, v); high = Math.max(high, v); }
       return high > low ? [low, high] : [low - 1, high + 1];
     };
-    const cycle = plot.timed && shown.scene.cycle, [x0, x1] = cycle ? [0, cycle.degrees] : span("x"), [y0, y1] = span("y");
+    const cycle = plot.timed && shown.scene.cycle, [x0, x1] = cycle ? axisOf(cycle) : span("x"), [y0, y1] = span("y");
     const X = (v) => 46 + (width - 60) * (v - x0) / (x1 - x0), top = plot.curves.length > 1 ? 40 : 22, Y = (v) => top + (height - top - 22) * (y1 - v) / (y1 - y0);
     g.font = "11px system-ui, sans-serif";
     if (plot.timed) {
@@ -146,7 +146,7 @@
     for (const v of nice(y0, y1, 4)) { g.beginPath(); g.moveTo(46, Y(v)); g.lineTo(width - 14, Y(v)); g.stroke(); g.fillText(local(String(v)), 42, Y(v) + 4); }
     g.textAlign = "center";
     const step = cycle ? (cycle.degrees > 360 ? 180 : 90) : 0;
-    for (const v of cycle ? Array.from({ length: cycle.degrees / step + 1 }, (_, i) => i * step) : nice(x0, x1, 5)) g.fillText(local(String(v)), X(v), height - 8);
+    for (const v of cycle ? Array.from({ length: cycle.degrees / step + 1 }, (_, i) => x0 + i * step) : nice(x0, x1, 5)) g.fillText(local(String(v).replace("-", "−")), X(v), height - 8);
     g.textAlign = "left"; g.fillStyle = COLOUR.ink;
     g.fillText(plot.timed ? `${plot.title} [${plot.y}]` : `${plot.y}, ${plot.x}`, 46, 13);
     if (plot.curves.length > 1) {   // names of the bearings, from the right

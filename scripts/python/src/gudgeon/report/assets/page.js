@@ -52,17 +52,17 @@
   const deadCentres = () => {
     if (!inCycle()) return [];
     const first = [Math.asin(scene.axis / (scene.crank + scene.rod)), Math.PI + Math.asin(scene.axis / (scene.rod - scene.crank))];
-    return first.flatMap((angle) => Array.from({ length: scene.cycle.degrees / 360 + 1 }, (_, turn) => 180 / Math.PI * angle + 360 * turn))
-      .filter((x) => x >= 0 && x <= scene.cycle.degrees)
+    return first.flatMap((angle) => Array.from({ length: scene.cycle.degrees / 360 + 1 }, (_, turn) => 180 / Math.PI * angle + scene.cycle.from + 360 * turn))
+      .filter((x) => x >= axisOf(scene.cycle)[0] && x <= axisOf(scene.cycle)[1])
       .map((x) => ({ type: "line", layer: "below", x0: x, x1: x, yref: "paper", y0: 0, y1: 1, line: { color: COLOUR.grey, width: 0.6, dash: "dot" } }));
   };
-  const ticks = () => (inCycle() ? { "xaxis.range": [0, scene.cycle.degrees], "xaxis.tickmode": "linear", "xaxis.tick0": 0, "xaxis.dtick": 90 }
+  const ticks = () => (inCycle() ? { "xaxis.range": axisOf(scene.cycle), "xaxis.tickmode": "linear", "xaxis.tick0": 0, "xaxis.dtick": 90 }
     : { "xaxis.autorange": true, "xaxis.tickmode": "auto" });
 
   // The part of the run beyond its certified time.
   const uncertified = () => {
     const [from, to] = cycleAlone() ? [scene.cycle.begin, scene.cycle.end] : [drawing.begin, end];
-    return partsBeyond(scene.certified, from, to, abscissaAt, inCycle() ? [0, scene.cycle.degrees] : [abscissaAt(from), abscissaAt(to)]).map(([x0, x1]) => (
+    return partsBeyond(scene.certified, from, to, abscissaAt, inCycle() ? axisOf(scene.cycle) : [abscissaAt(from), abscissaAt(to)]).map(([x0, x1]) => (
       { type: "rect", layer: "below", x0, x1, yref: "paper", y0: 0, y1: 1, fillcolor: "rgba(127,127,127,0.18)", line: { width: 0 } }));
   };
 
