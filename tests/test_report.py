@@ -145,6 +145,11 @@ class Browser:
         entries = self.call("POST", "/se/log", {"type": "browser"})
         return [entry["message"] for entry in entries if entry["level"] in ("SEVERE", "WARNING")]
 
+    def printed(self) -> int:
+        """Number of sheets of A4 that the page takes."""
+        data = base64.b64decode(self.cdp("Page.printToPDF", paperWidth=8.27, paperHeight=11.69)["data"])
+        return len(re.findall(rb"/Type\s*/Page\b", data))
+
     def screenshot(self, path: Path) -> None:
         path.write_bytes(base64.b64decode(self.call("GET", "/screenshot")))
 
@@ -186,6 +191,11 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
     browser.open(page)
     checks.check(browser.wait("window.gudgeon && window.gudgeon.ready"), f"{name}: becomes ready")
     checks.check(browser.run("return document.getElementById('failure').hidden"), f"{name}: shows no error message")
+    checks.check(browser.run("return [...document.querySelectorAll('details')].every(d => !d.open) && document.querySelectorAll('#plots > div').length <= 6"), f"{name}: details are folded")
+    checks.check(browser.printed() <= 2, f"{name}: takes two sheets of A4, not {browser.printed()}")
+    browser.run("document.querySelectorAll('details').forEach(d => { d.open = true; })")
+    checks.check(browser.printed() > 2, f"{name}: unfolded details are printed")
+    checks.check(browser.wait("gudgeon.charts.every(c => c.div.querySelector('svg').clientWidth <= c.div.clientWidth + 1)", 10), f"{name}: unfolded plots fit their place")
     clearance = browser.run("return gudgeon.scene.clearance > 0")
     canvases = ["mechanism", "timeline"] + (["joint", "orbit"] if clearance else [])
     canvases += ["bore"] if browser.run("return gudgeon.scene.bore !== null") else []
@@ -193,7 +203,7 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
     canvases += ["main-bearing-orbit"] if browser.run("return gudgeon.scene.main_bearing !== null") else []
     plots = browser.run("return gudgeon.scene.plots.length")
     checks.check(
-        plots >= 5 and browser.run("return document.querySelectorAll('#plots .main-svg').length") >= plots,
+        plots >= 5 and browser.run("return document.querySelectorAll('.plots .main-svg').length") >= plots,
         f"{name}: every plot is drawn",
     )
     empty = browser.run(
@@ -215,7 +225,7 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
         browser.run("return Math.abs(gudgeon.now - gudgeon.scene.start) < 1e-9"), f"{name}: opens at the time of the largest pin force"
     )
     checks.check(
-        browser.run("return [...document.querySelectorAll('#planes > div')].length") == browser.run("return gudgeon.scene.plots.filter(p => p.square).length"),
+        browser.run("return [...document.querySelectorAll('.planes > div')].length") == browser.run("return gudgeon.scene.plots.filter(p => p.square).length"),
         f"{name}: plots of planes are in a separate place",
     )
     if clearance and browser.run("return gudgeon.scene.contacts.length"):
@@ -315,7 +325,7 @@ CONTRAST = """const light = (c) => { const l = c.match(/[\\d.]+/g).slice(0, 3).m
 const contrast = (a, b) => { const [x, y] = [light(a), light(b)].sort((p, q) => q - p); return (x + 0.05) / (y + 0.05); };
 const style = (e, name) => getComputedStyle(e)[name], paper = style(document.body, 'backgroundColor');
 const all = (q) => [...document.querySelectorAll(q)];
-return {paper: light(paper), charts: all('#plots .main-svg:first-of-type, #planes .main-svg:first-of-type').map(s => light(style(s, 'backgroundColor'))),
+return {paper: light(paper), charts: all('#plots .main-svg:first-of-type, .planes .main-svg:first-of-type').map(s => light(style(s, 'backgroundColor'))),
   texts: Math.min(...all('h1, .hint, td, .warning').map(e => contrast(style(e, 'color'), style(e.closest('.warning') || document.body, 'backgroundColor'))),
     ...all('.gtitle, .xtick text').map(e => contrast(style(e, 'fill'), paper))),
   lines: Math.min(...all('.js-line').map(e => contrast(style(e, 'stroke'), paper)))};"""
@@ -364,7 +374,7 @@ def check_screens(browser: Browser, page: Path, checks: Assertions, pictures: Pa
     browser.wait("window.gudgeon && window.gudgeon.ready")
     for scheme, is_dark in (("light", False), ("dark", True)):
         browser.cdp("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
-        browser.wait(f"(getComputedStyle(document.querySelector('#planes .js-line')).stroke === 'rgb(86, 180, 233)') === {str(is_dark).lower()}", 10)
+        browser.wait(f"(getComputedStyle(document.querySelector('.planes .js-line')).stroke === 'rgb(86, 180, 233)') === {str(is_dark).lower()}", 10)
         seen = browser.run(CONTRAST)
         checks.check((seen["paper"] < 0.05) == is_dark and all((one < 0.05) == is_dark for one in seen["charts"]) and seen["charts"], f"{scheme}: page and charts: {seen}")
         checks.check(seen["texts"] >= 4.5 and seen["lines"] >= 3, f"{scheme}: contrasts of texts and lines: {seen['texts']}, {seen['lines']}")
@@ -372,6 +382,10 @@ def check_screens(browser: Browser, page: Path, checks: Assertions, pictures: Pa
             browser.screenshot(pictures / f"{scheme}.png")
     browser.run("window.dispatchEvent(new Event('beforeprint'))")
     checks.check(browser.run(CONTRAST)["paper"] > 0.9, "on paper a dark page is light")
+    browser.cdp("Emulation.setEmulatedMedia", media="print")
+    bars = browser.run("return [[...document.querySelectorAll('.bar i')], [...document.querySelectorAll('.key')]].map((all, i) => all.map(e => getComputedStyle(e, i ? '::before' : null).printColorAdjust)).flat()")
+    checks.check(bars and set(bars) == {"exact"}, f"{page.stem}: bars and colours of legends are printed: {bars}")
+    browser.cdp("Emulation.setEmulatedMedia", media="")
     browser.wait("gudgeon.charts.find(c => c.timed).div.querySelector('svg').clientWidth === 340", 10)
     checks.check(not (found := browser.run(CROWDED, '.none')), f"{page.stem}: crowded titles on paper", str(found))
     browser.run("window.dispatchEvent(new Event('afterprint'))")

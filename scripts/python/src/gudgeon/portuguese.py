@@ -572,6 +572,7 @@ TEXTS = {
     "{}: error up to {} ms against cost; larger markers: higher max_order": "{}: erro até {} ms pelo custo; marcas maiores: max_order maior",
     # certificates and settled cycles on the page of a run
     "The run is certified up to {}: beyond, shaded in the plots, single values are not reliable. How far results of the whole run are is in the summary (..._difference).": "A simulação está certificada até {}: além disso, sombreado nos gráficos, não se pode confiar em valores isolados. Quanto valem os resultados da simulação inteira está no resumo (..._difference).",
+    "More plots": "Mais gráficos",
     "Settled cycles": "Ciclos em regime",
     "None: {} turns back, so there are no cycles.": "Nenhum: a manivela para ou volta, e não há ciclos.",
     "None: {} rows in a revolution are too few, {} are needed.": "Nenhum: {} linhas por rotação são poucas, {} são necessárias.",

@@ -120,6 +120,10 @@ OF_BEARINGS = (
 #: Units of columns in a trace, and what a page shows: unit and factor.
 UNITS = {"K": ("°C", 1.0), "m": ("µm", 1e6), "N": ("kN", 1e-3), "Pa": ("MPa", 1e-6), "kg/s": ("g/s", 1e3), "Pa.s": ("mPa s", 1e3), "N.m": ("N m", 1.0)}
 
+#: Plots that a page shows at once, if the run has them, and prints: by their first column, and how many over time. The others are folded.
+MAIN = re.compile(r"(\w+_)?(film_thickness|normal_force)|pin_force|crank_speed|piston_acceleration|crank_moment|guide_force|gas_force|cylinder_volume")
+MOST_MAIN = 6
+
 #: Plots in which the run of the ideal joint has a plot of its own, because the quantity is a property of that run.
 APART = ("energy_residual",)
 
@@ -427,6 +431,10 @@ def scene_of(
             if name in columns and name != "time":
                 columns[f"ideal {name}"] = np.interp(run["time"], ideal["time"], values)
     drawn = [plot for plot in plots(columns, run) if shown(plot)]
+    main = [plot for plot in drawn if MAIN.fullmatch(plot["curves"][0]["y" if plot["timed"] else "x"])]
+    timed_ones = [plot for plot in main if plot["timed"]][:MOST_MAIN]
+    for plot in drawn:
+        plot["main"] = plot in timed_ones or plot in main and not plot["timed"]
     for plot in drawn:
         plot |= {part: say(plot[part]) for part in ("title", "x", "y")}
         for curve in plot["curves"]:

@@ -122,7 +122,7 @@
   async function drawPlot(plot) {
     const div = document.createElement("div");
     if (plot.square) div.className = "square";
-    byId(plot.square ? "planes" : "plots").append(div);
+    document.querySelector(`${plot.main ? "" : "#more-plots "}.${plot.square ? "planes" : "plots"}`).append(div);
     const phase = plot.phase ? column[plot.phase] : null;
     const data = plot.curves.flatMap((curve) => {
       const trace = (name, colour, keep) => ({ type: "scatter", mode: "lines", name, meta: colour, x: values(curve, "x"),
@@ -141,7 +141,7 @@
       xaxis: { title: { text: plot.x }, zeroline: false },
       yaxis: { title: { text: plot.y }, zeroline: true, scaleanchor: plot.circle ? "x" : undefined },
     }, { responsive: true, displaylogo: false, displayModeBar: !narrow() && "hover", modeBarButtons: [["toImage", "zoom2d", "pan2d", "resetScale2d"]] });
-    charts.push({ div, timed: plot.timed, curves: plot.curves });
+    charts.push({ div, timed: plot.timed, main: plot.main, curves: plot.curves });
     if (plot.timed) {
       div.on("plotly_relayout", (change) => linkZoom(div, change));
       div.on("plotly_click", (event) => { controls.play(false); const [first, last] = shownRows(); seek(fromFold(Array.from(time.subarray(first, last)), fold())[event.points[0].pointNumber]); });
@@ -167,10 +167,12 @@
     byId("last-cycle").checked = true;
     await changeAbscissa();
   }
+  byId("more-plots").hidden = scene.plots.every((plot) => plot.main);
+  byId("more-plots").addEventListener("toggle", (event) => { if (event.target.open) charts.forEach((c) => { if (!c.main) Plotly.Plots.resize(c.div); }); });
   // on paper colours are light, and two charts stand beside each other
   const onPaper = (on) => {
     document.documentElement.classList.toggle("on-paper", on);
-    recolour((c) => ({ ...framed(c, on), ...(on ? { width: c.timed ? 340 : 330, height: c.timed ? 210 : 330 } : { width: null, height: null, autosize: true }) }));
+    recolour((c) => ({ ...framed(c, on), ...(on ? { width: 340, height: c.timed || c.main ? 210 : 330 } : { width: null, height: null, autosize: true }) }));
   };
   window.addEventListener("beforeprint", () => onPaper(true));
   window.addEventListener("afterprint", () => onPaper(false));
