@@ -54,6 +54,7 @@ from gudgeon.results import (
     drawable,
     load_run,
     located,
+    parse_case,
     read_case,
 )
 from matplotlib.figure import Figure as Drawing
@@ -1831,9 +1832,9 @@ class Page(unittest.TestCase):
             head = text.split("<script", 1)[0].replace("<wbr>", "")
             self.assertNotIn("[[", head)
             self.assertNotIn("{{", head)
-            self.assertLess(head.index("<details>"), head.index("<td>contacts"))  # folded; what is of the program is in the last table
-            self.assertLess(head.index("<td>contacts"), head.rindex("<details>"))
-            self.assertGreater(head.index("compiler_options"), head.rindex("<details>"))
+            self.assertLess(head.index('<details id="summary">'), head.index("<td>contacts"))  # folded; what is of the program is in the last table
+            self.assertLess(head.index("<td>contacts"), head.index('<details id="program">'))
+            self.assertGreater(head.index("compiler_options"), head.index('<details id="program">'))
         self.assertIn('<html lang="pt">', said)
         self.assertIn("pino do pistão no mancal", said)
         self.assertNotIn("piston pin in its bearing", said.split("<script", 1)[0])
@@ -1844,6 +1845,20 @@ class Page(unittest.TestCase):
             portuguese.say(text)
         self.assertEqual(portuguese.unknown, set())
         self.assertGreater(len(report_page.script_words("drawing", "page", "explore")), 15)
+
+    def test_the_case_has_what_differs_from_its_defaults_in_units_of_engineers(self) -> None:
+        units: dict[str, str] = {}
+        case = parse_case("&mechanism\n  crank_length = 0.045  ! m\n  crank_com = 0.0, 0.0  ! m\n  gravity = 9.80665  ! m/s^2\n/\n&drive\n  torque_table = ''\n/\n"
+                          "&lubrication\n  place = 'crank_pin'\n  temperature = 383.15  ! K\n  report = .false.\n/\n&initial\n  crank_speed = 314.159265358979  ! rad/s\n"
+                          "  crank_angle_deg = -20.0  ! degrees\n/\n&combustion\n  cycle = 'four_stroke'\n  intake_pressure = 190000.0  ! Pa\n/\n", units)
+        made = Run("a", pd.DataFrame({"time": [0.0]}), {}, pd.DataFrame(), {}, case, units)
+        known = {"mechanism.gravity": 9.80665, "mechanism.crank_com": 0.0, "combustion.cycle": "four_stroke", "drive.torque_table": "", "crank_pin.lubrication.report": False}
+        of_engine = [("mechanism", [("crank_length", "45 mm")]), ("crank_pin.lubrication", [("temperature", "110 °C")]),
+                     ("initial", [("crank_speed", "3000 rpm"), ("crank_angle_deg", "−20°")]), ("combustion", [("intake_pressure", "1.9 bar")])]
+        self.assertEqual(report_page.case_rows(made, known), of_engine)
+        of_engine[0][1].append(("gravity", "9.80665 m/s²"))   # without the library, which knows the defaults
+        of_engine[3][1].insert(0, ("cycle", "four_stroke"))
+        self.assertEqual(report_page.case_rows(made, None), of_engine)
 
     def test_packing_depends_on_the_data_only(self) -> None:
         self.assertEqual(report_page.packed(b"abc"), report_page.packed(b"abc"))

@@ -192,6 +192,13 @@ def check_page(browser: Browser, page: Path, checks: Assertions, pictures: Path 
     checks.check(browser.wait("window.gudgeon && window.gudgeon.ready"), f"{name}: becomes ready")
     checks.check(browser.run("return document.getElementById('failure').hidden"), f"{name}: shows no error message")
     checks.check(browser.run("return [...document.querySelectorAll('details')].every(d => !d.open) && document.querySelectorAll('#plots > div').length <= 6"), f"{name}: details are folded")
+    lost = browser.run("return [...document.querySelectorAll('#contents a')].filter(a => !document.querySelector(a.hash)).map(a => a.hash)")
+    checks.check(not lost and browser.run("return document.querySelectorAll('#contents a').length") >= 6, f"{name}: links of the contents lead to {lost}")
+    browser.run("document.querySelector('#contents a[href=\"#case\"]').click()")
+    checks.check(browser.run("return document.getElementById('case').open") and browser.wait("Math.abs(document.getElementById('contents').getBoundingClientRect().top) < 1 && window.scrollY > 100", 10),
+                 f"{name}: a link unfolds its part, and the contents stay in view")
+    rows = browser.run("const t = [...document.querySelectorAll('#case td:nth-child(2)')].map(d => d.textContent); document.getElementById('case').open = false; window.scrollTo(0, 0); return t")
+    checks.check(len(rows) > 4 and "" not in rows and "0" not in rows and any(row.endswith("rpm") for row in rows) and any(row.endswith(" mm") for row in rows), f"{name}: keys of the case: {rows}")
     checks.check(browser.printed() <= 2, f"{name}: takes two sheets of A4, not {browser.printed()}")
     browser.run("document.querySelectorAll('details').forEach(d => { d.open = true; })")
     checks.check(browser.printed() > 2, f"{name}: unfolded details are printed")
@@ -332,14 +339,14 @@ return {paper: light(paper), charts: all('#plots .main-svg:first-of-type, .plane
 
 
 #: Charts whose title is cut at their edge or covered by the legend or a tool bar, which is not there on paper.
-CROWDED = """return gudgeon.charts.filter(c => { const box = s => c.div.querySelector(s)?.getBoundingClientRect(), title = box('.gtitle'), legend = box('.legend'),
+CROWDED = """document.getElementById('more-plots').open = true; return gudgeon.charts.filter(c => { const box = s => c.div.querySelector(s)?.getBoundingClientRect(), title = box('.gtitle'), legend = box('.legend'),
   bar = box(arguments[0]); return title.right > box('.main-svg').right || (legend && legend.height && legend.top < title.bottom - 2) || (bar && bar.left < title.right); })
   .map(c => c.div.layout.title.text)"""
 
 #: Widths of the views, of their first row and of its place; texts in tables that are cut; names that a line break parts from their colour.
 FITS = """const all = (q) => [...document.querySelectorAll(q)];
 const views = all('#views canvas').filter(c => c.clientWidth), first = views.filter(c => c.offsetTop === views[0].offsetTop);
-return {width: document.getElementById('views').clientWidth, row: first.map(c => c.clientWidth).reduce((a, b) => a + b), views: all('#views canvas').map(c => c.clientWidth).filter(w => w), cut: all('#answers table, #losses table').filter(t => t.scrollWidth > t.clientWidth).map(t => t.textContent),
+return {page: document.body.clientWidth, width: document.getElementById('views').clientWidth, row: first.map(c => c.clientWidth).reduce((a, b) => a + b), views: all('#views canvas').map(c => c.clientWidth).filter(w => w), cut: all('#answers table, #losses table').filter(t => t.scrollWidth > t.clientWidth).map(t => t.textContent),
   parted: all('.key').filter(k => k.getClientRects().length > 1).map(k => k.textContent)};"""
 
 
@@ -356,7 +363,7 @@ return found;"""
 
 def check_screens(browser: Browser, page: Path, checks: Assertions, pictures: Path | None) -> None:
     """The page on screens of all sizes, in the dark and on paper. The least contrasts are those of WCAG 2: 4.5 of a text, 3 of a line."""
-    for wanted in (1400, 800, 400):
+    for wanted in (1400, 1200, 800, 400):
         browser.width_at(wanted)
         browser.open(page)
         browser.wait("window.gudgeon && window.gudgeon.ready")
@@ -365,6 +372,10 @@ def check_screens(browser: Browser, page: Path, checks: Assertions, pictures: Pa
         checks.check(not fits["cut"] and not fits["parted"], f"{page.stem}: cut or parted texts", f"{wanted}: {fits}")
         checks.check(min(fits["views"]) >= 150 and fits["row"] > 0.75 * fits["width"], f"{page.stem}: views fill their rows", f"{wanted}: {fits}")
         checks.check(not (found := browser.run(CROWDED, '.modebar-group')), f"{page.stem}: crowded titles", f"{wanted}: {found}")
+        wide = browser.run("const d = document.getElementById('cycles'); d.open = true; const a = [...d.querySelectorAll('.pictures img')].map(i => i.offsetWidth); d.open = false; return a")
+        checks.check(not wide or sum(wide) > 0.85 * fits["page"], f"{page.stem}: pictures of settled cycles take {wide} of {fits['page']} at {wanted}")
+        alone = browser.run("return document.body.matches('.unmagnified') && [...document.querySelectorAll('#mechanism, #engine, #timeline')].filter(c => c.clientWidth).map(c => c.clientWidth)")
+        checks.check(not alone or wanted < 600 or alone[0] < 300, f"{page.stem}: a mechanism without other views has no empty panel: {alone} at {wanted}")
         for table in browser.run(UNFOLDED):
             checks.check((table["rows"] < 10 or table["height"] < 35) and not table["broken"] and not table["outside"], f"{page.stem}: values of folded tables stand on one line, within the page", f"{wanted}: {table}")
         if pictures:
@@ -563,7 +574,7 @@ def main() -> int:
         try:
             for page in pages:
                 check_page(browser, page, checks, options.screenshots)
-            for page in pages[-2:] + [page for page in pages[:-2] if page.stem == "inline_four_bearings"]:
+            for page in [page for page in pages if options.page or page.stem in ("ideal", "piston", "car_diesel", "six_mwm", "inline_four_bearings")]:
                 check_screens(browser, page, checks, options.screenshots)
         finally:
             browser.close()

@@ -572,6 +572,11 @@ TEXTS = {
     "{}: error up to {} ms against cost; larger markers: higher max_order": "{}: erro até {} ms pelo custo; marcas maiores: max_order maior",
     # certificates and settled cycles on the page of a run
     "The run is certified up to {}: beyond, shaded in the plots, single values are not reliable. How far results of the whole run are is in the summary (..._difference).": "A simulação está certificada até {}: além disso, sombreado nos gráficos, não se pode confiar em valores isolados. Quanto valem os resultados da simulação inteira está no resumo (..._difference).",
+    "Keys that have their defaults are left out.": "As chaves que têm o valor padrão não aparecem.",
+    "Keys that are empty, 0 or no are left out.": "As chaves vazias, 0 ou não não aparecem.",
+    "Answers": "Resultados",
+    "Losses": "Perdas",
+    "Motion": "Movimento",
     "More plots": "Mais gráficos",
     "Settled cycles": "Ciclos em regime",
     "None: {} turns back, so there are no cycles.": "Nenhum: a manivela para ou volta, e não há ciclos.",

@@ -29,6 +29,7 @@ class Run:
     events: pd.DataFrame
     summary: dict[str, tuple[str, str]] = field(default_factory=dict)
     case: dict[str, dict[str, object]] = field(default_factory=dict)
+    case_units: dict[str, str] = field(default_factory=dict)  # of keys of the case, "group.key"
 
     def __getitem__(self, column: str) -> np.ndarray:
         if column not in self:
@@ -154,8 +155,9 @@ def read_case(path: Path) -> dict[str, dict[str, object]]:
     return parse_case(path.read_text(encoding="utf-8"))
 
 
-def parse_case(text: str) -> dict[str, dict[str, object]]:
-    """Reads a resolved case as the program writes it: group -> key -> number, list of numbers, logical or text.
+def parse_case(text: str, units: dict[str, str] | None = None) -> dict[str, dict[str, object]]:
+    """Reads a resolved case as the program writes it: group -> key -> number, list of numbers, logical or text. `units` takes the units
+    behind them, by "group.key".
 
     A group that belongs to one joint has a prefix, as in crank_pin.joint; the first key of the group names the joint. Groups that may
     be repeated have numbers, as in cylinder_3."""
@@ -176,6 +178,8 @@ def parse_case(text: str) -> dict[str, dict[str, object]]:
                 case.setdefault(name, {})
             else:
                 case[name][key] = value
+                if units is not None and (unit := re.search(r"  ! ([^']+)$", line)):
+                    units[f"{name}.{key}"] = unit[1]
     return case
 
 
@@ -215,16 +219,18 @@ def load_run(path: Path) -> Run:
     if beside(".events.csv").exists() and not ideal:
         events = events_of("piston_pin", read_table(beside(".events.csv"))[0])
     summary = read_summary(beside(".summary.csv")) if beside(".summary.csv").exists() and not ideal else {}
-    case = read_case(beside(".resolved.nml")) if beside(".resolved.nml").exists() else {}
-    return Run(name, trace, units, events, summary, case)
+    of_keys: dict[str, str] = {}
+    case = parse_case(beside(".resolved.nml").read_text(encoding="utf-8"), of_keys) if beside(".resolved.nml").exists() else {}
+    return Run(name, trace, units, events, summary, case, of_keys)
 
 
 def drawable(run: Any) -> Run:
     """A run of `gudgeon.Case.run` or `gudgeon.load`, as pictures and pages need it."""
     summary = {name: (str(value), run.summary.units[name]) for name, value in run.summary.items()}
     text = run._resolved or (run.case.to_nml(complete=True) if run.case is not None else "")
-    case = parse_case(text)
-    return Run(run.name, run.to_pandas(), run.units, events_of("piston_pin", run.events), summary, case)
+    of_keys: dict[str, str] = {}
+    case = parse_case(text, of_keys)
+    return Run(run.name, run.to_pandas(), run.units, events_of("piston_pin", run.events), summary, case, of_keys)
 
 
 def case_files() -> dict[str, Path]:

@@ -55,8 +55,10 @@ def section(run: Run, wanted: list[str] | None = None, language: Language | None
     return "".join(
         (
             paragraph(language.say(text)),
+            '<div class="pictures">',
             picture(cycle_pictures.draw_means(cycles, columns), means, language),
             picture(cycle_pictures.draw_orders(cycles, columns, HIGHEST), by_order, language),
+            "</div>",
             table(strongest(cycles, columns), "Strongest orders (amplitude; order 0: mean)", language),
             table(done, "Work in the last cycle", language) if len(done := readable_work(work(run))) else "",
         )

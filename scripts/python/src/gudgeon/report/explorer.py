@@ -66,15 +66,15 @@ class Superseded(Exception):
     """The page has asked for something newer."""
 
 
-def shown_unit(key: Key, value: float) -> tuple[str, float, float]:
-    """Unit in which the page shows a value of this size, and factor and offset to it."""
+def shown_unit(of_key: str, value: float) -> tuple[str, float, float]:
+    """Unit in which pages show a value of this size and unit of a key, and factor and offset to it."""
     from gudgeon.names import plain_unit
 
-    if key.unit == "m":
+    if of_key == "m":
         return ("µm", 1e6, 0.0) if abs(value) < 5e-4 else ("mm", 1e3, 0.0)
-    if key.unit == "Pa":
+    if of_key == "Pa":
         return ("bar", 1e-5, 0.0) if abs(value) < 1e7 else ("MPa", 1e-6, 0.0)
-    return SHOWN.get(key.unit, (plain_unit(key.unit), 1.0, 0.0))
+    return SHOWN.get(of_key, (plain_unit(of_key), 1.0, 0.0))
 
 
 def slider_range(key: Key, value: float) -> tuple[float, float]:
@@ -145,7 +145,7 @@ class Explorer:
         if key.kind not in ("real", "integer") or key.count > 1:
             return None
         low, high = slider_range(key, value)
-        unit, factor, offset = shown_unit(key, value or high)
+        unit, factor, offset = shown_unit(key.unit, value or high)
         return about | {"low": low, "high": high, "log": low > 0 and high / low > 20, "unit": unit, "factor": factor, "offset": offset}
 
     def controls(self, values: Mapping[str, Any] = {}, more: Iterable[str] = ()) -> list[dict[str, Any]]:

@@ -120,6 +120,10 @@ OF_BEARINGS = (
 #: Units of columns in a trace, and what a page shows: unit and factor.
 UNITS = {"K": ("°C", 1.0), "m": ("µm", 1e6), "N": ("kN", 1e-3), "Pa": ("MPa", 1e-6), "kg/s": ("g/s", 1e3), "Pa.s": ("mPa s", 1e3), "N.m": ("N m", 1.0)}
 
+#: Parts of a page that its line of contents leads to, if the run has them: what they are called.
+CONTENTS = (("answers", "Answers"), ("losses", "Losses"), ("motion", "Motion"), ("curves", "Plots"), ("more-plots", "More plots"), ("wear", "Wear"),
+            ("cycles", "Settled cycles"), ("summary", "Summary"), ("case", "Case"), ("program", "Program"))
+
 #: Plots that a page shows at once, if the run has them, and prints: by their first column, and how many over time. The others are folded.
 MAIN = re.compile(r"(\w+_)?(film_thickness|normal_force)|pin_force|crank_speed|piston_acceleration|crank_moment|guide_force|gas_force|cylinder_volume")
 MOST_MAIN = 6
@@ -331,12 +335,45 @@ def rows_html(rows: list[tuple[str, ...]], heading: str = "") -> str:
     return head + "".join(cells)
 
 
-def shown(value: object) -> str:
+def shown(value: object, unit: str = "") -> str:
+    """A value of a case, in the unit that an engineer writes."""
+    from gudgeon.report.explorer import shown_unit
+
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if isinstance(value, float):
-        return f"{value:.10g}"
-    return ", ".join(shown(item) for item in value) if isinstance(value, list) else str(value)
+    numbers = value if isinstance(value, list) else [value]
+    if not all(isinstance(one, float) for one in numbers):
+        return str(value)
+    said, factor, offset = shown_unit(unit, max(map(abs, numbers), default=0.0))
+    return f"{', '.join(f'{one * factor + offset:.6g}' for one in numbers)} {said}".replace("-", "−").replace(" °", "°" if said == "°" else " °").strip()
+
+
+def defaults() -> dict[str, object] | None:
+    """The defaults of all keys of cases, by "group.key"; None where the library of the program is not there, which knows them."""
+    from gudgeon._keys import keys
+    from gudgeon._library import LibraryMissing
+    from gudgeon.results import parse_case
+
+    try:
+        known = {name: key for name, key in keys.items() if not key.required}
+    except LibraryMissing:
+        return None
+    words = {name: f"'{key.default}'" if key.kind in ("word", "text") else key.default for name, key in known.items()}
+    return {name: parse_case(f"&a\nx = {text}")["a"]["x"] for name, text in words.items()}
+
+
+def case_rows(run: Run, known: Mapping[str, object] | None) -> list[tuple[str, list[tuple[str, str]]]]:
+    """The groups of a case with those keys that differ from their `known` defaults, or without these from nothing, no and 0."""
+
+    def is_default(name: str, value: object) -> bool:
+        parts = value if isinstance(value, list) else [value]
+        if known is None:
+            return not any(parts)
+        return name in known and all(part == known[name] for part in parts)
+
+    groups = ((group, [(key, shown(value, run.case_units.get(f"{group}.{key}", ""))) for key, value in keys.items() if not is_default(f"{group}.{key}", value)])
+              for group, keys in run.case.items())
+    return [(group, rows) for group, rows in groups if rows]
 
 
 def summary_number(text: str) -> str:
@@ -530,9 +567,9 @@ def page(
     scene, data = scene_of(run, ideal, fields, language)
     scene |= spoken(language, "drawing", "page")
     said = [*(say(text) for text in warnings(run)), *notes(run)]
-    case = "".join(
-        rows_html([(key, shown(value)) for key, value in keys.items()], f"&{group}") for group, keys in run.case.items()
-    )
+    known = defaults()
+    left_out = say("Keys that have their defaults are left out." if known is not None else "Keys that are empty, 0 or no are left out.")
+    case = "".join(rows_html([(key, language.number(text)) for key, text in rows], f"&{group}") for group, rows in case_rows(run, known))
 
     def summary(of_program: bool) -> str:
         return rows_html(
@@ -563,7 +600,7 @@ def page(
         "cycles": report_cycles.section(run, cycle_columns, language),
         "summary": f"<div><table>{summary(False)}</table></div>",
         "program": f"<div><table>{summary(True)}</table></div>",
-        "case": f"<div><table>{case}</table></div>",
+        "case": f'<p class="hint">{html.escape(left_out)}</p><div><table>{case}</table></div>',
         "footer": html.escape(
             f"gudgeon {run.summary.get('version', ('', ''))[0]}. "
             + say(
@@ -574,6 +611,8 @@ def page(
         **{name: packed(content) if content else "" for name, content in data.items()},
         "library": base64.b64encode(LIBRARY.read_bytes()).decode("ascii"),
     }
+    there = "".join(parts.values()) + text_of("page.html", language)
+    parts["contents"] = " ".join(f'<a href="#{name}">{html.escape(say(said))}</a>' for name, said in CONTENTS if f'id="{name}"' in there)
     return filled(text_of("page.html", language), parts)
 
 

@@ -108,11 +108,18 @@
   const theme = () => ({ layout: { paper_bgcolor: COLOUR.paper, plot_bgcolor: COLOUR.paper, font: { color: COLOUR.ink }, shapedefaults: { line: { color: COLOUR.ink } },
     modebar: { color: COLOUR.grey, activecolor: COLOUR.ink, bgcolor: COLOUR.paper }, hoverlabel: { bgcolor: COLOUR.soft, font: { color: COLOUR.ink } },
     xaxis: { gridcolor: COLOUR.line, zerolinecolor: COLOUR.grey }, yaxis: { gridcolor: COLOUR.line, zerolinecolor: COLOUR.grey } } });
-  // Title and margins of a chart: on a phone and on paper long titles begin at its edge, and a legend may take two lines.
+  // Title and margins of a chart `width` wide: a title has the size that fits beside the tool bar, which is not there on a phone and on
+  // paper, where it begins at the edge of the chart; a legend may take two lines.
   const narrow = (onPaper = false) => onPaper || window.matchMedia("(max-width: 600px)").matches;
-  const frameFor = (isNarrow, curves, text) => (!isNarrow ? { title: { font: { size: 14 }, xref: "paper" }, margin: { l: 70, r: 15, t: curves > 1 ? 54 : 40, b: 45 } }
-    : { title: { font: { size: Math.max(9, Math.min(12, Math.floor(560 / text.length))) }, xref: "container" }, margin: { l: 55, r: 12, t: curves > 2 ? 70 : curves > 1 ? 54 : 40, b: 45 } });
-  const framed = (c, onPaper) => { const { title, margin } = frameFor(narrow(onPaper), c.div.data.length, c.div.layout.title.text); return { "title.font.size": title.font.size, "title.xref": title.xref, margin }; };
+  const frameFor = (isNarrow, curves, text, width) => {
+    const size = Math.max(9, Math.min(isNarrow ? 12 : 14, Math.floor((width - (isNarrow ? 10 : 190)) / (0.58 * text.length))));
+    return !isNarrow ? { title: { font: { size }, xref: "paper" }, margin: { l: 70, r: 15, t: curves > 1 ? 54 : 40, b: 45 } }
+      : { title: { font: { size }, xref: "container" }, margin: { l: 55, r: 12, t: curves > 2 ? 70 : curves > 1 ? 54 : 40, b: 45 } };
+  };
+  const framed = (c, onPaper) => {
+    const { title, margin } = frameFor(narrow(onPaper), c.div.data.length, c.div.layout.title.text, onPaper ? 340 : c.div.clientWidth);
+    return { "title.font.size": title.font.size, "title.xref": title.xref, margin };
+  };
   function recolour(sizes = () => ({})) {
     readColours();
     draw();
@@ -133,7 +140,7 @@
       return [trace(W("apart"), curve.colour, (i) => phase[i] !== 2), trace(W("in contact"), "purple", touching)];
     });
     const shapes = plot.circle ? [{ type: "circle", x0: -1, x1: 1, y0: -1, y1: 1, line: { width: 1 } }] : plot.timed ? uncertified() : [];
-    const frame = frameFor(narrow(), data.length, plot.title);
+    const frame = frameFor(narrow(), data.length, plot.title, div.clientWidth || byId("plots").firstChild.clientWidth);
     await Plotly.newPlot(div, data, { template: theme(),
       title: { ...frame.title, text: plot.title, x: 0, xanchor: "left", y: 1, yref: "container", yanchor: "top", pad: { t: 10 } },
       margin: frame.margin, shapes, font: { size: 11 }, separators: spoken.comma ? ",." : ".,", hovermode: plot.timed ? "x" : "closest",
@@ -158,6 +165,10 @@
     await drawPlot(plot);
     await new Promise((done) => setTimeout(done));   // let the page respond between two plots
   }
+  byId("contents").addEventListener("click", (event) => {   // a link to a folded part unfolds it
+    const part = event.target.hash && byId(event.target.hash.slice(1));
+    if (part && part.tagName === "DETAILS") part.open = true;
+  });
   const scrubbed = () => { if (!controls.playing) markPlots(); };
   byId("scrub").addEventListener("change", scrubbed);
   byId("timeline").addEventListener("pointerup", scrubbed);
@@ -167,7 +178,7 @@
     byId("last-cycle").checked = true;
     await changeAbscissa();
   }
-  byId("more-plots").hidden = scene.plots.every((plot) => plot.main);
+  byId("more-plots").hidden = document.querySelector("#contents [href='#more-plots']").hidden = scene.plots.every((plot) => plot.main);
   byId("more-plots").addEventListener("toggle", (event) => { if (event.target.open) charts.forEach((c) => { if (!c.main) Plotly.Plots.resize(c.div); }); });
   // on paper colours are light, and two charts stand beside each other
   const onPaper = (on) => {
