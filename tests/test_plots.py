@@ -490,6 +490,34 @@ class OnePage(unittest.TestCase):
         self.assertEqual(len([axes for axes in drawing.axes if axes.lines]), 2)
         self.fits(drawing)
 
+    def test_a_long_title_a_peak_at_0_and_legends(self) -> None:
+        """Nothing is nearer than 8 mm to the edge, where printers cut; legends are above their plots, the peak of the gas is whole, and the
+        cycle has a gap where its end meets its beginning."""
+        angle = np.radians(np.arange(100, 821, 1.0))
+        columns = {"time": angle / 100, "crank_angle": angle, "film_thickness": 3e-6 + 1e-8 * angle, "crank_pin_film_thickness": 2e-6 + 1e-8 * angle, "pin_force_x": 2e3 * np.cos(angle),
+                   "pin_force_y": 0 * angle, "guide_force": 2e2 * np.sin(angle), "cylinder_pressure": 1e5 + 5e6 * np.exp(-((np.degrees(angle) - 725) / 20) ** 2), "crank_moment": 0 * angle}
+        made = run(columns, {"mechanism": {}, "case": {"title": "One of the longest titles that anybody has ever given to a slider-crank mechanism with clearance"}})
+        made.summary.update({name: (value, "") for name, value in {"cycle_start": str(angle[0] / 100), "cycle_duration": str(4 * np.pi / 100), "cycle_revolutions": "2"}.items()})
+        drawing = short.draw(made, "engine")
+        drawing.draw_without_rendering()
+        mm = drawing.dpi / 25.4
+        box = drawing.get_tightbbox()
+        self.assertGreaterEqual(297 - 25.4 * box.y1, 8)
+        self.assertGreaterEqual(min(25.4 * box.x0, 25.4 * box.y0, 210 - 25.4 * box.x1), 8)
+        drawn = {axes.get_title(loc="left"): axes for axes in drawing.axes if axes.lines}
+        self.assertEqual(list(drawn), ["film thickness [µm]", "force [kN]", "cylinder pressure [bar]"])   # a moment that is always 0 is not drawn
+        for title in list(drawn)[:2]:
+            axes = drawn[title]
+            legend, heading = axes.get_legend().get_window_extent(), axes._left_title.get_window_extent()
+            self.assertGreaterEqual(legend.y0, axes.get_window_extent().y1 - 0.2 * mm)
+            self.assertGreaterEqual(heading.y0, legend.y1 - 0.2 * mm)
+            self.assertLessEqual(legend.x1, axes.get_window_extent().x1 + 2 * mm)
+        line = drawn["cylinder pressure [bar]"].lines[0]
+        self.assertAlmostEqual(line.get_xdata()[np.nanargmax(line.get_ydata())], 5, places=6)
+        self.assertEqual(np.count_nonzero(np.isnan(line.get_xdata())), 1)
+        np.testing.assert_allclose((np.nanmin(line.get_xdata()), np.nanmax(line.get_xdata())), (-360, 359), atol=1e-6)
+        plt.close(drawing)
+
 
 class WithoutLibrary(unittest.TestCase):
     """Results are read where the library of the program is not built, and what needs it says how to build it."""

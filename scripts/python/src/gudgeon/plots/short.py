@@ -20,6 +20,7 @@ from matplotlib.ticker import MultipleLocator
 
 A4 = (8.27, 11.69)  # inch
 LINE, SPACE, LEAST = 0.115, 9.0, 1.2  # heights of a line of 7 points, of all tables and plots, and of a plot at least [inch]
+EDGE, TITLE = 0.4, 0.25  # margin of the paper, in which printers do not print, and height of a line of its title [inch]
 
 #: The plots, of which the first four that the run has are drawn: title with unit, factor, columns.
 PLOTS: tuple[tuple[str, float, tuple[str, ...]], ...] = (
@@ -88,8 +89,12 @@ def draw(run: Run, name: str) -> Drawing:
     drawing = plt.figure(figsize=A4)
     axes = drawing.subplot_mosaic([["case", "machine"], ["bearings", "bearings"], ["numbered", "numbered"], ["losses", "losses"], ["a", "b"], ["c", "d"]],
                                   height_ratios=[1.5, 1.6, 0.1, 0.9, 1.6, 1.6])
-    drawing.get_layout_engine().set(rect=(0.05, 0.03, 0.9, 0.94))
-    drawing.suptitle(language.current.keep(str(run.parameter("case", "title", "")) or name), fontsize=12, fontweight="bold")
+    headline = textwrap.fill(str(run.parameter("case", "title", "")) or name, 68)
+    for line in headline.splitlines():
+        language.current.keep(line)
+    below = 1 - (EDGE + TITLE * (headline.count("\n") + 1)) / A4[1]
+    drawing.get_layout_engine().set(rect=(0.05, 0.035, 0.9, below - 0.035))
+    drawing.suptitle(headline, y=1 - EDGE / A4[1], va="top", fontsize=12, fontweight="bold").set_in_layout(False)
     places, ours, others = lines(run)
     tall = max(write(axes["case"], "Case", (), [(said, [text]) for said, text in case_lines(run)], (0.3, 0.7)),
                write(axes["machine"], "Machine", (), [(said, [text]) for said, text in others], (0.4, 0.6)))
@@ -105,15 +110,18 @@ def draw(run: Run, name: str) -> Drawing:
     losses = 0.2 * draw_losses(axes["losses"], Answers(run)) + 0.1
     left = SPACE - tall - sum(wide) - losses   # what the tables leave
     plots = [0.5 * left] * 2 if left >= 2 * LEAST else [max(left, LEAST), 0.01]
-    axes["case"].get_subplotspec().get_gridspec().set_height_ratios([tall, *wide, losses, *plots])
+    axes["case"].get_subplotspec().get_gridspec().set_height_ratios([max(tall, 0.1), *wide, losses, *plots])
     rows = last_cycle(run)
-    chosen = [(said, factor, found) for said, factor, names in [*thinnest_film(run), *PLOTS] if (found := [one for one in names if one in run or f"{one}_x" in run])]
+    chosen = [(said, factor, found) for said, factor, names in [*thinnest_film(run), *PLOTS]
+              if (found := [one for one in names if (one in run or f"{one}_x" in run) and np.ptp(values_of(run, one)[rows]) > 0])]
     letters = "abcd" if plots[1] >= LEAST else "ab"
     for letter in "cd"[: 4 - len(letters)]:
         axes[letter].remove()
+    for letter in letters[len(chosen):]:
+        axes[letter].axis("off")
     for axis, (said, factor, found) in zip((axes[letter] for letter in letters), chosen):
+        axis.set_title(said, loc="left", pad=16 if len(found) > 1 else None)
         draw_cycle(axis, run, rows, factor, found)
-        axis.set_title(said, loc="left")
     return drawing
 
 
@@ -125,15 +133,17 @@ def thinnest_film(run: Run) -> list[tuple[str, float, tuple[str, ...]]]:
 
 def draw_cycle(axes: Axes, run: Run, rows: np.ndarray, factor: float, columns: Sequence[str]) -> None:
     """Columns over the crank angle of the last cycle."""
-    angle, order = crank_angles(run["crank_angle"][rows] - np.radians(first_angle(run)), run_cycle(run))
-    angle = angle + first_angle(run)
+    begin = first_angle(run)
+    angle, order = crank_angles(run["crank_angle"][rows] - np.radians(begin), run_cycle(run))
+    seam = np.flatnonzero(np.diff(order) < 0) + 1   # where the end of the run meets the beginning of its cycle
     for column, colour in zip(columns, COLOURS):
         place = next((said for pre, said in reversed(PLACES.values()) if column == f"{pre}film_thickness"), column.replace("crankpin", "crank pin").replace("_", " "))
-        axes.plot(angle, factor * values_of(run, column)[rows][order], color=colour, label=place)
+        values = factor * values_of(run, column)[rows][order]
+        axes.plot(np.insert(angle + begin, seam, np.nan), np.insert(values, seam, np.nan), color=colour, label=place)
     axes.set_xlabel("crank angle [deg]")
     axes.xaxis.set_major_locator(MultipleLocator(90 if np.degrees(run_cycle(run)) < 400 else 180))
-    if len(columns) > 1:
-        axes.legend()
+    if len(columns) > 1:   # below the title, where there are no curves
+        axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=len(columns), borderaxespad=0.1, borderpad=0, handlelength=1.4, columnspacing=1.2)
 
 
 def draw_losses(axes: Axes, rows: Answers) -> int:
