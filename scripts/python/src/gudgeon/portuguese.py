@@ -452,7 +452,6 @@ TEXTS = {
     "last cycle alone": "só o último ciclo",
     "time [ms]": "tempo [ms]",
     "Forces on the pins": "Forças nos pinos",
-    "{}, ideal joint": "{}, junta ideal",
     "Piston pin: {}": "Pino do pistão: {}",
     "Small end: {}": "Pé da biela: {}",
     "Crank pin: {}": "Moente: {}",

@@ -235,7 +235,7 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
             colour = colour_of(said) if several else "blue"
             curves.append(timed(name, factor, said if several else "this run", colour))
             if f"ideal {name}" in columns:
-                curves.append(timed(f"ideal {name}", factor, f"{said}, ideal joint" if several else "ideal joint", colour if several else "ink") | {"dash": "dash"})
+                curves.append(timed(f"ideal {name}", factor, "ideal joint", colour if several else "ink") | {"dash": "dash"})
         if curves:
             found.append({"title": title, "x": "time [ms]", "y": unit, "timed": True, "curves": curves})
 

@@ -109,15 +109,16 @@
     modebar: { color: COLOUR.grey, activecolor: COLOUR.ink, bgcolor: COLOUR.paper }, hoverlabel: { bgcolor: COLOUR.soft, font: { color: COLOUR.ink } },
     xaxis: { gridcolor: COLOUR.line, zerolinecolor: COLOUR.grey }, yaxis: { gridcolor: COLOUR.line, zerolinecolor: COLOUR.grey } } });
   // Title and margins of a chart `width` wide: a title has the size that fits beside the tool bar, which is not there on a phone and on
-  // paper, where it begins at the edge of the chart; a legend may take two lines.
+  // paper, where it begins at the edge of the chart; a legend has as many lines as its names need.
   const narrow = (onPaper = false) => onPaper || window.matchMedia("(max-width: 600px)").matches;
-  const frameFor = (isNarrow, curves, text, width) => {
-    const size = Math.max(9, Math.min(isNarrow ? 12 : 14, Math.floor((width - (isNarrow ? 10 : 190)) / (0.58 * text.length))));
-    return !isNarrow ? { title: { font: { size }, xref: "paper" }, margin: { l: 70, r: 15, t: curves > 1 ? 54 : 40, b: 45 } }
-      : { title: { font: { size }, xref: "container" }, margin: { l: 55, r: 12, t: curves > 2 ? 70 : curves > 1 ? 54 : 40, b: 45 } };
+  const frameFor = (isNarrow, names, text, width) => {
+    const size = Math.max(9, Math.min(isNarrow ? 12 : 14, Math.floor((width - (isNarrow ? 10 : 190)) / (0.58 * text.length)))), [l, r] = isNarrow ? [55, 12] : [70, 15];
+    const inRow = Math.max(1, Math.floor((width - l - r) / (6.5 * Math.max(...names.map((name) => name.length)) + 45))), rows = names.length > 1 ? Math.ceil(names.length / inRow) : 0;
+    return { title: { font: { size }, xref: isNarrow ? "container" : "paper" }, margin: { l, r, t: rows ? 38 + 16 * rows : 40, b: 45 } };
   };
+  const named = (data) => [...new Set(data.map(({ name }) => name))];   // what is in the legend, each once
   const framed = (c, onPaper) => {
-    const { title, margin } = frameFor(narrow(onPaper), c.div.data.length, c.div.layout.title.text, onPaper ? 340 : c.div.clientWidth);
+    const { title, margin } = frameFor(narrow(onPaper), named(c.div.data), c.div.layout.title.text, onPaper ? 340 : c.div.clientWidth);
     return { "title.font.size": title.font.size, "title.xref": title.xref, margin };
   };
   function recolour(sizes = () => ({})) {
@@ -139,8 +140,9 @@
       const touching = (i) => phase[i] === 2 || phase[i - 1] === 2 || phase[i + 1] === 2;
       return [trace(W("apart"), curve.colour, (i) => phase[i] !== 2), trace(W("in contact"), "purple", touching)];
     });
+    data.forEach((one, i) => { one.showlegend = data.findIndex(({ name }) => name === one.name) === i; });
     const shapes = plot.circle ? [{ type: "circle", x0: -1, x1: 1, y0: -1, y1: 1, line: { width: 1 } }] : plot.timed ? uncertified() : [];
-    const frame = frameFor(narrow(), data.length, plot.title, div.clientWidth || byId("plots").firstChild.clientWidth);
+    const frame = frameFor(narrow(), named(data), plot.title, div.clientWidth || byId("plots").firstChild.clientWidth);
     await Plotly.newPlot(div, data, { template: theme(),
       title: { ...frame.title, text: plot.title, x: 0, xanchor: "left", y: 1, yref: "container", yanchor: "top", pad: { t: 10 } },
       margin: frame.margin, shapes, font: { size: 11 }, separators: spoken.comma ? ",." : ".,", hovermode: plot.timed ? "x" : "closest",
