@@ -199,6 +199,9 @@ def check_sliders(browser: Browser, checks: Assertions, program: Path) -> None:
             checks.check(browser.wait("document.querySelector('.wrong')") and key.partition(".")[2] in page.failure(), f"{typed} is refused", page.failure())
             checks.check(browser.run("return document.querySelector('.wrong').dataset.key") == key, "its box is marked")
         checks.check(browser.run(CHART) == image, "the last picture stays")
+        said = browser.run(TYPE + FAILURE, key, "5 mm")
+        checks.check(said == "" and browser.run("return !document.querySelector('.wrong')"), "a right value ends the message before its run has ended", said)
+        browser.wait(READY)
         checks.check(page.moved("document.getElementById('reset').click()") and page.failure() == "", "reset returns to the case")
         checks.check(browser.run("return Object.keys(explorer.values).length") == 0, "without any value of its own")
 
@@ -304,12 +307,33 @@ def check_films(browser: Browser, checks: Assertions) -> None:
         checks.check(names and browser.run("return arguments[0].every(name => document.querySelector(`[data-key='${name}']`))", names), "and has those of its own", str(names))
 
 
+def check_many_answers(browser: Browser, checks: Assertions) -> None:
+    """Three bearings on a screen of 1400 x 900: answers and curves are seen together, also beside a kept run; the print has no controls."""
+    with served(Explorer(gudgeon.read(TOP / "cases" / "bearings" / "car_diesel.nml"))) as server:
+        browser.cdp("Emulation.setDeviceMetricsOverride", width=1400, height=900, deviceScaleFactor=1, mobile=False)
+        page = Page(browser, server.address)
+        checks.check(page.settled(60) and len(browser.run(ANSWERS)) >= 18, "answers of three bearings")
+        for kept in (0, 1):
+            ends = browser.run("return [...document.querySelectorAll('#charts figure, #mechanism')].map(e => e.getBoundingClientRect().bottom)")
+            checks.check(len(ends) > 6 and max(ends) <= 900, f"are seen with all curves and the mechanism, {kept} kept", str(ends))
+            browser.run("document.getElementById('keep').click()")
+        browser.cdp("Emulation.setEmulatedMedia", media="print")
+        shown = browser.run("return [...document.querySelectorAll('button, input, select')].filter(e => e.getClientRects().length).map(e => e.id || e.textContent)")
+        checks.check(shown == [] and browser.run("return document.getElementById('answers').getClientRects().length") == 1, "the print has no controls", str(shown))
+        cut = browser.run("return [...document.querySelectorAll('main, #top')].filter(e => e.scrollHeight > e.clientHeight + 1).map(e => e.tagName)")
+        checks.check(cut == [], "and nothing in it is cut", str(cut))
+        browser.cdp("Emulation.setEmulatedMedia", media="")
+        browser.width_at(0)
+
+
 def check_frame_and_language(browser: Browser, checks: Assertions) -> None:
     """In a frame of another port of this machine, as a notebook shows it; in Portuguese."""
     with served(Explorer(gudgeon.template("dry"), language=Language("pt"))) as server:
         page = Page(browser, server.address)
         checks.check(page.settled(), "Portuguese: opens")
         text = browser.run("return document.body.innerText")
+        key = "joint.clearance"
+        checks.check(page.moved(TYPE, key, "14,5 um") and page.failure() == "" and browser.run(f"return explorer.values['{key}']") == 14.5e-6, "Portuguese: a decimal comma with a unit", page.failure())
         checks.check("manter" in text and "reproduzir" in text and server.explorer.language.unknown == set(), "Portuguese texts", str(server.explorer.language.unknown))
         session = gudgeon.template("dry").explore()
 
@@ -419,6 +443,7 @@ def main() -> int:
             check_sliders(browser, checks, (options.program or release_program()).resolve())
             check_drag(browser, checks, options.screenshots)
             check_films(browser, checks)
+            check_many_answers(browser, checks)
             check_frame_and_language(browser, checks)
         finally:
             browser.close()

@@ -3,7 +3,7 @@
   const settings = JSON.parse(byId("settings").textContent), page = Math.random().toString(36).slice(2);
   const MOST_KEPT = 4, RESTS = 350, GIVE_UP = 1000, SAYS = 300;   // ms: of a hand at rest, of a run that a newer one ends, before the clock is shown
   const values = {}, sliders = {};   // values that differ from the case; controls by key
-  let shown = null, drawing = null, controls = null, kept = [], swept = null;   // swept: the slider that was moved last
+  let shown = null, drawing = null, controls = null, kept = [], refused = false, swept = null;   // swept: the slider that was moved last
   Object.assign(spoken, settings);
   readColours();
   const element = (tag, more = {}, ...inside) => { const made = Object.assign(document.createElement(tag), more); made.append(...inside); return made; };
@@ -25,6 +25,7 @@
   let request = 0, flying = null, waiting = null, rest = null, ticking = null;
   async function go(tier) {
     clearTimeout(rest); clearTimeout(waiting);
+    if (refused) { fail(shown && shown.head.failed); mark(); refused = false; }   // that value is gone
     const mine = ++request, began = performance.now();
     flying = { tier, began }; waiting = null;
     clearInterval(ticking);
@@ -51,9 +52,11 @@
   byId("stop").addEventListener("click", () => { clearTimeout(waiting); request++; landed(); asked("/stop", { request }); });
   byId("certify").addEventListener("click", () => go("certify"));
 
+  const mark = (key) => { for (const [name, slider] of Object.entries(sliders)) slider.div.classList.toggle("wrong", name === key); };
   function wrong(head) {   // the last picture stays
     fail(head.error);
-    for (const [name, slider] of Object.entries(sliders)) slider.div.classList.toggle("wrong", name === head.key);
+    mark(head.key);
+    refused = true;
   }
 
   function show({ head, data }) {
@@ -63,7 +66,7 @@
     for (const [name, value] of Object.entries(head.values)) if (name in values && typeof values[name] === "string" && values[name] !== value) { values[name] = value; sliders[name].put(value); }
     shown = { head, scene, column, pressure: bytes("pressure"), oil: bytes("oil"), values: { ...values } };
     fail(head.failed);
-    for (const slider of Object.values(sliders)) slider.div.classList.remove("wrong");
+    mark();
     redraw();
     controls = controls || connectControls(() => drawing, () => {});
     controls.labels();
@@ -87,6 +90,7 @@
       element("button", { type: "button", textContent: W("back"), onclick: () => restore(run.values) }), " ",
       element("button", { type: "button", textContent: "×", ariaLabel: W("remove"), onclick: () => { kept = kept.filter((other) => other !== run); redraw(); } })));
     byId("answers").className = shown.head.draft || shown.head.failed ? "draft" : "";
+    byId("top").classList.toggle("alone", !kept.length);
     byId("answers").replaceChildren(element("tr", {}, element("th"), element("th", { textContent: shown.head.draft ? W("draft") : W("now") }), ...heads),
       ...keys.map((name) => element("tr", { className: "key-row" }, element("td", { textContent: name }), ...runs.map((run) => element("td", { textContent: valueOf(run, name) })))),
       ...Object.keys(of[0]).map((name) => element("tr", {}, element("td", { textContent: name }), ...of.map((one) => element("td", { innerHTML: one[name] || "" })))));
@@ -148,7 +152,8 @@
     const step = cycle ? (cycle.degrees > 360 ? 180 : 90) : 0;
     for (const v of cycle ? Array.from({ length: cycle.degrees / step + 1 }, (_, i) => x0 + i * step) : nice(x0, x1, 5)) g.fillText(local(String(v).replace("-", "−")), X(v), height - 8);
     g.textAlign = "left"; g.fillStyle = COLOUR.ink;
-    g.fillText(plot.timed ? `${plot.title} [${plot.y}]` : `${plot.y}, ${plot.x}`, 46, 13);
+    const title = plot.timed ? `${plot.title} [${plot.y}]` : `${plot.y}, ${plot.x}`;
+    g.fillText(g.measureText(title).width > width - 8 ? title.replace(/ \([^)]*\)/, "") : title, 4, 13, width - 8);
     if (plot.curves.length > 1) {   // names of the bearings, from the right
       let right = width - 14;
       g.strokeStyle = COLOUR.ink; g.font = "10px system-ui, sans-serif";
@@ -216,7 +221,7 @@
       slider.addEventListener("input", () => { const value = at(slider.value / 200); box.value = text(value); swept = { name, at }; set(value); });
       swept = swept || { name, at };
       box.addEventListener("change", () => {
-        const typed = box.value.trim(), found = typed.replace(",", ".").match(/^([-+]?[\d.]+(?:e[-+]?\d+)?)\s*(.*)$/i);
+        const typed = box.value.trim().replace(/^([-+]?\d*),(\d*)(?![\d.,])/, "$1.$2"), found = typed.match(/^([-+]?[\d.]+(?:e[-+]?\d+)?)\s*(.*)$/i);
         const value = found && Number.isFinite(Number(found[1])) && (found[2] === "" || found[2] === unit) ? (Number(found[1]) - offset) / factor : typed;
         put(value);
         set(value);
