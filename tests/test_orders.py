@@ -128,6 +128,13 @@ def runs(folder: Path) -> None:
     shown = [float(part) for part in re.findall(r"\d+\.\d", draw_indicator(settled_cycles).axes[1].get_title())]
     wanted = [340 + 40 * (-np.log(1 - share * (1 - np.exp(-5))) / 5) ** (1 / 3) for share in (0.1, 0.5, 0.9)]   # by Wiebe's function
     check(len(shown) == 3 and np.allclose(shown, wanted, atol=0.3), "the heat beside the indicator diagram of an engine", f"{shown} {wanted}")
+    drawing = draw_indicator(settled_cycles)
+    loop = drawing.axes[0].lines[-1].get_xydata()
+    check(len(loop) > 10 and np.array_equal(loop[0], loop[-1]), "the p-V loop is closed", f"{loop[0]} {loop[-1]}")
+    said = [float(part) for part in re.findall(r"\d+\.?\d*", drawing._suptitle.get_text().partition(": ")[2])]
+    area = 1e5 * abs(np.trapezoid(loop[:, 1], loop[:, 0])) / np.ptp(loop[:, 0])   # mean effective pressure by the drawn loop
+    # the curve has a point for each row of the trace: its area and its peak miss less than a per cent
+    check(len(said) == 2 and abs(1e5 * said[0] / area - 1) < 0.01 and abs(said[1] / loop[:, 1].max() - 1) < 0.01, "its title has IMEP and largest pressure", f"{said} {area}")
     # ideal valves of the compressor of data/gas/air_springs.nml: 1403.144 W at 25 turns a second, in closed form
     machine = {"combustion": {"suction_pressure": 1e5, "discharge_pressure": 5e5}, "working_gas": {"heat_capacity_ratio": 1.4}}
     swept = 0.08 * np.pi / 4 * 0.07**2

@@ -421,6 +421,8 @@ TEXTS = {
     "{}, suction valve hits with {}": "{}, a válvula de sucção bate com {}",
     "{}, discharge valve hits with {}": "{}, a válvula de descarga bate com {}",
     "ideal valves": "válvulas ideais",
+    "{}: the valves take {} W": "{}: as válvulas consomem {} W",
+    "{}: IMEP {} bar, largest pressure {} bar": "{}: PMI {} bar, pressão máxima {} bar",
     "heat shown by the pressure [J]": "calor indicado pela pressão [J]",
     "10, 50, 90 % at {}, {}, {} deg": "10, 50, 90 % a {}, {}, {} graus",
     "Crank speed": "Rotação",

@@ -142,9 +142,9 @@ def draw_indicator(cycles: Cycles) -> Drawing:
     drawing, axes = plt.subplots(1, 1 + heats, figsize=((1 if heats else 0.65) * WIDTH, (0.42 if heats else 0.5) * WIDTH), squeeze=False)
     axis = axes[0, 0]
     volume, pressure = cycles["cylinder_volume"] * 1e6, cycles["cylinder_pressure"] / 1e5
-    for k in range(min(cycles.number, 40)):
-        axis.plot(volume[k], pressure[k], color=GREY, linewidth=0.3)
-    mean_volume, mean_pressure = volume.mean(axis=0), pressure.mean(axis=0)
+    if cycles.number > 1:
+        axis.plot(volume[:40].ravel(), pressure[:40].ravel(), color=GREY, linewidth=0.3)
+    mean_volume, mean_pressure = (np.append(mean, mean[0]) for mean in (volume.mean(axis=0), pressure.mean(axis=0)))
     axis.plot(mean_volume, mean_pressure, color=BLUE)
     if numbered(cycles.run.case, "valve"):   # beyond the pressures of suction and discharge
         for key, beyond in (("suction_pressure", np.less), ("discharge_pressure", np.greater)):
@@ -157,9 +157,16 @@ def draw_indicator(cycles: Cycles) -> Drawing:
         draw_heat(cycles, axes[0, 1])
     axis.set_xlabel(f"{cycles.run.volume} [cm³]")
     axis.set_ylabel("cylinder pressure [bar]")
-    lost = [float(run.summary[name][0]) for name in ("cycle_suction_loss", "cycle_discharge_loss") if name in run.summary]
-    axis.set_title(f"{run.name}: the valves take {sum(lost):.3g} W" if lost else run.name)
+    drawing.suptitle(f"{run.name}: {indicator_finding(run)}".removesuffix(": "))
     return drawing
+
+
+def indicator_finding(run: Run) -> str:
+    """What the summary says of a diagram: the losses of valves, or indicated mean effective and largest pressure."""
+    found = {name: float(run.summary[f"cycle_{name}"][0]) for name in ("suction_loss", "discharge_loss", "imep", "max_cylinder_pressure") if f"cycle_{name}" in run.summary}
+    if lost := [value for name, value in found.items() if name.endswith("_loss")]:
+        return f"the valves take {sum(lost):.3g} W"
+    return f"IMEP {1e-5 * found['imep']:.4g} bar, largest pressure {1e-5 * found['max_cylinder_pressure']:.4g} bar" if len(found) == 2 else ""
 
 
 def draw_heat(cycles: Cycles, axis: Axes) -> None:
