@@ -1390,6 +1390,21 @@ class Portuguese(unittest.TestCase):
             portuguese.say(text)
         self.assertEqual(portuguese.unknown, set())
 
+    def test_names_and_units_need_no_translation(self) -> None:
+        """Units with the prefixes of large and small values; the user's own titles in `gudgeon-plot columns`."""
+        portuguese = language.Language("pt")
+        for unit in names.PREFIXED:
+            for size, _ in names.PREFIXES:
+                portuguese.say(f"[{names.plain_unit(names.prefixed(unit, np.array([1.5 * size]))[0])}/√Hz]")
+        self.assertEqual(portuguese.unknown, set())
+        titled = run({"time": [0.0, 1.0], "crank_angle": [0.0, 6.3], "pin_force": [0.0, 1.0]}, {"case": {"title": "My machine: clearance 0.5 mm"}})
+        self.addCleanup(language.use, "en")
+        portuguese = language.use("pt")
+        drawing = columns.draw([titled], ["pin_force"])
+        portuguese.localise(drawing)
+        self.assertEqual((drawing._suptitle.get_text(), portuguese.unknown), ("My machine: clearance 0.5 mm", set()))
+        plt.close("all")
+
     def test_english_stays_as_it_is(self) -> None:
         english = language.Language()
         self.assertEqual(english.say("crank speed 1.5"), "crank speed 1.5")

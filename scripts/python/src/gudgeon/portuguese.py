@@ -2,11 +2,11 @@
 
 #: Words that are the same, symbols of units, and names.
 UNTRANSLATED = {
-    "rad", "mm", "cm", "cm³", "µs", "µm", "nm", "ms", "kN", "MPa", "GPa", "kPa", "Pa", "mPa", "nJ", "MJ", "bar", "kg", "mJ", "µJ", "kJ", "mN", "µN", "nN", "MN", "µPa", "nPa", "kW", "MW", "mW", "µW", "nW", "mrad", "Hz", "rpm", "deg", "min",
+    "rad", "cm", "cm³", "Pa", "bar", "kg", "mrad", "Hz", "rpm", "deg", "min",
     "II", "III", "IV", "VI", "Pinkus", "Sternlicht", "Neimark", "Sacker", "Hertz", "Lankarani", "Nikravesh", "Flores", "Coulomb", "Ambrosio", "Morris", "Sobol",
     "hertz", "sphere", "johnson", "conformal", "pereira", "winkler", "lankarani", "nikravesh", "hunt", "crossley", "herbert", "mcwhannell",
     "zhiying", "qishao", "gonthier", "flores", "carvalho", "martins", "csv", "sim", "Reynolds", "Lyapunov", "gudgeon", "plotly", "js", "adams", "radau", "auto", "SciPy", "DOP", "Radau", "LSODA", "CVODE", "RADAU", "Adams", "BDF",
-}
+} | {f"{prefix}{unit}" for prefix in "nµmkMG" for unit in ("m", "s", "N", "Pa", "J", "W")}
 
 TEXTS = {
     # members of a mechanism (measure_elastic.py) and integrators (compare_integrators.py)

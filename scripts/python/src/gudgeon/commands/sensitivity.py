@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from gudgeon import sensitivity, study
+from gudgeon import language, sensitivity, study
 from gudgeon.commands import Refused, add_output, save
 from gudgeon.program import release_program
 from gudgeon.results import MissingResult, default_folder
@@ -102,7 +102,7 @@ def report(path: Path, program: Path, options: argparse.Namespace) -> None:
     if options.convergence:
         print_convergence(found, [item for _, parts in results for item in parts])
     print(target)
-    save(sensitivity.draw(found, given.parameters, str(given.settings.get("title", given.name))), options, options.out, given.name)
+    save(sensitivity.draw(found, given.parameters, language.current.keep(str(given.settings.get("title", given.name)))), options, options.out, given.name)
 
 
 def print_table(studies: list[Path], folder: Path) -> None:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import matplotlib.pyplot as plt
 import numpy as np
+from gudgeon import language
 from gudgeon.names import plain_unit, shown_unit
 from gudgeon.plots import style
 from gudgeon.plots.quantity import shade_uncertified
@@ -140,7 +141,7 @@ def title_of(run: Run, columns: Sequence[str]) -> str:
     settled = next((found for column in columns if (found := settled_temperature(run, column)) is not None), None)
     if settled is not None:
         return f"{run.name}: the film settles at {settled:.1f} °C; each jump skips the cycles that warm it"
-    return title
+    return language.current.keep(title)
 
 
 def draw(runs: Sequence[Run], columns: Sequence[str], over: str = "crank_angle", cycle: int | None = None) -> Drawing:
