@@ -42,6 +42,7 @@ from gudgeon.plots import film as film_pictures
 from gudgeon.plots import skirt as skirt_pictures
 from gudgeon.plots.figure_map import read_figures
 from gudgeon.plots.quantities import QUANTITIES, once_a_cycle
+from gudgeon.portuguese import TEXTS
 from gudgeon.program import release_program
 from gudgeon.report import page as report_page
 from gudgeon.results import (
@@ -365,7 +366,7 @@ class ForPapers(unittest.TestCase):
             said = re.findall("<!-- (.*?) -->", text)   # texts of the picture, which are drawn as paths
             self.assertLessEqual({"Run up", "Drehzahl", "[rpm]", "2000", "1000"}, set(said))
             self.assertIn("DejaVuSerif-", text)
-            self.assertLessEqual({"velocidade da manivela", "ângulo da manivela", "tempo [ms]"}, set(re.findall("<!-- (.*?) -->", portuguese)))
+            self.assertLessEqual({"rotação", "ângulo da manivela", "tempo [ms]"}, set(re.findall("<!-- (.*?) -->", portuguese)))
         finally:
             names.speeds_in_rpm(None)
             language.use("en")
@@ -1369,6 +1370,7 @@ class Portuguese(unittest.TestCase):
             ("Pinkus–Sternlicht film, smallest film thickness 4.22 µm", "filme de Pinkus–Sternlicht, filme mínimo 4,22 µm"),
             ("piston velocity\n[m/s]", "velocidade do pistão\n[m/s]"),
             ("$10^{0.5}$", "$10^{0{,}5}$"),
+            ("crank speed\n[rpm]", "rotação\n[rpm]"),
             ("1.75", "1,75"),
         ):
             self.assertEqual(portuguese.say(english), said)
@@ -1389,6 +1391,14 @@ class Portuguese(unittest.TestCase):
         ):
             portuguese.say(text)
         self.assertEqual(portuguese.unknown, set())
+
+    def test_one_word_for_one_part(self) -> None:
+        """The crank pin has one name in Portuguese, in pictures, on pages and in what the program prints."""
+        printed = dict(re.findall(r"^    '((?:[^']|'')*)', '((?:[^']|'')*)'", (TOP / "src/io/portuguese.f90").read_text(encoding="utf-8"), re.MULTILINE))
+        self.assertEqual(printed["crank pin"], "pino da manivela")
+        other_sense = {"speed", "bore"}   # of the animation, of a bearing
+        self.assertEqual([text for text, said in printed.items() if TEXTS.get(text, said) != said and text not in other_sense], [])
+        self.assertEqual([said for said in TEXTS.values() if re.search("moente|cabeça", said, re.IGNORECASE)], [])
 
     def test_names_and_units_need_no_translation(self) -> None:
         """Units with the prefixes of large and small values; the user's own titles in `gudgeon-plot columns`."""
