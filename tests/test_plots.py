@@ -1778,8 +1778,22 @@ class Columns(unittest.TestCase):
         made.summary.update(cycle_min_film_thickness=("1.98e-6", "m"), cycle_min_film_thickness_angle=("359.7", "deg"))
         between = bearing_pictures.orbit(made, "piston_pin", "made")
         self.assertIn("thinnest film 1.98 µm of 10 µm, crank at 359.7°", between.get_suptitle())   # by the summary, as the page has it
+        (word,) = film.texts   # at the dot itself: a mark of a legend inside the axes would be a second one
+        dots = [line for line in film.lines if line.get_marker() == "o"]
+        self.assertEqual((word.get_text(), film.get_legend(), len(dots)), ("thinnest film", None, 1))
+        self.assertEqual(list(word.xy), [float(values[0]) for values in dots[0].get_data()])
+        drawing.canvas.draw()
+        box, curve = word.get_window_extent(), film.transData.transform(film.lines[0].get_xydata())
+        self.assertFalse(((curve > [box.x0, box.y0]) & (curve < [box.x1, box.y1])).all(axis=1).any())
         plt.close(drawing)
         plt.close(between)
+
+    def test_each_bearing_has_a_picture_of_its_own(self) -> None:
+        with tempfile.TemporaryDirectory() as work, contextlib.redirect_stdout(io.StringIO()) as said:
+            subprocess.run([release_program(), "-q", "-o", work, TOP / "cases" / "bearings" / "car_diesel.nml"], check=True)
+            for words in ((), ("--place", "crank_pin"), ("--place", "main_bearing")):
+                self.assertEqual(cli.main(["bearing", f"{work}/car_diesel.csv", *words]), 0)
+        self.assertEqual([Path(path).name for path in said.getvalue().split()], [f"car_diesel_{what}orbit.png" for what in ("", "crank_pin_", "main_bearing_")])
 
     def test_a_missing_column_is_refused(self) -> None:
         with self.assertRaisesRegex(MissingResult, "no column film_thickness"):

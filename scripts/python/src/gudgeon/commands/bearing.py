@@ -2,7 +2,7 @@
 with numbered bearings all of them along the shaft, and their losses.
 
     gudgeon-plot bearing cases/bearings/big_end.nml    its results, or the case is run
-    gudgeon-plot bearing engine --place main_bearing   of results/engine.csv
+    gudgeon-plot bearing engine --place main_bearing   of results/engine.csv: results/engine_main_bearing_orbit.png
     gudgeon-plot bearing cases/cylinders/inline_four_bearings.nml    all bearings of an engine
     gudgeon-plot bearing --shipped -o cases/bearings   the picture that is shipped
 
@@ -38,5 +38,6 @@ def run(options: argparse.Namespace) -> int:
     place = options.place or next((place for place in pictures.PLACES if pictures.has_film(one, place)), "")
     if not place or not pictures.has_film(one, place):
         raise Refused(f"{name}: no film with columns film_force and eccentricity{f' at {place}' if place else ''}")
-    save(pictures.orbit(one, place, name), options, results.path(name).parent, name if options.shipped else f"{name}_orbit")
+    stem = name if options.shipped else f"{name}_{options.place}_orbit" if options.place else f"{name}_orbit"
+    save(pictures.orbit(one, place, name), options, results.path(name).parent, stem)
     return 0

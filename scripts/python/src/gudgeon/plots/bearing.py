@@ -65,8 +65,7 @@ def orbit(run: Run, place: str, name: str) -> Drawing:
     within = (angle + 1e-6) % cycle
     order = np.argsort(within, kind="stable")
     film.plot(within[order], 1e6 * thickness[order], color=BLUE)
-    film.plot(within[thinnest], 1e6 * thickness[thinnest], "o", color=VERMILION, markersize=4, label="thinnest film")
-    film.legend(loc="lower center")
+    mark_least(film, within[order], 1e6 * thickness[order], cycle)
     film.set_xlabel("crank angle [deg]")
     film.set_ylabel("film thickness [µm]")
     film.set_ylim(0)
@@ -78,6 +77,22 @@ def orbit(run: Run, place: str, name: str) -> Drawing:
     words = f"thinnest film {1e6 * least:.3g} µm of {1e6 * clearance:.4g} µm, crank at {then % cycle:.1f}°"
     drawing.suptitle(f"{language.current.keep(name)}: {where}, {words}")
     return drawing
+
+
+def mark_least(axes: Axes, x: np.ndarray, y: np.ndarray, cycle: float) -> None:
+    """A dot at the least value of a curve, and the words "thinnest film" below or above it, where they miss the curve and the axes."""
+    least, wide, high, point = int(np.argmin(y)), 0.36 * cycle, 0.08 * y.max(), 0.009 * y.max()   # of the words; of a point of type
+    places = [(part, away) for away in (-6, 6, 12, 18, 24) for part in (0.5, 1.0, 0.0)]
+
+    def misses(part: float, away: int) -> bool:
+        left, low = x[least] - part * wide, y[least] + away * point - (high if away < 0 else 0)
+        there = y[(x >= left) & (x <= left + wide)]
+        return low > 0 and left >= 0 and left + wide <= cycle and not ((there > low) & (there < low + high)).any()
+
+    part, away = next((place for place in places if misses(*place)), places[1])
+    axes.plot(x[least], y[least], "o", color=VERMILION, markersize=4)
+    axes.annotate("thinnest film", (x[least], y[least]), (0, away), textcoords="offset points", color=VERMILION, fontsize=7,
+                  ha={0.5: "center", 1.0: "right", 0.0: "left"}[part], va="bottom" if away > 0 else "top")
 
 
 def run_cycle(run: Run) -> float:
