@@ -1712,6 +1712,15 @@ class Columns(unittest.TestCase):
             rows = columns.rows_of_cycle(self.run, cycle)
             np.testing.assert_allclose(self.angle[rows][[0, -1]], np.array([first, first + 2]) * np.pi, atol=0.05)
 
+    def test_crank_angles_have_ticks_of_quarter_turns(self) -> None:
+        for turns, step in ((0.25, 30), (1, 90), (2, 90), (3.5, 180), (8, 360), (50, 2880)):
+            for first in (0.0, 28 * np.pi):
+                angle = np.linspace(first, first + 2 * np.pi * turns, 500)
+                drawing = columns.draw([run({"time": angle, "crank_angle": angle, "pin_force": angle})], ["pin_force"])
+                ticks = drawing.axes[0].get_xticks()
+                self.assertEqual((set(np.diff(ticks)), set(ticks % step)), ({step}, {0}), turns)
+                plt.close(drawing)
+
     def test_the_last_cycle_is_that_of_the_summary(self) -> None:
         """Three and a half cycles, of which the last whole one ends with the run: it is counted from 0 degrees."""
         made = replace(self.run, summary={"cycle_start": (str(0.05 * np.pi), "s"), "cycle_duration": (str(0.02 * np.pi), "s")})

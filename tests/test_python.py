@@ -312,7 +312,9 @@ def runs() -> None:
 
     axes = pyplot.figure().gca()
     check(gudgeon.compare(run, run, ax=axes)["largest"].max() == 0 and len(axes.lines) > 20, "a run is not apart from itself")
+    axes = pyplot.figure().gca()
     check(run.plot("pin_force_x", over="crank_angle", cycle=-1, ax=axes) is axes, "columns are drawn")
+    check(set(np.diff(axes.get_xticks())) == {90.0}, "crank angles have a tick each 90 degrees", str(axes.get_xticks()))
     pyplot.close("all")
     dataset = run.to_xarray()
     check(dataset.pin_force_x.attrs["units"] == "N" and float(dataset.crank_angle[5]) == run["crank_angle"][5], "a dataset of xarray")

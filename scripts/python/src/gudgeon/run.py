@@ -279,6 +279,7 @@ class Run:
 
         from .names import plain_unit, prefixed
         from .plots.columns import crank_angles
+        from .plots.style import CrankAngles
 
         run = self if cycle is None else self.cycle(cycle)
         if over == "crank_angle":
@@ -288,6 +289,8 @@ class Run:
             shown, factor = prefixed(self.units[over], run[over])
             x, order, along = factor * run[over], slice(None), _label(over, plain_unit(shown))
         ax = ax or plt.gca()
+        if over == "crank_angle":
+            ax.xaxis.set_major_locator(CrankAngles())
         for name in names:
             shown, factor = prefixed(self.units[name], run[name])
             ax.plot(x, factor * run[name][order], label=_label(name, plain_unit(shown)))

@@ -22,7 +22,6 @@ from gudgeon.plots.style import (
 from gudgeon.results import Run, cycles_turned
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
-from matplotlib.ticker import MultipleLocator
 
 COLOURS = (BLUE, VERMILION, GREEN, BLACK, ORANGE, PURPLE, SKY)
 
@@ -64,8 +63,8 @@ def plot_column(axis: Axes, runs: Sequence[Run], column: str, over: str = "crank
         if alone:
             shade_uncertified(axis, run, x)
             mark_jumps(axis, run, column, x, factor * column_values)
-        if cycle is not None and over != "time":
-            axis.xaxis.set_major_locator(MultipleLocator(90))
+        if over != "time":
+            axis.xaxis.set_major_locator(style.CrankAngles())
     shown = plain_unit(shown)
     axis.set_ylabel(f"{column.replace('_', ' ')}\n[{shown}]" if shown else column.replace("_", " "))
 

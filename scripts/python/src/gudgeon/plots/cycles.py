@@ -5,7 +5,7 @@ import numpy as np
 from gudgeon._heat import heat_release
 from gudgeon.cycles import Cycles, bearing_loads, orders, spectrum
 from gudgeon.names import Shown, plain_unit, shown_unit
-from gudgeon.plots.style import BLACK, BLUE, GREY, ORANGE, VERMILION, WIDTH
+from gudgeon.plots.style import BLACK, BLUE, GREY, ORANGE, VERMILION, WIDTH, CrankAngles
 from gudgeon.results import Run, numbered
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -180,5 +180,6 @@ def draw_heat(cycles: Cycles, axis: Axes) -> None:
     for at in found.angles:
         axis.axvline(at, color=GREY, linewidth=0.5)
     axis.set_xlabel("crank angle [deg]")
+    axis.xaxis.set_major_locator(CrankAngles())
     axis.set_ylabel("heat shown by the pressure [J]")
     axis.set_title(f"10, 50, 90 % at {found.angles[0]:.1f}, {found.angles[1]:.1f}, {found.angles[2]:.1f} deg")

@@ -18,7 +18,7 @@ from matplotlib.collections import Collection, QuadMesh
 from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
-from matplotlib.ticker import FuncFormatter, LogLocator
+from matplotlib.ticker import FuncFormatter, Locator, LogLocator, MaxNLocator
 
 BLACK = "#000000"
 ORANGE = "#E69F00"
@@ -96,6 +96,22 @@ def adapt(drawing: Drawing, title: str | None, words: Iterable[tuple[str, str]],
                 text.set_text(text.get_text().replace(old, new))
     if size:
         drawing.set_size_inches(size)
+
+
+class CrankAngles(Locator):
+    """Ticks of an axis of crank angles [deg]: each 90 degrees, or 180, 360, ... of many turns; each 30, 15, 10, ... of parts of one."""
+
+    def __call__(self) -> np.ndarray:
+        return self.tick_values(*self.axis.get_view_interval())
+
+    def tick_values(self, vmin: float, vmax: float) -> np.ndarray:
+        low, high = sorted((vmin, vmax))
+        if high - low < 180:
+            return MaxNLocator(6, steps=[1, 1.5, 3, 10]).tick_values(low, high)
+        step = 90.0
+        while high - low > 8.5 * step:   # two turns and their margins have nine
+            step *= 2
+        return step * np.arange(np.ceil(low / step), np.floor(high / step) + 1)
 
 
 def mark_decades(axis: Axis) -> None:
