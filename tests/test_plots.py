@@ -58,6 +58,7 @@ from gudgeon.results import (
     parse_case,
     read_case,
 )
+from matplotlib import font_manager
 from matplotlib.figure import Figure as Drawing
 from matplotlib.transforms import Bbox
 
@@ -373,10 +374,37 @@ class ForPapers(unittest.TestCase):
             plt.rcParams.update(before)
 
     def test_refusals(self) -> None:
-        for words, said in ((["--size", "8"], "must be a number >= 1"), (["--font", "No Such Font"], "no such font"), (["--label", "x"], "OLD=NEW")):
+        for words, said in ((["--size", "12"], "12: must be WxH, width and height in cm"), (["--size", "0x5"], "0x5: must be WxH"), (["--font", "No Such Font"], "no such font"), (["--label", "x"], "OLD=NEW")):
             with contextlib.redirect_stderr(io.StringIO()) as message, self.assertRaises(SystemExit):
                 cli.main(["columns", "x.csv", *words])
             self.assertIn(said, message.getvalue())
+
+
+    def test_families_of_fonts(self) -> None:
+        before = dict(plt.rcParams)
+        try:
+            self.assertTrue(style.use_font("serif", 9))
+            with self.assertNoLogs("matplotlib.font_manager"):
+                self.assertIn("Serif", Path(font_manager.findfont(font_manager.FontProperties(family=plt.rcParams["font.family"]))).name)
+        finally:
+            plt.rcParams.update(before)
+
+    def test_words_that_are_not_known(self) -> None:
+        """A command, and columns: what may be meant, what the trace has, and the other columns only where the run has left them out."""
+        with contextlib.redirect_stderr(io.StringIO()) as message:
+            self.assertEqual(cli.main(["reprot", "x"]), 2)
+        self.assertTrue(message.getvalue().endswith("did you mean report?\n"), message.getvalue())
+        few = run({"time": [0.0], "pin_force_x": [1.0]}, {"output": {"columns": "pin_force_x"}})
+        for made, wanted, said in ((few, "pin_fosce_x", "did you mean pin_force_x"), (few, "speed", "&output columns = 'standard' may have it"),
+                                   (run({"time": [0.0], "pin_force_x": [1.0]}), "a", "no column a; it has time, pin_force_x")):
+            with self.assertRaisesRegex(MissingResult, said):
+                made[wanted]
+
+    def test_a_reader_that_stops(self) -> None:
+        """gudgeon-plot --help | head: no traceback."""
+        with subprocess.Popen([sys.executable, "-m", "gudgeon", "--help"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=os.environ | {"PYTHONUNBUFFERED": "1"}) as process:
+            process.stdout.close()
+            self.assertEqual(process.stderr.read(), b"")
 
 
 class WarmFilm(unittest.TestCase):

@@ -43,13 +43,16 @@ def usage() -> str:
 def main(words: list[str] | None = None) -> int:
     """Run one command; returns the exit status."""
     words = sys.argv[1:] if words is None else words
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)   # gudgeon-plot --help | head
     if not words or words[0] in ("-h", "--help"):
         print(usage())
         return 0
     before = next((i for i, word in enumerate(words) if word in WHAT), 0)   # --language pt may stand before WHAT
     what, *rest = words[before], *words[:before], *words[before + 1 :]
     if what not in WHAT:
-        print(f"gudgeon-plot: {what}: must be one of {', '.join(WHAT)}", file=sys.stderr)
+        from gudgeon._library import meant
+
+        print(f"gudgeon-plot: {what}: must be one of {', '.join(WHAT)}{meant(what, list(WHAT))}", file=sys.stderr)
         return 2
     name = f"gudgeon-plot {what}"
     try:
@@ -72,7 +75,6 @@ def run(name: str, what: str, words: list[str]) -> int:
     command.add_arguments(parser)
     language.add_option(parser)
     options = parser.parse_args(words)
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)   # gudgeon-plot figure --list | head
     try:
         status = command.run(options)
     except Refused as problem:

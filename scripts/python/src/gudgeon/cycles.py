@@ -41,7 +41,7 @@ class Cycles:
 
     def __getitem__(self, column: str) -> np.ndarray:
         if column not in self:
-            raise MissingResult(f"{self.run.name}: the trace has no column {column}; a run with &output columns = 'standard' may have it")
+            raise self.run.lack(column)
         return self.values[column]
 
     def __contains__(self, column: str) -> bool:

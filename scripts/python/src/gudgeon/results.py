@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from gudgeon._library import meant
 from gudgeon.program import CHECKOUT, MissingResult, release_program
 
 COLUMN = re.compile(r"^(?P<name>\w+)\[(?P<unit>.*)\]$")
@@ -33,8 +34,15 @@ class Run:
 
     def __getitem__(self, column: str) -> np.ndarray:
         if column not in self:
-            raise MissingResult(f"{self.name}: the trace has no column {column}; a run with &output columns = 'standard' may have it")
+            raise self.lack(column)
         return self.trace[column].to_numpy()
+
+    def lack(self, column: str) -> MissingResult:
+        """The error for a column that the trace does not have: what may be meant, what there is, or how it may be asked for."""
+        there = [*self.trace.columns, *(name[:-2] for name in self.trace.columns if name.endswith("_x"))]
+        wanted = str(self.parameter("output", "columns", "standard"))
+        otherwise = f"it has {', '.join(self.trace.columns)}" if "standard" in wanted else "a run with &output columns = 'standard' may have it"
+        return MissingResult(f"{self.name}: the trace has no column {column}{meant(column, there) or f'; {otherwise}'}")
 
     def __contains__(self, column: str) -> bool:
         return column in self.trace.columns

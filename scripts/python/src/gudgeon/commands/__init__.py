@@ -69,7 +69,10 @@ def _size(text: str) -> tuple[float, float]:
     """Width and height in inches, from centimetres."""
     width, _, height = text.partition("x")
     measure = number(1)
-    return measure(width) / 2.54, measure(height) / 2.54
+    try:
+        return measure(width) / 2.54, measure(height) / 2.54
+    except argparse.ArgumentTypeError:
+        raise argparse.ArgumentTypeError(f"{text}: must be WxH, width and height in cm of at least 1: 8.5x6") from None
 
 
 def _font(text: str) -> str:
@@ -78,7 +81,7 @@ def _font(text: str) -> str:
 
     name, _, size = text.partition(",")
     if not style.use_font(name.strip(), number(1)(size) if size else style.FONT_SIZE):
-        raise argparse.ArgumentTypeError(f"{name}: no such font on this machine")
+        raise argparse.ArgumentTypeError(f"{name}: no such font on this machine; {', '.join(style.FAMILIES)} are always there")
     return text
 
 

@@ -42,6 +42,9 @@ KEPT = ("png", "svg")
 #: parts that are pixels there because others would make the file larger: clouds of points, maps, chaotic traces [dots per inch].
 VECTORS, BYTES, VECTOR_DPI = 80_000, {"point": 23, "mark": 110, "cell": 200}, 120
 
+#: Families of fonts of which matplotlib brings one.
+FAMILIES = ("serif", "sans-serif", "monospace")
+
 #: Size of the letters [points]; those of ticks and legends are smaller by one, titles larger by one.
 FONT_SIZE = 8
 
@@ -79,7 +82,7 @@ mpl.rcParams.update(SETTINGS)
 
 def use_font(name: str, size: float) -> bool:
     """Draw with a font in this size [points] from now on; False if the machine has no such font."""
-    if name not in font_manager.get_font_names():
+    if name not in (*FAMILIES, *font_manager.get_font_names()):
         return False
     sizes = {key: value * size / FONT_SIZE for key, value in SETTINGS.items() if key.endswith(("size", ".titlesize")) and key != "savefig.dpi"}
     mpl.rcParams.update(sizes | {"font.family": name})
