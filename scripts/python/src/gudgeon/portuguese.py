@@ -55,6 +55,7 @@ TEXTS = {
     "{} [{}]": "{} [{}]",
     "Δ {}": "Δ {}",
     "{}, cycle {}": "{}, ciclo {}",
+    "{} to {}": "{} a {}",
     "cycles {} to {}": "ciclos {} a {}",
     "{}, revolutions {} to {}": "{}, rotações {} a {}",
     "Simulation {}: {}": "Simulação {}: {}",
@@ -276,7 +277,7 @@ TEXTS = {
     # the report on one page
     "Case": "Caso",
     "piston pin: film thickness": "pino do pistão: espessura do filme",
-    "Largest drive torque": "Maior torque do acionamento",
+    "Drive torque": "Torque do acionamento",
     "Machine": "Máquina",
     "Stroke": "Curso",
     "Rod": "Biela",

@@ -224,8 +224,8 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
         found.append(("Cylinder pressure", text))
     if text := speed(rows):
         found.append(("Crank speed", text))
-    if text := rows.shown(rows.of("", "cycle_max_drive_torque", "max_drive_torque"), "N m"):
-        found.append(("Largest drive torque", text))
+    if torques := [text for what in ("min", "max") if (text := rows.shown(rows.of("", f"cycle_{what}_drive_torque", f"{what}_drive_torque"), "N m"))]:
+        found.append(("Drive torque", " to ".join(torques)))
     found += shaft(rows)
     gas = [f"{name} {text}" for name, text in (
         ("up to", rows.shown("cycle_max_gas_temperature", "°C", 1, -273.15)), ("to the walls", rows.shown("cycle_heat_to_walls", "J")),
