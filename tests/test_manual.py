@@ -441,6 +441,17 @@ def check_read() -> None:
             browser.wait("document.querySelector('.md-search-result__link')", 20)
             found = browser.run("return document.querySelector('.md-search-result__link').href")
             check("/index.html" in found, "manual: the search for oil flow finds the table of answers first", found)
+            for word, page in (("read_pressure", "python"), ("Excel", "results"), ("joint.clearance", "typical_values"), ("cycle_imep", "results")):   # behind a dot, a bracket
+                browser.open(ROOT / "build/manual/case_file.html")
+                browser.run(SEARCH, word)
+                browser.wait("document.querySelector('.md-search-result__link')", 20)
+                found = browser.run("return [...document.querySelectorAll('.md-search-result__link')].map(e => e.href.split('/').pop())")
+                check(any(link.startswith(f"{page}.html") for link in found), f"manual: the search for {word} finds the page {page}", str(found))
+            for scheme, theme in (("dark", "slate"), ("light", "default")):   # also where the other one was seen before
+                browser.cdp("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+                browser.open(ROOT / "build/manual/index.html")
+                check(browser.wait(f"document.body.dataset.mdColorScheme === '{theme}'", 10), f"manual: a {scheme} system has a {scheme} page", str(browser.run("return document.body.dataset.mdColorScheme")))
+            browser.cdp("Emulation.setEmulatedMedia", features=[])
             browser.open(ROOT / "build/manual/tutorial_laws_pt.html")
             check(browser.run("return document.documentElement.lang") == "pt-BR", "manual: a Portuguese page says so")
             names = browser.run("return [...document.querySelectorAll('.md-nav--primary .md-nav__link')].map(e => e.textContent.trim())")
@@ -449,6 +460,9 @@ def check_read() -> None:
             for page in ("index", "theory", "films", "case_file", "gallery"):
                 browser.open(ROOT / f"build/manual/{page}.html")
                 check((width := browser.width_at(400)) == 400, f"manual, {page}: fits a phone", f"{width} instead of 400")
+                if page in ("index", "gallery"):
+                    cut = browser.run("return [...document.querySelectorAll('.md-content table')].filter(t => t.getBoundingClientRect().right > 400 || t.scrollWidth > t.clientWidth + 1).length")
+                    check(cut == 0, f"manual, {page}: tables are whole on a phone", str(cut))
             browser.width_at(0)
             browser.open(ROOT / "build/manual/api/index.html")
             check(browser.run("return getComputedStyle(document.querySelector('.navbar')).display") == "flex", "manual, api: is styled")

@@ -30,6 +30,7 @@ PRINTED = (   # what a page has outside of code, and how it is printed
     (re.compile(r"(?<=\d )um\b"), "µm"),
     (re.compile(r"(?<!/)\bcm3\b"), "cm³"),
 )
+TABLE, CELL = re.compile(r"<table>.*?</table>", re.DOTALL), re.compile(r"<td>(?=(.*?)</td>)", re.DOTALL)
 MANY = 5   # pages with more pictures read them as they come into view
 UNWRITTEN = {*range(0x1D434, 0x1D468), *range(0x1D6E2, 0x1D71C), 0x210E, 0x221A}   # browsers draw letters of equations by these, and roots
 printed: dict[str, str] = {}   # content of each page
@@ -83,7 +84,22 @@ def on_page_content(text: str, page, **_) -> str:
     text = re.sub(r"(?=</t[dh]>)", " ", text)   # else the index of the search has the words of neighbouring cells as one
     printed[page.file.name] = text
     titles[page.file.name] = page.title
+    if page.file.name in ("index", "gallery"):
+        text = TABLE.sub(labelled, text)
     return text.replace("<img ", '<img loading="lazy" ') if text.count("<img ") > MANY else text
+
+
+def labelled(table: re.Match[str]) -> str:
+    """A table whose cells, but for empty ones, say their column: on phones these are lines instead of cells. The first cell and the second of two
+    need no name."""
+    names = [html.escape(re.sub(r"<[^>]+>", "", head).strip()) + ": " for head in re.findall(r"<th>(.*?)</th>", table[0], re.DOTALL)]
+    heads = itertools.cycle(["", *(names[1:] if len(names) > 2 else [""])])
+
+    def cell(found: re.Match[str]) -> str:
+        head = next(heads)
+        return f'<td data-label="{head}">' if found[1].strip() else found[0]
+
+    return CELL.sub(cell, table[0])
 
 
 def headings(items):
