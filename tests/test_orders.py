@@ -121,6 +121,10 @@ def runs(folder: Path) -> None:
     check("film thickness [µm], strongest orders: " in told.stdout and " bar\n" in told.stdout and "e+0" not in told.stdout, "it prints readable units", told.stdout)
     for kind in ("orders.csv", "work.csv", "cycles.png", "orders.png", "bearings.png", "indicator.png"):
         check((folder / f"sim_IV.{kind}").stat().st_size > 100, f"it writes {kind}")
+    spoken = subprocess.run([*PLOT, "orders", folder / "sim_IV.csv", "--settle", "0", "--language", "pt"], capture_output=True, text=True, check=False)
+    check("1 ciclo\n" in spoken.stdout and re.search(r"amortecimento +−\d+,\d", spoken.stdout) and re.search(r"ordens mais fortes: [\d,]+: [\d,]+;", spoken.stdout)
+          and not re.search(r"\d\.\d", spoken.stdout), "what it prints in Portuguese", spoken.stdout + spoken.stderr)
+    check(pd.read_csv(folder / "sim_IV.work.csv")["work[J]"].dtype == float, "its tables keep decimal points")
     (folder / "sim_IV.indicator.png").unlink()
     told = subprocess.run([*PLOT, "indicator", folder / "sim_IV.csv", "--settle", "0"], capture_output=True, text=True, check=False)
     check(told.returncode == 0 and (folder / "sim_IV.indicator.png").stat().st_size > 100, "gudgeon-plot indicator", told.stderr)

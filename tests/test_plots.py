@@ -646,6 +646,10 @@ class Tables(unittest.TestCase):
             (["base", "--results", "a", "--rows", "nothing"], 1, "gudgeon-plot table: no row nothing"),
             (["base", "--results", "a", "-o", "x.txt"], 1, "x.txt: must end in"),
             (["base", "x.runs.csv"], 2, "stand alone"),
+            (["base", "hot", "--results", "a", "--rows", "pin_swing", "--language", "pt"], 0, "| linha     |     base |              hot |\n"),
+            (["base", "hot", "--results", "a", "--rows", "pin_swing", "--language", "pt"], 0, "| pin_swing | 90,0 deg | 90,0 deg (0,0 %) |"),
+            (["base", "--results", "a", "--language", "pt", "--format", "csv"], 2, "CSV is read by programs"),
+            (["base", "--results", "a", "--language", "pt", "-o", "x.csv"], 2, "CSV is read by programs"),
         ):
             done = subprocess.run([sys.executable, "-m", "gudgeon", "table", *words], cwd=self.work, capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, status, done.stderr)

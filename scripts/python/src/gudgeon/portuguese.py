@@ -603,6 +603,13 @@ TEXTS = {
     "column": "coluna",
     "quantity": "grandeza",
     "strongest {}": "mais forte {}",
+    "strongest orders": "ordens mais fortes",
+    "{}: {} cycle": "{}: {} ciclo",
+    "{}: {} cycles": "{}: {} ciclos",
+    # gudgeon-plot table
+    "row": "linha",
+    "run": "simulação",
+    "done": "terminada",
     "work": "trabalho",
     "mean effective pressure": "pressão média efetiva",
     "gas": "gás",

@@ -11,6 +11,7 @@ equal crank angles. The most accurate input is a run with `&run until = 'periodi
     NAME.orders.csv      each column's amplitude, phase and scatter by order
     NAME.work.csv        work on the bodies in the last whole cycle [J], by its parts, from the summary; with gas also as mean
                          effective pressures [Pa]: work over the swept volume
+    (both tables with decimal points in every --language; what is printed has its words and decimal marks)
     NAME.cycles.png, NAME.orders.png, NAME.bearings.png and, with gas, NAME.indicator.png, as gudgeon-plot indicator
 """
 
@@ -52,14 +53,15 @@ def run(options: argparse.Namespace) -> int:
     pd.concat([table.assign(column=column) for column, table in tables.items()])[
         ["column", "order", "amplitude", "phase_deg", "scatter"]
     ].to_csv(out / f"{name}.orders.csv", index=False)
-    print(f"{name}: {cycles.number} cycles")
+    say, number = language.current.say, language.current.number
+    print(say(f"{name}: {cycles.number} {'cycle' if cycles.number == 1 else 'cycles'}"))
     if len(done):
-        print(readable_work(done).to_string(index=False))
+        print(readable_work(done).map(lambda cell: number(say(str(cell)))).rename(columns=say).to_string(index=False))
     for column, table in tables.items():
         strongest = table[table["order"] > 0].nlargest(4, "amplitude")
         shown = pictures.shown(cycles, column)
-        said = ", ".join(f"{row.order:g}: {figure(shown.factor * row.amplitude)}" for row in strongest.itertuples())
-        print(f"{shown.label}, strongest orders: {said}")
+        said = "; ".join(f"{row.order:g}: {figure(shown.factor * row.amplitude)}" for row in strongest.itertuples())
+        print(f"{say(shown.label)}, {say('strongest orders')}: {number(said)}")
     print(out / f"{name}.work.csv", out / f"{name}.orders.csv")
     save(pictures.draw_means(cycles, columns), options, out, f"{name}.cycles")
     save(pictures.draw_orders(cycles, columns, options.highest), options, out, f"{name}.orders")
