@@ -125,7 +125,8 @@ def cases() -> None:
     refuses(gudgeon.CaseError, "1e-30", lambda: setattr(case.joint, "clearance", math.nan))
     refuses(gudgeon.CaseError, "must be a file in the folder", lambda: case.set({"drive.torque_table": "/etc/passwd"}).check())
     refuses(gudgeon.CaseError, "must be a file in the folder", lambda: case.set({"drive.torque_table": "../x.csv"}).check())
-    refuses(gudgeon.CaseError, "has no folder", lambda: gudgeon.Case.from_text(case_of("drive/motor").to_nml()).check())
+    refuses(gudgeon.CaseError, "has no folder: gudgeon.Case.from_text(text, folder='/')", lambda: gudgeon.Case.from_text(case_of("drive/motor").to_nml()).check())
+    check(gudgeon.Case.from_text(case_of("drive/motor").to_nml(), folder="/").check() is not None, "a case with a table is read back where any folder is allowed")
     with tempfile.TemporaryDirectory() as folder:
         odd = Path(folder) / "odd.nml"
         odd.write_bytes("&joint clearance = 20 µm /".encode("latin-1"))

@@ -26,6 +26,7 @@ class CaseError(ValueError):
     """A case is wrong: the text of the program, a line for each thing. `key` is the first key that the text names, or None."""
 
     def __init__(self, text: str) -> None:
+        text = text.replace("the case has no folder", "the case has no folder: gudgeon.Case.from_text(text, folder='/') reads tables anywhere")
         super().__init__(text)
         self.key = next((name for name in keys if f"&{name.replace('.', ' ')} " in text.replace("(", " ")), None)
 
