@@ -380,6 +380,9 @@ def check_screens(browser: Browser, page: Path, checks: Assertions, pictures: Pa
             checks.check((table["rows"] < 10 or table["height"] < 35) and not table["broken"] and not table["outside"], f"{page.stem}: values of folded tables stand on one line, within the page", f"{wanted}: {table}")
         if pictures:
             browser.screenshot(pictures / f"{page.stem}_{wanted}.png")
+    browser.width_at(1200)   # a window that is made wider has the titles and legends of its width
+    checks.check(browser.wait("gudgeon.charts.filter(c => c.main).every(c => c.div.layout.title.xref === 'paper' && c.div.layout.margin.l === 70)", 10), f"{page.stem}: titles follow the width of the window")
+    checks.check(not (found := browser.run(CROWDED, ".none")), f"{page.stem}: crowded titles of a window that has been resized", str(found))
     browser.width_at(0)
     browser.open(page)
     browser.wait("window.gudgeon && window.gudgeon.ready")

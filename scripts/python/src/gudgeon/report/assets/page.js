@@ -181,7 +181,7 @@
     await changeAbscissa();
   }
   byId("more-plots").hidden = document.querySelector("#contents [href='#more-plots']").hidden = scene.plots.every((plot) => plot.main);
-  byId("more-plots").addEventListener("toggle", (event) => { if (event.target.open) charts.forEach((c) => { if (!c.main) Plotly.Plots.resize(c.div); }); });
+  byId("more-plots").addEventListener("toggle", (event) => { if (event.target.open) charts.forEach(async (c) => { if (!c.main) { await Plotly.Plots.resize(c.div); await Plotly.relayout(c.div, framed(c, false)); } }); });
   // on paper colours are light, and two charts stand beside each other
   const onPaper = (on) => {
     document.documentElement.classList.toggle("on-paper", on);
@@ -189,6 +189,11 @@
   };
   window.addEventListener("beforeprint", () => onPaper(true));
   window.addEventListener("afterprint", () => onPaper(false));
+  let resized = null;
+  window.addEventListener("resize", () => {   // titles and legends follow the width
+    clearTimeout(resized);
+    resized = setTimeout(() => { if (!document.documentElement.classList.contains("on-paper")) charts.forEach((c) => { if (c.div.clientWidth) Plotly.relayout(c.div, framed(c, false)); }); }, 200);
+  });
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { recolour(); markPlots(); });
   byId("last-cycle").addEventListener("change", changeAbscissa);
   window.gudgeon.ready = true;
