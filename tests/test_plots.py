@@ -45,6 +45,7 @@ from gudgeon.plots.quantities import QUANTITIES, once_a_cycle
 from gudgeon.portuguese import TEXTS
 from gudgeon.program import release_program
 from gudgeon.report import page as report_page
+from gudgeon.report.case_rows import case_rows
 from gudgeon.results import (
     FineResults,
     MissingResult,
@@ -1963,10 +1964,10 @@ class Page(unittest.TestCase):
         known = {"mechanism.gravity": 9.80665, "mechanism.crank_com": 0.0, "combustion.cycle": "four_stroke", "drive.torque_table": "", "crank_pin.lubrication.report": False}
         of_engine = [("mechanism", [("crank_length", "45 mm")]), ("crank_pin.lubrication", [("temperature", "110 °C")]),
                      ("initial", [("crank_speed", "3000 rpm"), ("crank_angle_deg", "−20°")]), ("combustion", [("intake_pressure", "1.9 bar")])]
-        self.assertEqual(report_page.case_rows(made, known), of_engine)
+        self.assertEqual(case_rows(made, known), of_engine)
         of_engine[0][1].append(("gravity", "9.80665 m/s²"))   # without the library, which knows the defaults
         of_engine[3][1].insert(0, ("cycle", "four_stroke"))
-        self.assertEqual(report_page.case_rows(made, None), of_engine)
+        self.assertEqual(case_rows(made, None), of_engine)
 
     def test_packing_depends_on_the_data_only(self) -> None:
         self.assertEqual(report_page.packed(b"abc"), report_page.packed(b"abc"))

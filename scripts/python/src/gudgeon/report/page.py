@@ -20,6 +20,7 @@ from gudgeon.plots import film_pressure
 from gudgeon.plots.bearing import last_cycle as rows_of_last_cycle
 from gudgeon.plots.bearing import run_cycle
 from gudgeon.report import answers
+from gudgeon.report.case_rows import case_rows, defaults
 from gudgeon.results import Run, numbered
 
 PAGE = Path(__file__).parent / "assets"
@@ -333,47 +334,6 @@ def rows_html(rows: list[tuple[str, ...]], heading: str = "") -> str:
     cells = ["<tr>" + "".join(map(cell, row)) + "</tr>" for row in rows]
     head = f'<tr><th colspan="3">{html.escape(heading)}</th></tr>' if heading else ""
     return head + "".join(cells)
-
-
-def shown(value: object, unit: str = "") -> str:
-    """A value of a case, in the unit that an engineer writes."""
-    from gudgeon.report.explorer import shown_unit
-
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    numbers = value if isinstance(value, list) else [value]
-    if not all(isinstance(one, float) for one in numbers):
-        return str(value)
-    said, factor, offset = shown_unit(unit, max(map(abs, numbers), default=0.0))
-    return f"{', '.join(f'{one * factor + offset:.6g}' for one in numbers)} {said}".replace("-", "−").replace(" °", "°" if said == "°" else " °").strip()
-
-
-def defaults() -> dict[str, object] | None:
-    """The defaults of all keys of cases, by "group.key"; None where the library of the program is not there, which knows them."""
-    from gudgeon._keys import keys
-    from gudgeon._library import LibraryMissing
-    from gudgeon.results import parse_case
-
-    try:
-        known = {name: key for name, key in keys.items() if not key.required}
-    except LibraryMissing:
-        return None
-    words = {name: f"'{key.default}'" if key.kind in ("word", "text") else key.default for name, key in known.items()}
-    return {name: parse_case(f"&a\nx = {text}")["a"]["x"] for name, text in words.items()}
-
-
-def case_rows(run: Run, known: Mapping[str, object] | None) -> list[tuple[str, list[tuple[str, str]]]]:
-    """The groups of a case with those keys that differ from their `known` defaults, or without these from nothing, no and 0."""
-
-    def is_default(name: str, value: object) -> bool:
-        parts = value if isinstance(value, list) else [value]
-        if known is None:
-            return not any(parts)
-        return name in known and all(part == known[name] for part in parts)
-
-    groups = ((group, [(key, shown(value, run.case_units.get(f"{group}.{key}", ""))) for key, value in keys.items() if not is_default(f"{group}.{key}", value)])
-              for group, keys in run.case.items())
-    return [(group, rows) for group, rows in groups if rows]
 
 
 def summary_number(text: str) -> str:
