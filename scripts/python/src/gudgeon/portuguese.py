@@ -582,6 +582,7 @@ TEXTS = {
     "Answers": "Resultados",
     "Losses": "Perdas",
     "Motion": "Movimento",
+    "Wear": "Desgaste",
     "More plots": "Mais gráficos",
     "Settled cycles": "Ciclos em regime",
     "None: {} turns back, so there are no cycles.": "Nenhum: a manivela para ou volta, e não há ciclos.",

@@ -113,13 +113,13 @@
   const narrow = (onPaper = false) => onPaper || window.matchMedia("(max-width: 600px)").matches;
   const frameFor = (isNarrow, names, text, width) => {
     const size = Math.max(9, Math.min(isNarrow ? 12 : 14, Math.floor((width - (isNarrow ? 10 : 190)) / (0.58 * text.length)))), [l, r] = isNarrow ? [55, 12] : [70, 15];
-    const inRow = Math.max(1, Math.floor((width - l - r) / (6.5 * Math.max(...names.map((name) => name.length)) + 45))), rows = names.length > 1 ? Math.ceil(names.length / inRow) : 0;
-    return { title: { font: { size }, xref: isNarrow ? "container" : "paper" }, margin: { l, r, t: rows ? 38 + 16 * rows : 40, b: 45 } };
+    const inRow = Math.max(1, Math.floor((width - l - r) / ((isNarrow ? 5.6 : 6.5) * Math.max(...names.map((name) => name.length)) + 43))), rows = names.length > 1 ? Math.ceil(names.length / inRow) : 0;
+    return { title: { font: { size }, xref: isNarrow ? "container" : "paper" }, margin: { l, r, t: rows ? 34 + 20 * rows : 40, b: 45 }, letters: isNarrow ? 10 : 11 };
   };
   const named = (data) => [...new Set(data.map(({ name }) => name))];   // what is in the legend, each once
   const framed = (c, onPaper) => {
-    const { title, margin } = frameFor(narrow(onPaper), named(c.div.data), c.div.layout.title.text, onPaper ? 340 : c.div.clientWidth);
-    return { "title.font.size": title.font.size, "title.xref": title.xref, margin };
+    const { title, margin, letters } = frameFor(narrow(onPaper), named(c.div.data), c.div.layout.title.text, onPaper ? 340 : c.div.clientWidth);
+    return { "title.font.size": title.font.size, "title.xref": title.xref, "legend.font.size": letters, margin };
   };
   function recolour(sizes = () => ({})) {
     readColours();
@@ -146,7 +146,7 @@
     await Plotly.newPlot(div, data, { template: theme(),
       title: { ...frame.title, text: plot.title, x: 0, xanchor: "left", y: 1, yref: "container", yanchor: "top", pad: { t: 10 } },
       margin: frame.margin, shapes, font: { size: 11 }, separators: spoken.comma ? ",." : ".,", hovermode: plot.timed ? "x" : "closest",
-      showlegend: data.length > 1, legend: { orientation: "h", x: 0, xanchor: "left", y: 1, yanchor: "bottom" },
+      showlegend: data.length > 1, legend: { font: { size: frame.letters }, orientation: "h", x: 0, xanchor: "left", y: 1, yanchor: "bottom" },
       xaxis: { title: { text: plot.x }, zeroline: false },
       yaxis: { title: { text: plot.y }, zeroline: true, scaleanchor: plot.circle ? "x" : undefined },
     }, { responsive: true, displaylogo: false, displayModeBar: !narrow() && "hover", modeBarButtons: [["toImage", "zoom2d", "pan2d", "resetScale2d"]] });
