@@ -580,16 +580,18 @@ def test_elastic_skirt(program: Path, work: Path) -> None:
         check(close(row["skirt_spring_energy"], 2.5e7*sum(w*w for w in bent), 1e-9), "elastic skirt: energy of the springs")
     draft = (*LUBRICATED, "guide.stiffness=5e7", "integrator.relative_tolerance=1e-6", "integrator.revolutions=4")
     plain, _ = run(program, work, case, *draft)
+    fine = (*draft, "integrator.relative_tolerance=1e-9")   # a state restarts the method: at 1e-6 halves differ by 1.5e-5, here by 1e-8
+    whole, _ = run(program, work, case, *fine)
     mirrored, _ = run(program, work, case, *draft, "initial.crank_speed=-314.1592653589793", "guide.piston_com=0.006,-0.0005")
     for name in ("cycle_skirt_fmep", "cycle_min_skirt_film_thickness", "cycle_max_skirt_force", "cycle_max_deflection"):
         check(close(mirrored[name], plain[name], 1e-4), f"elastic skirt: {name} of the mirror image", f"{mirrored[name]}, {plain[name]}")
-    run(program, work / "half", case, *draft, "integrator.revolutions=2")
-    words = [word for setting in draft for word in ("--set", setting)]
+    run(program, work / "half", case, *fine, "integrator.revolutions=2")
+    words = [word for setting in fine for word in ("--set", setting)]
     halves = subprocess.run([program, "-q", "-o", work / "halves", *words, "--from", work / "half" / "elastic.state.nml", case], capture_output=True, text=True, check=False)
     with (work / "halves" / "elastic.summary.csv").open() as file:
         found = {row["quantity"]: number(row["value"]) for row in csv.DictReader(file)}
     for name in ("cycle_skirt_fmep", "cycle_max_deflection", "cycle_max_skirt_force"):
-        check(close(found[name], plain[name], 1e-5), f"elastic skirt: {name} of a run in two halves", halves.stderr)
+        check(close(found[name], whole[name], 1e-6), f"elastic skirt: {name} of a run in two halves", f"{found[name]}, {whole[name]} {halves.stderr}")
     free, _ = run(program, work, case, *draft, "drive.kind=free", "drive.damping=0.02", "integrator.relative_tolerance=1e-8", "integrator.revolutions=2")
     check(free["max_energy_residual_relative"] < 1e-8 and free["max_deflection"] > 1e-5, "elastic skirt: energy with a free crank", str(free["max_energy_residual_relative"]))
     _, rigid = run(program, work, case, *draft, "guide.stiffness=0")
