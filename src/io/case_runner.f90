@@ -250,9 +250,9 @@ contains
     call keep_first(job%run%error, error)
     call keep_first(job%twin%error, error)
     if (allocated(job%run%line) .and. .not. options%quiet) then
-      if (options%resolved) call say(job%run%line, status)
-      if (.not. options%resolved) call say(in_language(job%run%line, options%language, &
-        job%run%case%file//achar(10)//job%run%case%name//achar(10)//job%run%base), status)
+      if (.not. options%resolved) job%run%line = in_language(job%run%line, options%language, &
+        job%run%case%file//achar(10)//job%run%case%name//achar(10)//job%run%base)
+      call say(job%run%line, status)
     end if
     if (.not. allocated(error)) return
     call tell(error%message)

@@ -23,7 +23,6 @@ module portuguese
     'no contact', 'sem contato', &
     'contacts', 'contatos', &
     'faster', 'mais rápidos', &
-    'deeper than the theory holds', 'mais fundos do que a teoria permite', &
     'than the theory holds', 'do que a teoria permite', &
     'deeper', 'mais fundos', &
     'penetration up to', 'penetração de até', &
@@ -117,11 +116,9 @@ module portuguese
     'held', 'imposta', &
     'at first, free crank', 'no início, manivela livre', &
     'mean piston speed', 'velocidade média do pistão', &
-    'ideal', 'ideal', &
     'quasi-static', 'quase-estático', &
     'of the load', 'da carga', &
     'clearance', 'folga', &
-    'diametral', 'diametral', &
     'of the radius of', 'do raio de', &
     'length/diameter', 'comprimento/diâmetro', &
     '* film', 'filme *', &
@@ -171,7 +168,6 @@ module portuguese
     'at small end', 'no pé da biela', &
     'from', 'de', &
     'and', 'e', &
-    'off', 'fora', &
     'of', 'de', &
     'on', 'em', &
     'to', 'a', &

@@ -152,7 +152,7 @@ TEXTS = {
     "Flores slider-crank, 5000 rpm": "Biela-manivela de Flores, 5000 rpm",
     "Flores slider-crank, clearance {} mm": "Biela-manivela de Flores, folga {} mm",
     "Dry joint, state at the dead centre: chaos at large clearance and low speed, else the motion repeats": "Junta seca, estado no ponto morto: caos com folga grande e rotação baixa, senão o movimento se repete",
-    "Asked for up to 0.75 a restitution changes little: the law gives no less than 0.66 (Flores, 5000 rpm, 0.5 mm, dry)": "Até 0,75 a restituição pedida muda pouco: a lei não dá menos de 0,66 (Flores, 5000 rpm, 0,5 mm, a seco)",
+    "Asked for up to 0.75 a restitution changes little: the law gives no less than {} (Flores, 5000 rpm, 0.5 mm, dry)": "Até 0,75 a restituição pedida muda pouco: a lei não dá menos de {} (Flores, 5000 rpm, 0,5 mm, a seco)",
     "at 5000 rpm": "a 5000 rpm",
     "at a clearance c of 100 µm": "com uma folga c de 100 µm",
     "The contact geometry decides the force, the law hardly (Flores, 5000 rpm, clearance {} mm, dry)": "A geometria do contato decide a força, a lei quase não (Flores, 5000 rpm, folga {} mm, a seco)",

@@ -430,7 +430,7 @@ def draw_restitution(runs: Runs, measured: pd.DataFrame) -> Drawing:
     for axis in axes[1]:
         axis.set_xlabel("coefficient of restitution asked for")
     add_legend(drawing, axes.flat)
-    drawing.suptitle(f"Asked for up to 0.75 a restitution changes little: the law gives no less than 0.66 (Flores, 5000 rpm, 0.5 mm, dry){failed_note(runs)}")
+    drawing.suptitle(f"Asked for up to 0.75 a restitution changes little: the law gives no less than {restitution_of_law(0.0):.2f} (Flores, 5000 rpm, 0.5 mm, dry){failed_note(runs)}")
     return drawing
 
 
