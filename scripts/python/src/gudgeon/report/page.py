@@ -327,11 +327,12 @@ def contacts(run: Run) -> list[dict]:
 
 
 def rows_html(rows: list[tuple[str, ...]], heading: str = "") -> str:
-    def cell(text: str) -> str:   # long texts take several lines, a number never; a long name may be broken behind a "_"
-        kind = ' class="text"' if len(text) > 30 and " " in text else ""
-        return f"<td{kind}>{html.escape(text).replace('_', '_<wbr>')}</td>"
+    def cell(text: str, is_name: bool) -> str:   # long texts take several lines, paths too; a short value never; names are broken behind a "_"
+        is_long, escaped = len(text) > 30, html.escape(text)
+        kind = ' class="text"' if is_long else ""
+        return f"<td{kind}>{escaped.replace('_', '_<wbr>') if is_long or is_name else escaped}</td>"
 
-    cells = ["<tr>" + "".join(map(cell, row)) + "</tr>" for row in rows]
+    cells = ["<tr>" + "".join(cell(text, place == 0) for place, text in enumerate(row)) + "</tr>" for row in rows]
     head = f'<tr><th colspan="3">{html.escape(heading)}</th></tr>' if heading else ""
     return head + "".join(cells)
 
