@@ -48,9 +48,19 @@ gudgeon_pip() { .venv/bin/python -m pip install --quiet --disable-pip-version-ch
 
 gudgeon_python() {   # install the packages of these lists, and gudgeon itself as it stands in scripts/python, without a build
   gudgeon_venv && gudgeon_pip "$@" || return 1
-  .venv/bin/python -c 'import pathlib, sysconfig
-pathlib.Path(sysconfig.get_path("purelib"), "gudgeon.pth").write_text(str(pathlib.Path("scripts/python/src").resolve()) + "\n")' || return 1
-  printf '#!/bin/sh\nexec "%s" -m gudgeon "$@"\n' "$PWD/.venv/bin/python" >.venv/bin/gudgeon-plot && chmod +x .venv/bin/gudgeon-plot
+  # their paths are relative, so that the path of the clone may have any letters; each file is replaced as a whole, since programs that
+  # read it may be starting
+  .venv/bin/python -c 'import os, pathlib, sysconfig
+def put(path, text, mode):
+    part = path.with_name(f"{path.name}.{os.getpid()}")
+    part.write_text(text)
+    part.chmod(mode)
+    part.replace(path)
+packages = sysconfig.get_path("purelib")
+put(pathlib.Path(packages, "gudgeon.pth"), os.path.relpath("scripts/python/src", packages) + "\n", 0o644)
+put(pathlib.Path(".venv/bin/gudgeon-plot"), """#!/bin/sh
+exec "$(dirname "$(readlink -f "$0")")/python" -m gudgeon "$@"
+""", 0o755)' || return 1
   gudgeon_file=$(command -v gudgeon-plot) || { gudgeon_link gudgeon-plot; return 0; }
   [ "$(readlink -f "$gudgeon_file")" = "$(readlink -f .venv/bin/gudgeon-plot)" ] ||
     echo "setup: gudgeon-plot on the PATH is $gudgeon_file, not of this clone; this one is $PWD/.venv/bin/gudgeon-plot" >&2
