@@ -18,6 +18,7 @@ import os
 import random
 import re
 import resource
+import shlex
 import shutil
 import signal
 import subprocess
@@ -393,7 +394,7 @@ def test_calls_not_offered(gudgeon: Gudgeon, work: Path) -> None:
     for number in (errno.EINVAL, errno.ENOSYS, errno.EOPNOTSUPP, errno.EIO):
         folder = work / str(number)
         others = "" if number == errno.EIO else f"{number}"
-        how = {"env": {**os.environ, "LD_PRELOAD": str(library), "FSYNC": str(number), **({"OTHERS": others} if others else {})}}
+        how = {"cwd": work, "env": {**os.environ, "LD_PRELOAD": f"./{library.name}", "FSYNC": str(number), **({"OTHERS": others} if others else {})}}
         status, _, err = gudgeon.run("-o", folder, *SHORT, FLORES / "dry_0100um.nml", **how)
         summary = folder / "dry_0100um.summary.csv"
         if number == errno.EIO:
@@ -417,7 +418,7 @@ def test_power_cut(gudgeon: Gudgeon, work: Path) -> None:
     for i, words in enumerate((("-j", "1"), ("-j", "2", "--set", "initial.crank_speed=1010"), ("--set", "integrator.max_steps=12"))):
         calls.unlink(missing_ok=True)
         status, _, err = gudgeon.run("-o", folder, *SHORT[:2], *SHORT[4:], *words, ROOT / "cases" / "sim_III.nml",
-                                     env={**os.environ, "LD_PRELOAD": str(library), "CALLS": str(calls)})
+                                     cwd=work, env={**os.environ, "LD_PRELOAD": f"./{library.name}", "CALLS": str(calls)})
         check(status == (4 if i == 2 else 0), f"a run whose calls are recorded: {status} {err}")
         unsafe: set[str] = set()    # files with content that may not be on the disk
         loose: list[str] = []       # changes of the folder that may not be on the disk
@@ -487,7 +488,7 @@ def test_standard_output(gudgeon: Gudgeon, work: Path) -> None:
     reference = (work / "pipe" / "dry_0500um.csv").read_bytes()
     for i, descriptors in enumerate(("1", "2", "1 2", "0 1 2")):
         shell = " ".join(f"{one}{'<' if one == '0' else '>'}&-" for one in descriptors.split())
-        words = " ".join([str(gudgeon.program), "-o", str(work / f"none{i}"), *SHORT, str(case), str(FLORES / "friction_050.nml")])
+        words = shlex.join([str(gudgeon.program), "-o", str(work / f"none{i}"), *SHORT, str(case), str(FLORES / "friction_050.nml")])
         status = subprocess.run(f"{words} {shell}", shell=True, capture_output=True, check=False, timeout=PATIENCE).returncode
         check(status == 0, f"without descriptors {descriptors}: {status}")
         whole(work / f"none{i}", f"without descriptors {descriptors}")

@@ -697,7 +697,7 @@ class Mutants:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         tree = folder / "whole"
-        shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns("build", ".git", ".venv", "results"))
+        shutil.copytree(ROOT, tree, ignore=shutil.ignore_patterns("build", ".git", ".venv", "results", "__pycache__"))
         path = {**os.environ, "PATH": f"{ROOT / '.venv' / 'bin'}:{os.environ['PATH']}"}
         built = subprocess.run(["fpm", "build", "--flag", "-O1"], cwd=tree, env=path, capture_output=True, text=True, check=False)
         libraries, mains = list(tree.glob("build/*/gudgeon/libgudgeon.a")), list(tree.glob("build/*/gudgeon/src_main.f90.o"))
