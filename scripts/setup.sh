@@ -44,7 +44,7 @@ gudgeon_venv() {   # create .venv, a virtual environment of Python, if it is mis
   python3 -m venv .venv >&2
 }
 
-gudgeon_pip() { .venv/bin/python -m pip install --quiet --disable-pip-version-check "$@" >&2; }
+gudgeon_pip() { .venv/bin/python -m pip install --quiet --disable-pip-version-check -c scripts/python/constraints.txt "$@" >&2; }
 
 gudgeon_python() {   # install the packages of these lists, and gudgeon itself as it stands in scripts/python, without a build
   gudgeon_venv && gudgeon_pip "$@" || return 1
