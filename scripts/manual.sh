@@ -11,8 +11,9 @@ scripts/setup.sh --manual || exit 1
 program=${1:-$(scripts/build.sh)} || exit 1
 [ -x "$program" ] || exit 1
 rm -rf build/manual
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
+work=$(mktemp -d)
+log=$work/log
+trap 'rm -rf "$work"' EXIT
 
 quietly() {   # run a command; stop with what it said if it failed or warned
   "$@" >"$log" 2>&1 && ! grep -v '━' "$log" | grep -qiwE 'warnings?|errors?' && return   # lines of progress name variables
@@ -28,9 +29,9 @@ quietly env NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs build --strict -f scripts/man
 echo build/manual/index.html
 $pdf || exit 0
 
-printed() {   # print.html as a PDF
-  chromium --headless --no-sandbox --disable-gpu --no-pdf-header-footer --print-to-pdf=build/manual/gudgeon.pdf build/manual/print.html \
-    >"$log" 2>&1   # it complains of a machine without a desktop
+printed() {   # print.html as a PDF; with a profile of its own, beside a Chromium of the user; TMPDIR may be too long for its socket
+  TMPDIR=/tmp chromium --headless --no-sandbox --disable-gpu --user-data-dir="$work/profile" --no-pdf-header-footer \
+    --print-to-pdf=build/manual/gudgeon.pdf build/manual/print.html >"$log" 2>&1   # it complains of a machine without a desktop
   [ -s build/manual/gudgeon.pdf ] || { cat "$log" >&2; exit 1; }
 }
 

@@ -87,9 +87,8 @@ class Browser:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]
         self.base = f"http://127.0.0.1:{port}"
-        self.process = subprocess.Popen(
-            [driver, f"--port={port}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-        )
+        environment = os.environ | {"TMPDIR": "/tmp"}   # Chromium ends where the path of its socket there has more than 107 bytes
+        self.process = subprocess.Popen([driver, f"--port={port}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=environment)
         self.session = ""
         options = {"binary": chromium, "args": [*BROWSER_OPTIONS, *arguments, f"--user-data-dir={profile}"]}
         capabilities = {
@@ -99,15 +98,17 @@ class Browser:
                 "goog:loggingPrefs": {"browser": "ALL"},
             }
         }
+        why = ""
         for _ in range(300):
             try:
                 self.session = self.call("POST", "/session", {"capabilities": capabilities})["sessionId"]
                 # a headless page may have no focus, without which elements have no focus events
                 self.cdp("Emulation.setFocusEmulationEnabled", enabled=True)
                 return
-            except (urllib.error.URLError, ConnectionError):
+            except (urllib.error.URLError, ConnectionError) as error:
+                why = error.read().decode() if isinstance(error, urllib.error.HTTPError) else str(error)
                 time.sleep(0.2)
-        raise RuntimeError("chromedriver does not answer")
+        raise RuntimeError(f"chromedriver starts no browser: {why}")
 
     def call(self, method: str, path: str, body: dict | None = None) -> object:
         """Execute one command and return its value. Raises urllib.error.HTTPError if the browser refuses it."""
