@@ -1835,7 +1835,7 @@ class Columns(unittest.TestCase):
             subprocess.run([release_program(), "-q", "-o", work, TOP / "cases" / "bearings" / "car_diesel.nml"], check=True)
             for words in ((), ("--place", "crank_pin"), ("--place", "main_bearing")):
                 self.assertEqual(cli.main(["bearing", f"{work}/car_diesel.csv", *words]), 0)
-        self.assertEqual([Path(path).name for path in said.getvalue().split()], [f"car_diesel_{what}orbit.png" for what in ("", "crank_pin_", "main_bearing_")])
+        self.assertEqual([Path(path).name for path in said.getvalue().splitlines()], [f"car_diesel_{what}orbit.png" for what in ("", "crank_pin_", "main_bearing_")])
 
     def test_a_missing_column_is_refused(self) -> None:
         with self.assertRaisesRegex(MissingResult, "no column film_thickness"):
