@@ -158,7 +158,7 @@ def main() -> int:
         name = path.stem
         check(
             f"{path.relative_to(SRC.parent)} contains the module of its name",
-            name == "main" or re.search(rf"^\s*(module|submodule\s*\(\w+\))\s+{name}\s*$", path.read_text(), re.M | re.I) is not None,
+            name == "main" or re.search(rf"^\s*(module|submodule\s*\([\w:]+\))\s+{name}\s*$", path.read_text(), re.M | re.I) is not None,
         )
     top = SRC.parent
     for path in sorted(file for folder in ("src", "tests", "scripts") for file in (top / folder).rglob("*.f90") if "build" not in file.parts):
