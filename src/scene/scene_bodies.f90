@@ -206,32 +206,6 @@ contains
     end associate
   end subroutine add_power
 
-  module procedure claim_elastic
-    real(dp) :: own_speed
-    integer :: i
-    own_speed = 0
-    do i = 1, self%n_joints
-      own_speed = max(own_speed, self%joints(i)%own_speed(self%span))
-    end do
-    associate (elastic => self%chain%elastic)
-      elastic%start_angle = self%start_angle
-      elastic%start_speed = self%start_speed
-      elastic%holds_flywheel = .not. self%chain%drive%free_crank
-      if (self%runs_up .and. self%chain%has_crankshaft()) elastic%run_up = self%chain%varying
-      call elastic%claim(self%layout, self%chain%bodies, self%speed_scale(), own_speed)
-    end associate
-  end procedure claim_elastic
-
-  module procedure claim_train
-    associate (train => self%chain%train)
-      train%start_angle = self%start_angle
-      train%start_speed = self%start_speed
-      train%holds_station = .not. self%chain%drive%free_crank .and. train%driven /= train%full
-      if (self%runs_up .and. train%holds_station) train%run_up = self%chain%varying
-      call train%claim(self%layout, self%chain%bodies, self%speed_scale())
-    end associate
-  end procedure claim_train
-
   module procedure other_cranks
     type(motion_t) :: motion
     integer :: i

@@ -6,7 +6,7 @@ module scene_problem
   use run_state, only: run_state_t
   use chain_motion, only: motion_t, accelerations_t, crank_pin, piston_pin, small_end, turn_crank, follow_rod, follow_piston
   use train_motion, only: most_cylinders
-  use joint_places, only: places, n_places, n_spots, in_order
+  use joint_places, only: places, n_places, n_spots
   use chain_loads, only: loads_t, force_size
   use mechanism_chain, only: chain_t
   use crank_rod, only: accelerate_crank_rod
@@ -267,15 +267,35 @@ module scene_problem
       logical, intent(out) :: in_domain
     end subroutine move_without_mechanism
 
-    !> Claim the states of the elastic members.
-    module subroutine claim_elastic(self)
+    !> Let all parts claim their states, after everything else has been set.
+    module subroutine claim(self)
       class(scene_t), intent(inout) :: self
-    end subroutine claim_elastic
+    end subroutine claim
 
-    !> Claim the states of stations and dampers.
-    module subroutine claim_train(self)
+    !> Pass the parts of the layout that the integrator needs to it.
+    module subroutine set_layout(self)
       class(scene_t), intent(inout) :: self
-    end subroutine claim_train
+    end subroutine set_layout
+
+    !> Request the integrals of the joints; must be called before the run. In a scene with clearance they do not influence the steps.
+    !> In a mechanism without clearance the only one, the integral of the force, takes part in the error control, since otherwise the
+    !> steps would be too long for it.
+    module subroutine measure_joint(self)
+      class(scene_t), intent(inout) :: self
+    end subroutine measure_joint
+
+    !> State at t = 0.
+    pure module function initial_state(self) result(y)
+      class(scene_t), intent(in) :: self
+      real(dp) :: y(self%n)
+    end function initial_state
+
+    !> Indices of the states by which motions are compared: all except quadratures, the crank angle, and the angle of a floating pin,
+    !> on which nothing depends and which drifts.
+    pure module function compared_states(self) result(at)
+      class(scene_t), intent(in) :: self
+      integer, allocatable :: at(:)
+    end function compared_states
 
     !> Crank angles of the other cylinders from their axes [rad] and speeds of their stations [rad/s] at (t, y).
     pure module subroutine other_cranks(self, t, y, angle, speed)
@@ -591,97 +611,6 @@ contains
     now%loads%axial_force = self%gas%force(now%cylinder_pressure)
   end subroutine load_gas
 
-  !> Let all parts claim their states and number the events, after everything else has been set.
-  subroutine claim(self)
-    class(scene_t), intent(inout) :: self
-    integer :: i
-    self%joint_at = 0
-    do i = 1, size(self%joints)
-      self%joint_at(self%joints(i)%spot) = i
-    end do
-    self%reported = [pack(in_order, in_order == in_order(1) .or. self%joint_at(in_order) > 0), &
-      pack([(i, i=n_places + 1, n_spots)], self%joint_at(n_places + 1:) > 0)]
-    self%has_numbers = any(self%joint_at(n_places + 1:) > 0)
-    self%highest_mode = n_phases**self%n_joints - 1
-    if (allocated(self%guide)) self%highest_mode = 2*(self%highest_mode + 1) - 1
-    self%crank_moves = self%chain%drive%free_crank .or. self%chain%has_crankshaft()
-    if (allocated(self%chain%train)) self%crank_moves = self%chain%train%frees_crank(self%chain%drive)
-    self%has_charge = .false.
-    if (allocated(self%gas)) self%has_charge = self%gas%has_states()
-    call claim_states(self)
-    call self%layout%count_again()
-    call claim_states(self)
-    self%has_heat = any([(allocated(self%joints(i)%heat), i=1, self%n_joints)])
-    self%clears_loads = self%has_heat
-    self%is_plain = .not. (allocated(self%chain%elastic) .or. allocated(self%guide) .or. allocated(self%chain%varying) &
-      .or. allocated(self%chain%train) .or. allocated(self%chain%floating) .or. allocated(self%given_load))
-    self%has_more_rates = any(self%joints%has_own_rates) .or. allocated(self%chain%elastic) .or. allocated(self%guide) &
-      .or. allocated(self%chain%train) .or. allocated(self%chain%floating) .or. size(self%carried) > 0 &
-      .or. self%has_charge
-    call self%set_layout()
-  end subroutine claim
-
-  !> Let all parts claim their states.
-  subroutine claim_states(self)
-    class(scene_t), intent(inout) :: self
-    type(slice_t) :: work
-    integer :: i
-    if (self%crank_moves) call self%layout%claim_positions(1, 1.0_dp, self%speed_scale(), self%crank, grows=.true.)
-    do i = 1, self%n_joints
-      call self%joints(i)%claim(self%layout, self%speed_scale(), self%span)
-    end do
-    do i = 1, size(self%carried)
-      call self%carried(i)%claim(self%layout, self%joints(self%carried(i)%joint))
-    end do
-    if (allocated(self%chain%floating)) call self%chain%floating%claim(self%layout, &
-      self%speed_scale()*self%chain%bodies%crank%length*self%chain%bodies%per_rod_length)
-    if (allocated(self%guide)) call self%guide%claim(self%layout, self%speed_scale(), self%span)
-    if (allocated(self%chain%elastic)) call claim_elastic(self)
-    if (allocated(self%chain%train)) call claim_train(self)
-    call self%layout%claim_quadratures(1, self%energy_scale(), work)
-    self%work_at = work%first
-    if (.not. self%has_charge) return
-    i = 1
-    if (allocated(self%chain%train)) i = 1 + size(self%chain%train%cylinders)
-    call self%gas%charge%claim(self%layout, i)
-  end subroutine claim_states
-
-  !> Pass the parts of the layout that the integrator needs to it.
-  subroutine set_layout(self)
-    class(scene_t), intent(inout) :: self
-    self%n = self%layout%n()
-    self%n_positions = self%layout%n_positions
-    self%n_quadratures = self%layout%n_quadratures
-  end subroutine set_layout
-
-  !> Request the integrals of the joints; must be called before the run. In a scene with clearance they do not influence the steps.
-  !> In a mechanism without clearance the only one, the integral of the force, takes part in the error control, since otherwise the
-  !> steps would be too long for it.
-  subroutine measure_joint(self)
-    class(scene_t), intent(inout) :: self
-    integer :: n
-    real(dp) :: scale
-    n = size(self%reported)
-    scale = 0
-    if (self%n_joints > 0) then
-      self%measures_loss = .not. work_tells(self)
-      if (self%measures_loss) n = n + 1
-    else if (.not. allocated(self%given_load)) then
-      scale = self%energy_scale()/(self%chain%bodies%crank%length*self%speed_scale())
-    end if
-    call self%layout%claim_quadratures(n, scale, self%measures)
-    self%has_more_rates = .true.
-    call self%set_layout()
-  end subroutine measure_joint
-
-  !> Whether the energy taken by the joints follows from the work of all forces: no other part does work except a constant torque.
-  pure logical function work_tells(self)
-    class(scene_t), intent(in) :: self
-    work_tells = self%chain%drive%free_crank .and. .not. (self%chain%drive%damping > 0 .or. allocated(self%gas) &
-      .or. allocated(self%chain%varying) .or. allocated(self%guide) .or. allocated(self%chain%elastic) &
-      .or. allocated(self%chain%train))
-  end function work_tells
-
   !> Force of the joint at a spot on its pin [N]; at a place without joint that on the pin of its ideal pin.
   pure function pin_force(self, now, spot) result(force)
     class(scene_t), intent(in) :: self
@@ -719,32 +648,6 @@ contains
     end if
   end function joint_loss
 
-  !> State at t = 0.
-  pure function initial_state(self) result(y)
-    class(scene_t), intent(in) :: self
-    real(dp) :: y(self%n)
-    integer :: i
-    y = 0
-    if (allocated(self%chain%elastic)) call self%chain%elastic%set_start(y)
-    if (self%crank_moves) then
-      y(self%crank%position) = self%start_angle
-      y(self%crank%rate) = self%start_speed
-      if (self%runs_up) y(self%crank%rate) = self%chain%varying%first_speed   ! on a shaft whose other end is run up
-    end if
-    do i = 1, self%n_joints
-      call self%joints(i)%set_start(y)
-    end do
-    do i = 1, size(self%carried)
-      call self%carried(i)%set_start(self%joints(self%carried(i)%joint), y)
-    end do
-    if (allocated(self%chain%floating)) call self%chain%floating%set_start(y)
-    if (allocated(self%guide)) call self%guide%set_start(y)
-    if (.not. self%has_charge) return
-    call self%gas%set_charge(self%start_angle, y)
-    if (allocated(self%other_gas)) &
-      call self%other_gas%set_charges(self%gas, self%start_angle + self%chain%train%cylinders%shift, y)
-  end function initial_state
-
   !> Integrals of the gas so far, see `totals` of `charge_t`; 0 where its pressure and mass are no states.
   pure function charge_totals(self, t, y) result(totals)
     class(scene_t), intent(in) :: self
@@ -761,18 +664,6 @@ contains
     residual = -1
     if (self%has_charge) residual = self%gas%charge_residual(self%crank_angle(t, y), y)
   end function charge_residual
-
-  !> Indices of the states by which motions are compared: all except quadratures, the crank angle, and the angle of a floating pin,
-  !> on which nothing depends and which drifts.
-  pure function compared_states(self) result(at)
-    class(scene_t), intent(in) :: self
-    integer, allocatable :: at(:)
-    integer :: i, angle
-    angle = 0
-    if (allocated(self%chain%floating)) angle = self%chain%floating%turn%position
-    at = [(i, i=1, self%n - self%n_quadratures)]
-    at = pack(at, at /= self%crank%position .and. at /= angle)
-  end function compared_states
 
   !> Whether the force of a film has no bound near this state.
   pure logical function is_singular(self, y)
