@@ -202,7 +202,7 @@ def check_shapes(program: Path, folder: Path) -> None:
         write_table(folder / f"{name}.shape.csv", "angle[deg],deviation[m]", rows)
     (folder / "of_left.wear.csv").write_text(
         "joint,angle[deg],pin_depth[m],bore_depth[m],pin_volume[m3],bore_volume[m3]\npiston_pin,0,7e-6,1e-6,0,0\npiston_pin,40,0,6e-6,0,0\n"
-        "piston_pin,200,0,0.0,0,0\ncrank_pin,0,0,9e-6,0,0\ncrank_pin,180,0,9e-6,0,0\n")
+        "piston_pin,200,0,0.0,0,0\ncrank_pin,0,0,9e-6,0,0\ncrank_pin,180,0,9e-6,0,0\n", encoding="utf-8-sig")   # as spreadsheets save it
 
     def film(name: str, group: str, c: float = 2.5e-5, r: float = 0.025025, load: str = plain, speed: float = 300.0) -> dict[str, float]:
         done = run(program, shaped(folder, name, load, oil, grooves, f"&shape {group} /" if group else "", c=c, r=r, speed=speed), folder)

@@ -34,6 +34,15 @@ printf 'Winkel;Druck\r\n°KW;bar\r\n-360,0;1,01\r\n-359,0;1,02\r\n' >"$work/rig.
 refused "a rig's file as pressure" 3 "rig.csv:1: .*gudgeon.read_pressure .* a rig's file; this one begins 'Winkel;Druck', '°KW;bar', '-360,0;1,01'$" \
   --set "cylinder_pressure.table=$work/rig.csv" cases/gas/measured.nml
 
+printf '\357\273\277crank_angle,pressure\n0,1\n' >"$work/marked.csv"
+refused "the mark of an encoding is not shown" 3 "this one begins 'crank_angle,pressure', '0,1'$" \
+  --set "cylinder_pressure.table=$work/marked.csv" cases/gas/measured.nml
+
+# a table of a film that is none, named in the case file
+sed "/law = 'finite_bearing'/s|\$|, table_file = 'rig.csv'|" cases/film/sim_I_finite.nml >"$work/table.nml"
+refused "a film table that is none" 3 "table.nml:[0-9]*: &lubrication table_file = rig.csv: is not a film table of this program" "$work/table.nml"
+refused "a film table that is none, --check" 3 "table.nml:[0-9]*: &lubrication table_file = rig.csv" --check "$work/table.nml"
+
 # a table that results would replace
 mkdir "$work/motor"
 cp cases/drive/motor.nml cases/drive/motor.csv "$work/motor"

@@ -264,7 +264,6 @@ contains
     character(len=*), intent(in) :: text
     integer, intent(inout) :: at, line
     character(len=:), allocatable, intent(out) :: row
-    if (at == 1 .and. index(text, char(239)//char(187)//char(191)) == 1) at = 4   ! byte order mark
     row = ''
     do while (at <= len(text))
       call next_line(text, at, row)

@@ -4,6 +4,8 @@ module case_curves
   use error_handling, only: error_t, fail, status_case_file
   use checksums, only: checksum_t
   use posix_files, only: absolute_path
+  use film_law, only: film_law_t
+  use film_files, only: film_table_fault
   use measured_curve, only: measured_curve_t
   use measured_pressure, only: measured_pressure_periods
   use number_text, only: short_text
@@ -20,6 +22,7 @@ module case_curves
   private
   public :: provide_curves, period_fault
 
+  character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)   !! of UTF-8: no part of a text
   integer, parameter :: largest_file = 100   !! MB
   real(dp), parameter :: widest_gap = 30     !! largest interval between two points of a pressure curve [degrees]
   real(dp), parameter :: gap_ratio = 4  !! an interval that is this much wider than both its neighbours is an error: points are
@@ -39,6 +42,7 @@ contains
       into%drive%table)
     do i = 1, n_places
       call provide_history(values, into%file, i, into%joints(i)%history)
+      if (allocated(into%joints(i)%film)) call check_film_table(values, into%file, i, into%joints(i)%film)
     end do
     if (allocated(into%load)) then
       if (into%load%curve%is_wanted() .and. mod(into%load%period_deg, 360) == 0) call provide(values, into%file, 'bearing_load', &
@@ -75,6 +79,20 @@ contains
     if (history%bore%table%is_wanted()) call provide_compliances(values, case_file, values%law_group('bore', place), &
       history%bore)
   end subroutine provide_history
+
+  !> Check that the file that shall keep the table of a film is one, if it is there.
+  subroutine check_film_table(values, case_file, place, film)
+    type(case_values_t), intent(inout) :: values
+    character(len=*), intent(in) :: case_file
+    integer, intent(in) :: place   !! index in `places`
+    class(film_law_t), intent(in) :: film
+    character(len=*), parameter :: key = 'table_file'
+    character(len=:), allocatable :: fault
+    if (.not. allocated(film%table_file)) return
+    if (film%table_file == '') return
+    fault = film_table_fault(path_beside(case_file, film%table_file))
+    if (fault /= '') call values%refuse(values%law_group('lubrication', place), key, fault)
+  end subroutine check_film_table
 
   subroutine provide_compliances(values, case_file, group, bore)
     type(case_values_t), intent(inout) :: values
@@ -176,6 +194,7 @@ contains
     end if
     call sum%add(text)
     table%found = sum%hexadecimal()
+    if (index(text, byte_order_mark) == 1) text = text(len(byte_order_mark) + 1:)
     table%path = absolute_path(path)
   end subroutine read_new
 

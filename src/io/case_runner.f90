@@ -119,12 +119,8 @@ contains
     if (job%has_twin) call job%twin%prepare(case, text, .true., ideal_list, base//'.ideal', options, shows_progress)
     if (options%resolved) job%run%line = text(:len(text) - 1)
     if (options%resolved .or. .not. options%check) return
-    call tell_tables(case, tables, job%error)
-    if (allocated(job%error)) then
-      call name_file(path, job%error)
-    else
-      job%run%line = description(case, size(list%id), job%has_twin, base, tables)
-    end if
+    call tell_tables(case, tables)
+    job%run%line = description(case, size(list%id), job%has_twin, base, tables)
   end subroutine prepare
 
   !> The overrides of the command line, with those for which an option stands.

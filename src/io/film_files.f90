@@ -9,7 +9,7 @@
 module film_files
   use kinds, only: dp
   use constants, only: degree
-  use error_handling, only: error_t, fail, status_integration, status_case_file
+  use error_handling, only: error_t, fail, status_integration
   use bearing_size, only: bearing_t
   use checksums, only: checksum_t, checksum_of, checksum_length
   use joint_places, only: places, n_places, in_order, spot_name
@@ -28,7 +28,7 @@ module film_files
   use text_file, only: read_whole
   implicit none
   private
-  public :: provide_tables, tell_tables, write_film_file, write_skirt_file, progress_watch_t
+  public :: provide_tables, tell_tables, film_table_fault, write_film_file, write_skirt_file, progress_watch_t
 
   character(len=*), parameter :: newline = achar(10), title = 'gudgeon film table'//newline
 
@@ -52,8 +52,7 @@ module film_files
 contains
 
   !> Give the films of a case their tables, stored or new ones. `announces`: the user is told, in one line, that a table is
-  !> computed. Errors: the user interrupted (status_integration); the file that the case names is not a table (status_case_file) or
-  !> cannot be written (status_output).
+  !> computed. Errors: the user interrupted (status_integration); the file that the case names cannot be written (status_output).
   subroutine provide_tables(case, announces, shows_progress, error, watch)
     type(case_t), intent(inout) :: case
     logical, intent(in) :: announces, shows_progress
@@ -88,8 +87,8 @@ contains
       if (key == joint%film%table_of) return
       began = clock()
       call find_file(joint%film, case, key, .true., path, is_named)
-      call load(path, key, joint%film, is_named, is_restored, error)
-      if (.not. (is_restored .or. allocated(error))) then
+      call load(path, key, joint%film, is_restored)
+      if (.not. is_restored) then
         if (announces) call tell(printable(case%file, 200)//': computing the film table of a bearing with L/D = '// &
                                  short_text(0.5_dp*bearing%length/bearing%pin_radius())//place_of(path))
         call watch%progress%start(case%name//': film table', shows_progress)
@@ -106,18 +105,15 @@ contains
     end associate
   end subroutine provide_table
 
-  !> Whether the tables of films are there or how long it takes to compute them, for the user; empty if the films need none. Error:
-  !> the file that the case names is not a table (status_case_file).
-  subroutine tell_tables(case, text, error)
+  !> Whether the tables of films are there or how long it takes to compute them, for the user; empty if the films need none.
+  subroutine tell_tables(case, text)
     type(case_t), intent(in) :: case
     character(len=:), allocatable, intent(out) :: text
-    type(error_t), allocatable, intent(out) :: error
     character(len=:), allocatable :: more
     integer :: i
     text = ''
     do i = 1, n_places
-      call tell_table(case%joints(in_order(i)), case, more, error)
-      if (allocated(error)) return
+      call tell_table(case%joints(in_order(i)), case, more)
       if (more == '') cycle
       if (text /= '') text = text//'; '
       text = text//trim(places(in_order(i))%title)//': '//more
@@ -125,11 +121,10 @@ contains
   end subroutine tell_tables
 
   !> The same for one joint.
-  subroutine tell_table(joint, case, text, error)
+  subroutine tell_table(joint, case, text)
     type(joint_case_t), intent(in) :: joint
     type(case_t), intent(in) :: case
     character(len=:), allocatable, intent(out) :: text
-    type(error_t), allocatable, intent(out) :: error
     class(film_law_t), allocatable :: film
     type(trial_watch_t) :: watch
     type(bearing_t) :: bearing
@@ -142,8 +137,7 @@ contains
     key = film%table_key(bearing, case%integrator%relative_tolerance)
     if (key == '') return
     call find_file(film, case, key, .false., path, is_named)
-    call load(path, key, film, is_named, is_restored, error)
-    if (allocated(error)) return
+    call load(path, key, film, is_restored)
     text = 'stored in '//printable(path, 200)
     if (is_restored) return
     watch%began = clock()
@@ -237,26 +231,29 @@ contains
     if (length > 0) call get_environment_variable(name, value)
   end subroutine get_variable
 
-  !> Read a table from its file, if there is a complete one. Error: the file that the case names is there, but is not a table of a
-  !> film (status_case_file).
-  subroutine load(path, key, film, is_named, is_restored, error)
+  !> Why a file that a case names cannot keep a table: it is there, but is not a table of a film. Empty if it can.
+  function film_table_fault(path) result(fault)
+    character(len=*), intent(in) :: path
+    character(len=:), allocatable :: fault, bytes
+    integer :: status
+    call read_whole(path, bytes, status)
+    fault = ''
+    if (status /= 0 .and. status /= error_no_entry) fault = error_text(status)
+    if (index(bytes, title) /= 1 .and. bytes /= '') fault = 'is not a film table of this program: name another file'
+  end function film_table_fault
+
+  !> Read a table from its file, if there is a complete one.
+  subroutine load(path, key, film, is_restored)
     character(len=*), intent(in) :: path, key
     class(film_law_t), intent(inout) :: film
-    logical, intent(in) :: is_named
     logical, intent(out) :: is_restored
-    type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: bytes, head, fault
+    character(len=:), allocatable :: bytes, head
     real(dp) :: numbers(0)
     integer :: status, last
 
     is_restored = .false.
     if (path == '') return
     call read_whole(path, bytes, status)
-    fault = ''
-    if (status /= 0 .and. status /= error_no_entry) fault = error_text(status)
-    if (index(bytes, title) /= 1 .and. bytes /= '') fault = 'is not a film table of this program: name another file'
-    if (is_named .and. fault /= '') call fail(error, '&lubrication table_file = '//printable(film%table_file, 200)//': '//fault, &
-      status_case_file)
     head = title//key//newline
     last = len(bytes) - checksum_length
     if (status /= 0 .or. last < len(head)) return
