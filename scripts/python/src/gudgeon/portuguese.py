@@ -56,6 +56,7 @@ TEXTS = {
     "Δ {}": "Δ {}",
     "{}, cycle {}": "{}, ciclo {}",
     "{} to {}": "{} a {}",
+    "{} to {}, mean {}": "{} a {}, média {}",
     "cycles {} to {}": "ciclos {} a {}",
     "{}, revolutions {} to {}": "{}, rotações {} a {}",
     "Simulation {}: {}": "Simulação {}: {}",
@@ -450,6 +451,10 @@ TEXTS = {
     "{} °C": "{} °C",
     "{} cm³/min": "{} cm³/min",
     "cm³/s": "cm³/s",
+    "The motion did not repeat within {} revolutions: other cycles have other answers, of which gudgeon-plot orders shows the scatter":
+        "O movimento não se repetiu em {} rotações: outros ciclos têm outras respostas, cuja dispersão gudgeon-plot orders mostra",
+    "The motion did not repeat within {} revolutions: the film thickness at the {} changes by {} % from cycle to cycle: other cycles have other answers, of which gudgeon-plot orders shows the scatter":
+        "O movimento não se repetiu em {} rotações: a espessura do filme no {} muda {} % de ciclo a ciclo: outros ciclos têm outras respostas, cuja dispersão gudgeon-plot orders mostra",
     "The motion has not settled; --set run.until=periodic": "O movimento não é periódico; --set run.until=periodic",
     "The motion has not settled: the film thickness at the {} changes by {} % from cycle to cycle; --set run.until=periodic":
         "O movimento não é periódico: a espessura do filme no {} muda {} % de ciclo a ciclo; --set run.until=periodic",

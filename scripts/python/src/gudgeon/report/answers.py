@@ -64,8 +64,11 @@ class Answers:
 
 
 def number(value: float, difference: float = 0.0, form: str = ".4g") -> str:
-    """A value with four digits and a typographic minus. Digits are LOOSE where half a unit of their place is below the difference."""
+    """A value with four digits and a typographic minus, without an exponent up to 1e7. Digits are LOOSE where half a unit of their place is
+    below the difference."""
     text = f"{value:{form}}"
+    if "e+" in text and abs(value) < 1e7:
+        text = f"{float(text):.0f}"
     if difference != 0 and math.isfinite(value):
         digits, mark, exponent = text.partition("e")
         units = len(digits.partition(".")[0]) - 1  # the place of units in the text
@@ -225,7 +228,8 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
     if text := speed(rows):
         found.append(("Crank speed", text))
     if torques := [text for what in ("min", "max") if (text := rows.shown(rows.of("", f"cycle_{what}_drive_torque", f"{what}_drive_torque"), "N m"))]:
-        found.append(("Drive torque", " to ".join(torques)))
+        mean = rows.shown("cycle_work_drive", "N m", 1 / (2 * math.pi * (rows("cycle_revolutions") or 1)))
+        found.append(("Drive torque", " to ".join(torques) + (f", mean {mean}" if mean else "")))
     found += shaft(rows)
     gas = [f"{name} {text}" for name, text in (
         ("up to", rows.shown("cycle_max_gas_temperature", "°C", 1, -273.15)), ("to the walls", rows.shown("cycle_heat_to_walls", "J")),
@@ -332,7 +336,9 @@ def warnings(run: Run) -> list[str]:
                 contacts = rows(f"{pre}contacts") or beyond
                 found.append(f"{beyond:.0f} of {contacts:.0f} contacts at the {name} are {what} than the theory holds.")
     if run.summary.get("cycle_is_settled", ("", ""))[0] == "no":
-        found.insert(0, f"The motion has not settled{said}; --set run.until=periodic")
+        turns = rows("crank_revolutions") or 0.0
+        found.insert(0, f"The motion did not repeat within {turns:.4g} revolutions{said}: other cycles have other answers, of which gudgeon-plot orders shows the "
+                     "scatter" if run.summary.get("motion", ("", ""))[0] == "not_periodic" else f"The motion has not settled{said}; --set run.until=periodic")  # fmt: skip
     return found
 
 
