@@ -520,6 +520,34 @@ class OnePage(unittest.TestCase):
         self.assertEqual(len([axes for axes in drawing.axes if axes.lines]), 2)
         self.fits(drawing)
 
+    def test_warnings_and_notes(self) -> None:
+        """What the long page says of a run is not left out of the short one; what has no room is counted."""
+        more = {"cycle_is_settled": "no", "motion": "not_periodic", "crank_revolutions": "1000", "status": "done", "note_1": "&joint clearance = 2 mm: usually 1 to 500 um"}
+        drawing = short.draw(self.made(more), "engine")
+        said = " ".join(text.get_text() for axes in drawing.axes for text in axes.texts).replace("\n", " ")
+        self.assertIn("The motion did not repeat within 1000 revolutions", said)
+        self.assertIn("&joint clearance = 2 mm: usually 1 to 500 um", said)
+        self.fits(drawing)
+        long = "one of many notes on values that are far from those of usual machines, as long as such notes are where a case has been made in a hurry: millimetres?"
+        drawing = short.draw(self.made(more | {f"note_{i}": f"{i}: {long}" for i in range(1, 41)}), "engine")
+        said = [text.get_text() for axes in drawing.axes for text in axes.texts]
+        more = next(int(match[1]) for text in said if (match := re.fullmatch(r"(\d+) more: gudgeon-plot report", text)))
+        self.assertEqual(said.count("Note"), 41 - more + 1)
+        self.fits(drawing)
+
+    def test_units_of_very_small_and_very_large_machines(self) -> None:
+        """Axes end between 0.1 and 1e4: a pin force of 1.4 N is not 0.0014 kN, a moment of 1.4e6 N m has no factor above its axis."""
+        for size, titles in ((1e-3, ["film thickness [nm]", "force [N]", "cylinder pressure [bar]", "crank moment [mN m]"]),
+                             (1e4, ["film thickness [mm]", "force [MN]", "cylinder pressure [bar]", "crank moment [kN m]"])):
+            made = self.made({})
+            for name in ("film_thickness", "pin_force_x", "pin_force_y", "crank_moment"):
+                made.trace[name] *= size
+            drawing = short.draw(made, "engine")
+            axes = {one.get_title(loc="left"): one for one in drawing.axes if one.lines}
+            self.assertEqual(list(axes), titles)
+            self.assertAlmostEqual(np.nanmax(axes[titles[1]].lines[0].get_ydata()), 2 if size < 1 else 20)   # of 2 N and 20 MN
+            plt.close(drawing)
+
     def test_a_long_title_a_peak_at_0_and_legends(self) -> None:
         """Nothing is nearer than 8 mm to the edge, where printers cut; legends are above their plots, the peak of the gas is whole, and the
         cycle has a gap where its end meets its beginning."""
@@ -1869,6 +1897,35 @@ class Page(unittest.TestCase):
         self.assertLessEqual(len(rows), 2002)
         self.assertTrue({0, 777, 54321, 99999} <= set(rows.tolist()))
         self.assertEqual(len(report_page.chosen_rows([values[:2000]], 2000)), 2000)
+
+    def test_thinning_keeps_the_last_cycle(self) -> None:
+        """A page opens on the last cycle, of which a thousand others must leave more than some rows."""
+        values = np.sin(np.arange(720000) * np.pi / 360)
+        rows = report_page.chosen_rows([np.arange(720000.0), values], 8000, (719280, 720000))
+        self.assertEqual(np.count_nonzero(rows >= 719280), 720)
+        self.assertLessEqual(len(rows), 8002)
+        self.assertTrue(0 in rows and np.all(np.diff(rows) > 0))
+        made = self.made()   # the rows of its last tenth
+        time = made["time"]
+        trace = pd.DataFrame({name: np.tile(column, 30) for name, column in made.trace.items()}).assign(time=np.arange(30 * len(time)) * time[1], cylinder_volume=1e-4, cylinder_pressure=1e5)
+        made = replace(made, trace=trace)
+        made.summary.update({"cycle_start": (str(29 * len(time) * time[1]), "s"), "cycle_duration": (str(len(time) * time[1]), "s"), "cycle_revolutions": ("1", "")})
+        scene, data = report_page.scene_of(made, most=2 * len(time) + 400)
+        times = np.frombuffer(data["trace"], "<f4")[: scene["rows"]]
+        self.assertGreaterEqual(np.count_nonzero(times >= scene["cycle"]["begin"] - time[1] / 2), len(time))
+        self.assertTrue(all(plot["alone"] == (not plot["timed"]) for plot in scene["plots"]))   # lines between rows of other cycles are no curves
+
+    def test_units_of_very_small_and_very_large_machines(self) -> None:
+        for size, unit, factor, volume in ((1e-3, "N", 1.0, "cm³"), (1.0, "kN", 1e-3, "cm³"), (1e5, "MN", 1e-6, "l")):
+            made = self.made()
+            force = np.full(len(made["time"]), 0.5)
+            force[0] = 2e3
+            trace = made.trace.assign(pin_force_x=size * force, pin_force_y=0.0, cylinder_volume=size * 1e-7 * force, cylinder_pressure=1e5 * force)
+            made = replace(made, trace=trace)
+            drawn = {plot["title"]: plot for plot in report_page.plots(report_page.with_sizes(made), made)}
+            plot = next(plot for plot in drawn.values() if plot["curves"][0]["y"] == "pin_force")
+            self.assertEqual((plot["y"], plot["curves"][0]["y_factor"]), (unit, factor))
+            self.assertEqual(drawn["p–V diagram"]["x"], f"cylinder volume [{volume}]")
 
     def made(self) -> Run:
         """A run with contact whose summary has larger extremes than its rows."""

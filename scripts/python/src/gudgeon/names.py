@@ -131,6 +131,21 @@ def readable(unit: str, value: float) -> tuple[str, float]:
     return prefixed("Pa" if unit == "bar" else unit, np.array([value], dtype=float))
 
 
+#: Units of axes, and what a value has without their factor.
+OF_AXES = {"kN": "N", "N": "N", "µm": "m", "MPa": "Pa", "mJ": "J", "J": "J", "W": "W", "N m": "N m", "mPa s": "Pa s", "cm³/s": "m^3/s", "10³ m/s²": "m/s²", "10³ rad/s²": "rad/s²"}
+
+
+def suited(unit: str, factor: float, values: np.ndarray) -> tuple[str, float]:
+    """The unit of an axis and the factor to it, of a column without unit and factor of its own: those given, but for the sizes of very small and very
+    large machines, where the axis would end below 0.1 or beyond 1e4, a prefix that suits these."""
+    largest = np.abs(values[np.isfinite(values)]).max(initial=0.0)
+    if 0.1 <= factor * largest < 1e4 or not largest or unit not in (*OF_AXES, "cm³"):
+        return unit, factor
+    if unit == "cm³":
+        return ("mm³", 1e9) if factor * largest < 0.1 else ("l", 1e3)
+    return prefixed(OF_AXES[unit], np.array([largest]))
+
+
 def plain_unit(unit: str) -> str:
     """A unit in typographic form; empty for a number without unit."""
     if unit in ("-", "1", ""):

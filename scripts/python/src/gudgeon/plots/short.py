@@ -7,12 +7,12 @@ from collections.abc import Callable, Sequence
 import matplotlib.pyplot as plt
 import numpy as np
 from gudgeon import language
-from gudgeon.names import PLACES
+from gudgeon.names import PLACES, suited
 from gudgeon.plots.bearing import last_cycle, run_cycle
 from gudgeon.plots.columns import COLOURS, crank_angles, values_of
 from gudgeon.plots.style import BLUE
 from gudgeon.report.answers import FIRM, Answers, amount, lines, losses_of, number, numbered_bearings, of_numbered, title
-from gudgeon.report.page import first_angle
+from gudgeon.report.page import first_angle, notes, warnings
 from gudgeon.results import MissingResult, Run
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -22,14 +22,15 @@ A4 = (8.27, 11.69)  # inch
 LINE, SPACE, LEAST = 0.115, 9.0, 1.2  # heights of a line of 7 points, of all tables and plots, and of a plot at least [inch]
 EDGE, TITLE = 0.4, 0.25  # margin of the paper, in which printers do not print, and height of a line of its title [inch]
 
-#: The plots, of which the first four that the run has are drawn: title with unit, factor, columns.
-PLOTS: tuple[tuple[str, float, tuple[str, ...]], ...] = (
-    ("film thickness [µm]", 1e6, tuple(f"{pre}film_thickness" for pre, _ in PLACES.values())),
-    ("force [kN]", 1e-3, ("pin_force", "crankpin_force", "guide_force")),
-    ("cylinder pressure [bar]", 1e-5, ("cylinder_pressure",)),
-    ("crank moment [N m]", 1.0, ("crank_moment",)),
-    ("piston acceleration [10³ m/s²]", 1e-3, ("piston_acceleration",)),
-    ("crank speed [rpm]", 30 / np.pi, ("crank_speed",)),
+#: The plots, of which the first four that the run has are drawn: title, unit, factor, columns.
+Plot = tuple[str, str, float, tuple[str, ...]]
+PLOTS: tuple[Plot, ...] = (
+    ("film thickness", "µm", 1e6, tuple(f"{pre}film_thickness" for pre, _ in PLACES.values())),
+    ("force", "kN", 1e-3, ("pin_force", "crankpin_force", "guide_force")),
+    ("cylinder pressure", "bar", 1e-5, ("cylinder_pressure",)),
+    ("crank moment", "N m", 1.0, ("crank_moment",)),
+    ("piston acceleration", "10³ m/s²", 1e-3, ("piston_acceleration",)),
+    ("crank speed", "rpm", 30 / np.pi, ("crank_speed",)),
 )
 
 
@@ -65,7 +66,7 @@ def write(axes: Axes, heading: str, head: Sequence[str], rows: Sequence[tuple[st
     edges, depth = np.concatenate(([0], np.cumsum(widths))), 0.0
     for cells in ([("", head)] if head else []) + list(rows):
         said = [re.sub(r"(?<=\d) (?=[^\W\d_]|%)", "\u00a0", say(text).translate(FIRM)) for text in (cells[0], *cells[1])]   # a value stays beside its unit
-        texts = [textwrap.fill(text, max(int(letters * width), 8)).replace("\u00a0", " ") for text, width in zip(said, widths)]
+        texts = [textwrap.fill(text, max(int(letters * width * (0.75 if i == 0 and letters < 100 else 1)), 8)).replace("\u00a0", " ") for i, (text, width) in enumerate(zip(said, widths))]
         for line in "\n".join(texts).splitlines():
             language.current.keep(line)   # it is in the page's language
         for x, text in zip(edges, texts):
@@ -87,8 +88,8 @@ def draw(run: Run, name: str) -> Drawing:
     if len(run["time"]) < 3:
         raise MissingResult(f"{name}: the trace has no cycle")
     drawing = plt.figure(figsize=A4)
-    axes = drawing.subplot_mosaic([["case", "machine"], ["bearings", "bearings"], ["numbered", "numbered"], ["losses", "losses"], ["a", "b"], ["c", "d"]],
-                                  height_ratios=[1.5, 1.6, 0.1, 0.9, 1.6, 1.6])
+    axes = drawing.subplot_mosaic([["case", "machine"], ["bearings", "bearings"], ["numbered", "numbered"], ["notes", "notes"], ["losses", "losses"], ["a", "b"], ["c", "d"]],
+                                  height_ratios=[1.5, 1.6, 0.1, 0.1, 0.9, 1.6, 1.6])
     headline = textwrap.fill(str(run.parameter("case", "title", "")) or name, 68)
     for line in headline.splitlines():
         language.current.keep(line)
@@ -108,27 +109,38 @@ def draw(run: Run, name: str) -> Drawing:
             axes[letter].remove()
             wide.append(0.01)
     losses = 0.2 * draw_losses(axes["losses"], Answers(run)) + 0.1
+    wide.append(write(axes["notes"], "", (), lines_of_notes(run, SPACE - tall - sum(wide) - losses - LEAST), (0.06, 0.94)))
     left = SPACE - tall - sum(wide) - losses   # what the tables leave
     plots = [0.5 * left] * 2 if left >= 2 * LEAST else [max(left, LEAST), 0.01]
     axes["case"].get_subplotspec().get_gridspec().set_height_ratios([max(tall, 0.1), *wide, losses, *plots])
     rows = last_cycle(run)
-    chosen = [(said, factor, found) for said, factor, names in [*thinnest_film(run), *PLOTS]
+    chosen = [(said, unit, factor, found) for said, unit, factor, names in [*thinnest_film(run), *PLOTS]
               if (found := [one for one in names if (one in run or f"{one}_x" in run) and np.ptp(values_of(run, one)[rows]) > 0])]
     letters = "abcd" if plots[1] >= LEAST else "ab"
     for letter in "cd"[: 4 - len(letters)]:
         axes[letter].remove()
     for letter in letters[len(chosen):]:
         axes[letter].axis("off")
-    for axis, (said, factor, found) in zip((axes[letter] for letter in letters), chosen):
-        axis.set_title(said, loc="left", pad=16 if len(found) > 1 else None)
+    for axis, (said, unit, factor, found) in zip((axes[letter] for letter in letters), chosen):
+        unit, factor = suited(unit, factor, np.concatenate([values_of(run, one)[rows] for one in found]))
+        axis.set_title(f"{said} [{unit}]", loc="left", pad=16 if len(found) > 1 else None)
         draw_cycle(axis, run, rows, factor, found)
     return drawing
 
 
-def thinnest_film(run: Run) -> list[tuple[str, float, tuple[str, ...]]]:
+def lines_of_notes(run: Run, room: float) -> list[tuple[str, list[str]]]:
+    """What a reader of the answers has to know, as the page of a run has it: as much as there is room for [inch], with the number of others."""
+    say, keep = language.current.say, language.current.keep
+    said = [*(keep(say(text)) for text in warnings(run)), *map(keep, notes(run))]
+    shown = said if len(said) * 2.35 * LINE < room else said[: max(int(room / (2.35 * LINE)) - 1, 1)]   # of up to two lines each
+    more = [keep(say(f"{len(said) - len(shown)} more: gudgeon-plot report"))] if len(shown) < len(said) else []
+    return [("Note", [text]) for text in (*shown, *more)]
+
+
+def thinnest_film(run: Run) -> list[Plot]:
     """The plot of the thinnest film of an engine's numbered bearings, as in PLOTS."""
     thinnest = run.summary.get("cycle_thinnest_bearing", ("", ""))[0]
-    return [(f"{name}: film thickness [µm]", 1e6, (f"{pre}film_thickness",)) for pre, name in numbered_bearings(Answers(run)) if pre == f"{thinnest}_"]
+    return [(f"{name}: film thickness", "µm", 1e6, (f"{pre}film_thickness",)) for pre, name in numbered_bearings(Answers(run)) if pre == f"{thinnest}_"]
 
 
 def draw_cycle(axes: Axes, run: Run, rows: np.ndarray, factor: float, columns: Sequence[str]) -> None:

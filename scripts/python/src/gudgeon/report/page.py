@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from gudgeon.language import Language
-from gudgeon.names import PLACES, prefixed
+from gudgeon.names import PLACES, prefixed, suited
 from gudgeon.plots import film_pressure
 from gudgeon.plots.bearing import last_cycle as rows_of_last_cycle
 from gudgeon.plots.bearing import run_cycle
@@ -138,12 +138,14 @@ def packed(data: bytes) -> str:
     return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode("ascii")
 
 
-def chosen_rows(columns: list[np.ndarray], most: int = MOST_ROWS) -> np.ndarray:
+def chosen_rows(columns: list[np.ndarray], most: int = MOST_ROWS, apart: tuple[int, int] = (0, 0)) -> np.ndarray:
     """Rows to keep: all, or for each stretch of rows the first and those with the smallest and largest value of every column, and rows at
-    equal distances between them up to half of `most`."""
+    equal distances between them up to half of `most`. Of the rows `apart` (first, and the one behind the last) as many are kept as of all others."""
     rows = len(columns[0])
     if rows <= most:
         return np.arange(rows)
+    if 0 < apart[1] - apart[0] < rows:
+        return np.union1d(chosen_rows(columns, most // 2), apart[0] + chosen_rows([values[slice(*apart)] for values in columns], most // 2))
     stretches = max(1, most // (2 * len(columns) + 1))
     bounds = np.linspace(0, rows, stretches + 1).astype(int)
     kept = {0, rows - 1}
@@ -285,21 +287,24 @@ def plots(columns: dict[str, np.ndarray], run: Run) -> list[dict]:
                     phase=f"{place}_phase",
                 )
             )
+    unit, factor = suited("10³ m/s²", 1e-3, columns["piston_acceleration"])
     found.append(
         plane(
             "Piston: velocity and acceleration",
             "velocity [m/s]",
-            "acceleration [10³ m/s²]",
+            f"acceleration [{unit}]",
             ("piston_velocity", "piston_acceleration"),
-            (1.0, 1e-3),
+            (1.0, factor),
         )
     )
     if "cylinder_volume" in columns:
-        found.append(
-            plane(
-                "p–V diagram", f"{run.volume} [cm³]", "pressure [bar]", ("cylinder_volume", "cylinder_pressure"), (1e6, 1e-5)
-            )
-        )
+        unit, factor = suited("cm³", 1e6, columns["cylinder_volume"])
+        found.append(plane("p–V diagram", f"{run.volume} [{unit}]", "pressure [bar]", ("cylinder_volume", "cylinder_pressure"), (factor, 1e-5)))
+    for plot in (plot for plot in found if plot["timed"]):
+        unit, factor = suited(plot["y"], plot["curves"][0]["y_factor"], np.concatenate([columns[curve["y"]] for curve in plot["curves"]]))
+        plot["y"] = unit
+        for curve in plot["curves"]:
+            curve["y_factor"] = factor
     return found
 
 
@@ -445,7 +450,11 @@ def scene_of(
             used.append(plot["phase"])
     engine = engine_of(run, columns)
     used += [name for name in (engine or {}).get("twists", []) if name and name not in used]
-    rows = chosen_rows([columns[name] for name in used], most)
+    cycle = last_cycle(run, columns)
+    ends = np.searchsorted(run["time"], (cycle["begin"], cycle["end"])) + (-1, 1) if cycle else (0, 0)
+    rows = chosen_rows([columns[name] for name in used], most, (max(int(ends[0]), 0), int(ends[1])))   # a page opens on the last cycle
+    for plot in drawn:   # of the last cycle alone where lines between the rows kept of others are no curves: some 90 rows a revolution still are, but for pressures that jump
+        plot["alone"] = not plot["timed"] and len(rows) < len(run["time"]) / (1 if "cylinder_volume" in plot["curves"][0]["x"] else 8)
     film = film_columns(run, rows, fields)
     oil = oil_of(run, rows, fields)
     if film:
@@ -460,12 +469,12 @@ def scene_of(
         "plots": drawn,
         "contacts": touched,
         "line": time_line(columns, run) | {"title": say(time_line(columns, run)["title"])},
-        "start": first_moment(columns, [field["time"].iloc[0] for field in fields or []], last_cycle(run, columns)),
+        "start": first_moment(columns, [field["time"].iloc[0] for field in fields or []], cycle),
         "angles": ANGLES if film else 0,
         "signed": bool(film and film[2]),
         "supply": supply_of(run),
         "certified": run.certified_until,
-        "cycle": last_cycle(run, columns),
+        "cycle": cycle,
         "clearance": run.clearance,
         "crank": float(run.parameter("mechanism", "crank_length")),
         "rod": float(run.parameter("mechanism", "rod_length")),

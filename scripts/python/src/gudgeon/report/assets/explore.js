@@ -103,13 +103,13 @@
   const atAbscissa = ({ scene: { cycle } }, degrees) => Math.PI / 180 * (cycle ? (degrees - angleInCycle(cycle, cycle.angle) + cycle.degrees) % cycle.degrees : degrees) + (cycle ? cycle.angle : 0);
   // The curves of a run in a plot: those of several bearings have their own dashes, as the run has its colour.
   const DASHES = [[], [7, 3], [2, 2], [9, 2, 2, 2]], PLOTLY_DASHES = ["solid", "dash", "dot", "dashdot"];
-  function seriesOf(run, title) {
-    const plot = run.scene.plots.find((one) => one.title === title);
+  function seriesOf(run, title) {   // in the units of the axes, which are those of the run that is shown
+    const [plot, axes] = [run, shown].map(({ scene }) => scene.plots.find((one) => one.title === title)), { x_factor, y_factor } = axes.curves[0];
     const times = (name, factor) => Array.from(run.column[name], (v) => v * factor);
     return (plot ? plot.curves : []).map((curve, k) => {
-      const x = plot.timed ? Array.from(run.column.crank_angle, (v) => abscissa(run, v)) : times(curve.x, curve.x_factor);
+      const x = plot.timed ? Array.from(run.column.crank_angle, (v) => abscissa(run, v)) : times(curve.x, x_factor);
       const fold = plot.timed && run.scene.cycle ? foldOf(x, run.scene.cycle.degrees) : -1;
-      return { name: curve.name, k, x: fromFold(x, fold), y: fromFold(times(curve.y, curve.y_factor), fold) };
+      return { name: curve.name, k, x: fromFold(x, fold), y: fromFold(times(curve.y, y_factor), fold) };
     });
   }
   function charts() {

@@ -32,8 +32,8 @@
   // ---- the abscissa of the plots over time: time [ms] or crank angle [degrees], of all rows or of the last cycle
   const overAngle = () => byId("abscissa").value === "angle";
   const cycleAlone = () => Boolean(scene.cycle) && byId("last-cycle").checked;
-  const shownRows = () => {
-    if (!cycleAlone()) return [0, scene.rows];
+  const shownRows = () => (cycleAlone() ? rowsOfCycle() : [0, scene.rows]);
+  const rowsOfCycle = () => {
     const slack = 1e-4 * (scene.cycle.end - scene.cycle.begin);
     let first = time.findIndex((t) => t >= scene.cycle.begin - slack), last = scene.rows;
     while (last > first && time[last - 1] > scene.cycle.end + slack) last--;
@@ -131,10 +131,12 @@
     const div = document.createElement("div");
     if (plot.square) div.className = "square";
     document.querySelector(`${plot.main ? "" : "#more-plots "}.${plot.square ? "planes" : "plots"}`).append(div);
-    const phase = plot.phase ? column[plot.phase] : null;
+    const alone = plot.alone && scene.cycle, rows = alone ? rowsOfCycle() : [0, scene.rows];
+    const title = alone ? `${plot.title}, ${W("last cycle")}` : plot.title;
+    const phase = plot.phase ? column[plot.phase].subarray(...rows) : null;
     const data = plot.curves.flatMap((curve) => {
-      const trace = (name, colour, keep) => ({ type: "scatter", mode: "lines", name, meta: colour, x: values(curve, "x"),
-        y: keep ? values(curve, "y").map((v, i) => (keep(i) ? v : null)) : values(curve, "y"),
+      const [x, y] = ["x", "y"].map((axis) => values(curve, axis).slice(...rows));
+      const trace = (name, colour, keep) => ({ type: "scatter", mode: "lines", name, meta: colour, x, y: keep ? y.map((v, i) => (keep(i) ? v : null)) : y,
         line: { color: COLOUR[colour], width: curve.dash ? 1.2 : 1, dash: curve.dash || "solid" }, connectgaps: false });
       if (!phase || !phase.includes(2)) return [trace(curve.name, curve.colour)];
       const touching = (i) => phase[i] === 2 || phase[i - 1] === 2 || phase[i + 1] === 2;
@@ -142,13 +144,13 @@
     });
     data.forEach((one, i) => { one.showlegend = data.findIndex(({ name }) => name === one.name) === i; });
     const shapes = plot.circle ? [{ type: "circle", x0: -1, x1: 1, y0: -1, y1: 1, line: { width: 1 } }] : plot.timed ? uncertified() : [];
-    const frame = frameFor(narrow(), named(data), plot.title, div.clientWidth || byId("plots").firstChild.clientWidth);
+    const frame = frameFor(narrow(), named(data), title, div.clientWidth || byId("plots").firstChild.clientWidth);
     await Plotly.newPlot(div, data, { template: theme(),
-      title: { ...frame.title, text: plot.title, x: 0, xanchor: "left", y: 1, yref: "container", yanchor: "top", pad: { t: 10 } },
+      title: { ...frame.title, text: title, x: 0, xanchor: "left", y: 1, yref: "container", yanchor: "top", pad: { t: 10 } },
       margin: frame.margin, shapes, font: { size: 11 }, separators: spoken.comma ? ",." : ".,", hovermode: plot.timed ? "x" : "closest",
       showlegend: data.length > 1, legend: { font: { size: frame.letters }, orientation: "h", x: 0, xanchor: "left", y: 1, yanchor: "bottom" },
-      xaxis: { title: { text: plot.x }, zeroline: false },
-      yaxis: { title: { text: plot.y }, zeroline: true, scaleanchor: plot.circle ? "x" : undefined },
+      xaxis: { title: { text: plot.x }, zeroline: false, exponentformat: "none" },
+      yaxis: { title: { text: plot.y }, exponentformat: "none", zeroline: true, scaleanchor: plot.circle ? "x" : undefined },
     }, { responsive: true, displaylogo: false, displayModeBar: !narrow() && "hover", modeBarButtons: [["toImage", "zoom2d", "pan2d", "resetScale2d"]] });
     charts.push({ div, timed: plot.timed, main: plot.main, curves: plot.curves });
     if (plot.timed) {
