@@ -310,6 +310,36 @@ class RigTables(unittest.TestCase):
         gauge = "Winkel;Druck\n°KW;bar (Ü)\n" + self.rows(angles, ";", ",")
         self.compare(gudgeon.read_pressure(self.made(gauge), unit="bar"), 1441)
 
+    def test_tables_of_american_rigs(self) -> None:
+        """Angles before the dead centre, psi, quoted headers and numbers, thousands in groups as Excel exports them."""
+        angles, psi = np.arange(-360, 360), 6894.757293168361e-5
+
+        def rows(form: str, sign: int = 1, add: float = 0.0) -> str:
+            return "".join(form.format(sign * a, self.curve(a) / psi * 2 + add) for a in angles)   # up to 1189 psi
+
+        for text, options in (
+            ('"Test cell 4","Run 0117"\n"RPM","9,000"\n"Crank Angle (deg BTDC)","Cyl 1 Pressure (psia)"\n' + rows('{},"{:,.4f}"\n', -1), {}),
+            ('"Crank Angle"\t"Cyl Pressure"\t"MAP"\n"deg ATDC"\t"psig"\t"psia"\n' + rows("{}\t{:,.4f}\t13.50\n"), {"unit": "psi"}),
+            ('CAD,PCYL\nATDC,"psi, abs"\n' + rows('{},"{:,.4f}"\n'), {}),
+            ("Crank angle (°BTDC),Pressure (lbf/in²)\n" + "".join(reversed(rows("{},{:.4f}\n", -1).splitlines(True))), {}),
+            ("Crank Angle, deg;Pressure, psia\n" + rows("{};{:,.4f}\n"), {}),
+        ):
+            table = gudgeon.read_pressure(self.made(text), **options)
+            angle, bar = table.to_numpy().T
+            np.testing.assert_allclose(bar, 2 * self.curve(angle), atol=1e-5)
+            self.assertEqual(len(table), 721)
+        german = "Winkel;Druck\n°KW n. OT;mbar\n" + rows("{};{:,.4f}\n").translate(str.maketrans(",.", ".,"))
+        np.testing.assert_allclose(gudgeon.read_pressure(self.made(german))["pressure[bar]"].max(), 82 / psi / 1e3, rtol=1e-6)
+
+    def test_a_comma_of_decimals_or_of_thousands(self) -> None:
+        angles = np.arange(720)
+        fixed = "a;p\ndeg;bar\n" + self.rows(angles, ";", ",").replace(",00;", ";").replace("000\n", "\n")[:-3]
+        self.assertAlmostEqual(gudgeon.read_pressure(self.made(fixed))["pressure[bar]"].max(), 41, places=2)   # 1,000 to 41,000: each has a comma
+        whole = "a\tp\ndeg\tpsi\n" + "".join(f"{a}\t{30 * self.curve(a):,.0f}\n" for a in angles)   # 30 to 1,230
+        with self.assertRaisesRegex(gudgeon.RigFileError, r"is 1,\d{3} 1\d{3} or 1.\d{3}\? decimal='.' or decimal=',' says it"):
+            gudgeon.read_pressure(self.made(whole))
+        self.assertAlmostEqual(gudgeon.read_pressure(self.made(whole), decimal=".")["pressure[bar]"].max(), 1230 * 6894.757e-5, places=3)
+
     def test_cycles(self) -> None:
         angles = np.arange(0, 3 * 720)
         text = "a;p\ndeg;bar\n" + "\n".join(f"{a % 720};{self.curve(a) + a // 720 - 1:.6f}" for a in angles)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import io
+import csv
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -11,14 +11,16 @@ import numpy as np
 import pandas as pd
 
 #: Units of pressures in Pa.
-PRESSURES = {"pa": 1.0, "hpa": 1e2, "mbar": 1e2, "kpa": 1e3, "bar": 1e5, "mpa": 1e6, "psi": 6894.757293168361}
-#: A unit of pressures, what says that they are absolute, and what that they are gauge pressures: bar, bar(a), kPa abs, barü.
-PRESSURE = re.compile(rf"({'|'.join(PRESSURES)})[ _]*[\[(]? *((?:abs\.?|absolute?|a)|(gauge|g|ü|ue|rel\.?|relativ))? *[\])]?", re.IGNORECASE)
+PRESSURES = {"pa": 1.0, "hpa": 1e2, "mbar": 1e2, "kpa": 1e3, "bar": 1e5, "mpa": 1e6, "atm": 101325.0}
+PRESSURES |= dict.fromkeys(("psi", "lbf/in2", "lbf/in²", "lb/in2", "lb/in²"), 6894.757293168361) | dict.fromkeys(("kgf/cm2", "kgf/cm²"), 98066.5)
+#: A unit of pressures, what says that they are absolute, and what that they are gauge pressures: bar, bar(a), kPa abs, psia, psig, barü.
+PRESSURE = re.compile(rf"({'|'.join(PRESSURES)})[ _,]*[\[(]? *((?:abs\.?|absolute?|a)|(gauge|gage|g|ü|ue|rel\.?|relativ))? *[\])]?", re.IGNORECASE)
 #: From so many usual steps of the angle on, rows are missing.
 GAP = 5.0
-#: Units of crank angles in degrees.
-ANGLES = {"deg": 1.0, "degree": 1.0, "degrees": 1.0, "°": 1.0, "grad": 1.0, "°ca": 1.0, "ca": 1.0, "degca": 1.0, "cad": 1.0, "deg ca": 1.0, "°kw": 1.0, "kw": 1.0,
-          "grad kw": 1.0, "graus": 1.0, "rad": 180 / np.pi}  # fmt: skip
+#: Words in units of crank angles, with °; and what says that they are counted before the dead centre.
+ANGLE_WORDS = {"deg", "degree", "degrees", "grad", "graus", "ca", "cad", "degca", "kw", "rad"}
+OF_DEAD_CENTRE = {"crank", "after", "before", "tdc", "atdc", "btdc", "tdcf", "atdcf", "btdcf", "ot", "zot", "n", "nach", "v", "vor", "not", "vot", "pms", "apms", "dpms", "antes", "depois", "do"}
+BEFORE = re.compile(r"btdc|before (?:tdc|top)|\bv(?:or|\.)? ?z?ot\b|\bapms\b|antes do pms", re.IGNORECASE)
 #: What names of these columns have in them.
 ANGLE_NAMES = re.compile(r"angle|winkel|[âa]ngulo|\bkw\b|\bca\b|\bcad\b|crank|kurbel|theta|phi", re.IGNORECASE)
 PRESSURE_NAMES = re.compile(r"press|druck|\bp(_|\b|zyl|cyl|\d)", re.IGNORECASE)
@@ -34,6 +36,7 @@ def read_pressure(
     angle: str | int | None = None,
     pressure: str | int | None = None,
     unit: str | None = None,
+    decimal: str | None = None,
     shift_deg: float = 0.0,
     period_deg: float = 720.0,
     average: bool = True,
@@ -41,8 +44,9 @@ def read_pressure(
 ) -> pd.DataFrame:
     """Read the pressure in a cylinder over the crank angle from a text file of a rig.
 
-    Columns may be separated by semicolons, tabulators, commas or blanks, decimals by a point or a comma; before the rows there may be
-    any lines, of which the last ones name the columns and their units. `angle` and `pressure` choose columns by their names, or a part
+    Columns may be separated by semicolons, tabulators, commas or blanks and stand in quotes, decimals by a point or a comma (`decimal`
+    says by which), thousands by the other one; before the rows there may be
+    any lines, of which the last ones name the columns and their units. Angles before the dead centre (BTDC) change their sign. `angle` and `pressure` choose columns by their names, or a part
     of them, or by their numbers from 0 on; without them they are found by unit and name. `unit` is that of the pressure where the
     file has none, or a gauge pressure's as it stands. `shift_deg` is added to the angles, for files that count from another dead centre than the case.
 
@@ -54,19 +58,19 @@ def read_pressure(
     that a pressure is a gauge pressure, an angle that does not increase, an angle without a pressure, a gap, or less than one cycle.
     """
     text = _decoded(Path(path).read_bytes())
-    names, units, values = _table(text, str(path))
+    names, units, values = _table(text, str(path), decimal)
     shown = _shown(names, units, values)
-    first = _column(names, units, angle, lambda text: _plain(text) in ANGLES, ANGLE_NAMES, "angle", str(path), shown)
+    first = _column(names, units, angle, lambda text: not np.isnan(_angle(text)), ANGLE_NAMES, "angle", str(path), shown)
     second = _column(names, units, pressure, lambda text: not np.isnan(_pressure(text)[0]), PRESSURE_NAMES, "pressure", str(path), shown, other=first)
-    factor = ANGLES.get(_plain(units[first]), 1.0 if not units[first] else np.nan)
+    factor = _angle(units[first]) if units[first] else 1.0
     written = unit if unit is not None else units[second]
     in_pa, is_gauge = _pressure(written)
     if np.isnan(factor):
-        raise RigFileError(f"{path}: the angle's unit '{units[first]}' is not known, but deg and rad are{shown}")
+        raise RigFileError(f"{path}: the angle's unit '{units[first]}' is not known, but deg, rad, deg ATDC and deg BTDC are{shown}")
     if np.isnan(in_pa):
         raise RigFileError(f"{path}: the pressure's unit '{unit or units[second]}' is not known: give unit=, one of bar, mbar, kPa, MPa, Pa, hPa, psi{shown}")
     if is_gauge:
-        raise RigFileError(f"{path}: '{written}' is a gauge pressure: unit='bar' (or its own) reads it as it stands, and pressure_offset of &cylinder_pressure "
+        raise RigFileError(f"{path}: '{written}' is a gauge pressure: unit='{next(name for name, size in PRESSURES.items() if size == in_pa)}' reads it as it stands, and pressure_offset of &cylinder_pressure "
                            f"adds the ambient pressure{shown}")  # fmt: skip
     rows = values[:, [first, second]]
     known = np.isfinite(rows)
@@ -74,6 +78,8 @@ def read_pressure(
     if len(inner) and (lost := inner[0] + np.flatnonzero(known[inner[0] : inner[-1], 0] & ~known[inner[0] : inner[-1], 1])).size:
         raise RigFileError(f"{path}: the pressure is missing or no number in {lost.size} of {len(rows)} rows, first at the angle {rows[lost[0], 0]:g}{shown}")
     rows = rows[inner]
+    if BEFORE.search(names[first]) or BEFORE.search(units[first]):
+        rows = (rows if rows[0, 0] > rows[-1, 0] else rows[::-1]) * (-1.0, 1.0)
     degrees, bar = _unrolled(rows[:, 0] * factor, period_deg), rows[:, 1] * in_pa / 1e5
     if len(degrees) < 3 or not np.all(np.diff(degrees) > 0):
         at = 0 if len(degrees) < 3 else int(np.argmin(np.diff(degrees)))
@@ -102,51 +108,80 @@ def _decoded(raw: bytes) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _table(text: str, path: str) -> tuple[list[str], list[str], np.ndarray]:
-    """Names, units and rows of the table of a text: pandas reads it with the separators that give the most rows of numbers."""
-    lines = [line for line in text.split("\n") if line.strip()]
-    found: list[tuple[int, int, int, np.ndarray, str, str]] = []
-    for separator, decimal in ((";", ","), (";", "."), ("\t", ","), ("\t", "."), (",", "."), (r"\s+", ","), (r"\s+", ".")):
-        stripped = [line.strip().rstrip(separator if len(separator) == 1 else None).strip() for line in lines]
-        fields = [len(re.split(separator, line)) for line in stripped]
-        width = int(np.median(fields))
+def _table(text: str, path: str, decimal: str | None = None) -> tuple[list[str], list[str], np.ndarray]:
+    """Names, units and rows of the table of a text, with the separator and the decimal mark that give the most numbers."""
+    lines = [line.strip() for line in text.split("\n") if line.strip()]
+    found: list[tuple[int, int, str, list[list[str]], pd.DataFrame, np.ndarray]] = []   # numbers, first row of numbers alone, decimal mark, rows
+    for separator in (";", "\t", ",", " "):
+        rows = [re.split(r"\s+", line) for line in lines] if separator == " " else list(csv.reader((line.rstrip(separator) for line in lines), delimiter=separator, skipinitialspace=True))
+        width = int(np.median([len(row) for row in rows]))
         if width < 2:
             continue
-        first = next((i for i, line in enumerate(stripped) if fields[i] == width and _are_numbers(re.split(separator, line), decimal)), None)
-        if first is None:
-            continue
-        rows = pd.read_csv(io.StringIO("\n".join(stripped[first:])), sep=separator, decimal=decimal, header=None, names=range(width), engine="python",
-                           on_bad_lines="skip", skipinitialspace=True)  # fmt: skip
-        numbers = np.array([pd.to_numeric(rows[i], errors="coerce") for i in range(width)], dtype=float).T
-        numbers = numbers[np.isfinite(numbers).any(axis=1)]
-        found.append((int((np.isfinite(numbers).sum(axis=1) > 1).sum()) * width, width, first, numbers, separator, decimal))
-    if not found:
+        cells = pd.DataFrame([row + [""] * (width - len(row)) if len(row) <= width else [""] * width for row in rows], dtype=str).apply(lambda column: column.str.strip())
+        for mark in (",", "."):
+            if mark == decimal or decimal is None and (mark != separator or '"' in text):
+                numbers = np.array([_numbers(cells[i], mark) for i in range(width)]).T
+                several = np.isfinite(numbers).sum(axis=1) > 1
+                if (whole := several & (np.isfinite(numbers) | (cells == "").to_numpy()).all(axis=1)).any():
+                    found.append((int(several.sum()) * width, int(np.argmax(whole)), mark, rows, cells, numbers))
+    best = max((one[0] for one in found), default=0)
+    if not best:
         raise RigFileError(f"{path}: no rows of at least two numbers are found; its first lines are\n" + "\n".join("  " + line[:100] for line in lines[:5]))
-    _, width, first, numbers, separator, decimal = max(found, key=lambda one: one[:2])
-    heads = [[field.strip().strip('"') for field in re.split(separator, line.strip())] for line in lines[:first]]
-    heads = [head[:width] for head in heads if len(head) >= width and not any(head[width:]) and not _are_numbers([head[0]] * 2, decimal)]
+    _, first, mark, rows, cells, numbers = _clear([one for one in found if one[0] == best], path)
+    width = numbers.shape[1]
+    heads = [[field.strip() for field in row] for row in rows[:first]]
+    heads = [head[:width] for head in heads if len(head) >= width and not any(head[width:]) and np.isnan(_numbers(pd.Series(head[:1]), mark)[0])]
     names, units = [f"column {i}" for i in range(width)], [""] * width
-    if heads and len(heads) > 1 and all(not field or PRESSURE.fullmatch(field.strip()) or _plain(field) in ANGLES or _is_unit(field) for field in heads[-1]):
+    if heads and len(heads) > 1 and all(not field or PRESSURE.fullmatch(field.strip()) or not np.isnan(_angle(field)) or _is_unit(field) for field in heads[-1]):
         units = [field.strip() if PRESSURE.fullmatch(field.strip()) else _bare(field) for field in heads[-1]]
         names = heads[-2]
     elif heads:
         names = heads[-1]
     for i, name in enumerate(names):
-        inside = re.search(r"[\[(](.*?)[\])]", name)
-        if inside and not units[i] and not PRESSURE.fullmatch(name):
+        inside = re.search(r"[\[(](.*?)[\])]", name) or re.search(r"[,\s_]+([^,\s_]+)$", name)
+        if inside and not units[i] and not PRESSURE.fullmatch(name) and (name[inside.start()] in "[(" or PRESSURE.fullmatch(inside[1]) or not np.isnan(_angle(inside[1]))):
             units[i], names[i] = inside[1].strip(), name[: inside.start()].strip()
-    return names, units, numbers
+    numbers = numbers[first:]
+    return names, units, numbers[np.isfinite(numbers).any(axis=1)]
 
 
-def _are_numbers(fields: list[str], decimal: str) -> bool:
-    pattern = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
-    return all(not field.strip() or pattern.match(field.strip().replace(decimal, ".")) for field in fields) and sum(bool(field.strip()) for field in fields) > 1
+def _numbers(cells: pd.Series, decimal: str) -> np.ndarray:
+    """Numbers of texts with this decimal mark, in which the other one, blanks or apostrophes may part thousands; NaN for other texts."""
+    other = "," if decimal == "." else "."
+    parts = f"[{other} '\u00a0\u202f]"
+    good = cells.str.fullmatch(rf"[-+]?(?:\d+|[1-9]\d{{0,2}}(?:{parts}\d{{3}})+|(?=[.,]\d))(?:[{decimal}]\d*)?(?:[eE][-+]?\d+)?")
+    plain = cells.where(good, "").str.replace(parts, "", regex=True).str.replace(decimal, ".", regex=False)
+    return pd.to_numeric(plain, errors="coerce").to_numpy(dtype=float)
+
+
+def _clear(readings: list[tuple], path: str) -> tuple:
+    """The first of some readings of equal size. Raises RigFileError where a mark may be that of decimals and of thousands: some numbers of a
+    column have it, always before three digits, and others have none."""
+    first, second = (readings + readings[:1])[:2]
+    if second is first or second[3] is not first[3]:
+        return first
+    for i in np.flatnonzero((~((first[5] == second[5]) | (np.isnan(first[5]) & np.isnan(second[5])))).any(axis=0)):
+        cells = first[4][i][np.isfinite(first[5][:, i]) & np.isfinite(second[5][:, i])]
+        mark = next(mark for mark in ",." if cells.str.contains(mark, regex=False).any())
+        marked = cells.str.contains(mark, regex=False)
+        if not marked.all():
+            text = cells[marked].iloc[0]
+            raise RigFileError(f"{path}: is {text} {text.replace(mark, '')} or {text.replace(mark, '.')}? decimal='.' or decimal=',' says it")
+        return first if mark == first[2] else second
+    return first
 
 
 def _pressure(unit: str) -> tuple[float, bool]:
     """A unit of pressures in Pa, NaN where it is none, and whether it says that they are gauge pressures."""
     found = PRESSURE.fullmatch(unit.strip().strip("[]").strip())
     return (PRESSURES[found[1].lower()], bool(found[3])) if found else (np.nan, False)
+
+
+def _angle(unit: str) -> float:
+    """A unit of crank angles in degrees; NaN where it is none."""
+    words = re.findall(r"[^\W\d_]+", _plain(unit).replace("°", " deg "))
+    known = bool(words) and all(word in ANGLE_WORDS or word in OF_DEAD_CENTRE for word in words) and not set(words) <= {"crank", "n", "v", "do"}
+    return (180 / np.pi if "rad" in words else 1.0) if known else np.nan
 
 
 def _bare(unit: str) -> str:
