@@ -44,7 +44,9 @@ from gudgeon.plots.figure_map import read_figures
 from gudgeon.plots.quantities import QUANTITIES, once_a_cycle
 from gudgeon.portuguese import TEXTS
 from gudgeon.program import release_program
+from gudgeon.report import curves as report_curves
 from gudgeon.report import page as report_page
+from gudgeon.report import scene as report_scene
 from gudgeon.report.case_rows import case_rows
 from gudgeon.results import (
     FineResults,
@@ -1120,9 +1122,9 @@ class Drawing(unittest.TestCase):
 
     def test_largest_deflection_of_a_rod(self) -> None:
         zero, far = np.zeros(3), np.array([0.0, 2e-6, 1e-6])
-        self.assertEqual(report_page.largest_deflection({"time": zero}), 0)
-        self.assertAlmostEqual(report_page.largest_deflection({"rod_mode_1": far, "rod_mode_2": zero}), 2e-6, delta=1e-12)
-        self.assertAlmostEqual(report_page.largest_deflection({"rod_mode_1": zero, "rod_mode_2": -far}), 2e-6, delta=1e-12)
+        self.assertEqual(report_scene.largest_deflection({"time": zero}), 0)
+        self.assertAlmostEqual(report_scene.largest_deflection({"rod_mode_1": far, "rod_mode_2": zero}), 2e-6, delta=1e-12)
+        self.assertAlmostEqual(report_scene.largest_deflection({"rod_mode_1": zero, "rod_mode_2": -far}), 2e-6, delta=1e-12)
 
     def test_overlaps_are_found(self) -> None:
         drawing, axes = plt.subplots(figsize=(3, 2))
@@ -1923,15 +1925,15 @@ class Page(unittest.TestCase):
     def test_thinning_keeps_peaks(self) -> None:
         values = np.sin(np.arange(100000) / 700)
         values[54321], values[777] = 9, -9
-        rows = report_page.chosen_rows([np.arange(100000.0), values], 2000)
+        rows = report_scene.chosen_rows([np.arange(100000.0), values], 2000)
         self.assertLessEqual(len(rows), 2002)
         self.assertTrue({0, 777, 54321, 99999} <= set(rows.tolist()))
-        self.assertEqual(len(report_page.chosen_rows([values[:2000]], 2000)), 2000)
+        self.assertEqual(len(report_scene.chosen_rows([values[:2000]], 2000)), 2000)
 
     def test_thinning_keeps_the_last_cycle(self) -> None:
         """A page opens on the last cycle, of which a thousand others must leave more than some rows."""
         values = np.sin(np.arange(720000) * np.pi / 360)
-        rows = report_page.chosen_rows([np.arange(720000.0), values], 8000, (719280, 720000))
+        rows = report_scene.chosen_rows([np.arange(720000.0), values], 8000, (719280, 720000))
         self.assertEqual(np.count_nonzero(rows >= 719280), 720)
         self.assertLessEqual(len(rows), 8002)
         self.assertTrue(0 in rows and np.all(np.diff(rows) > 0))
@@ -1940,7 +1942,7 @@ class Page(unittest.TestCase):
         trace = pd.DataFrame({name: np.tile(column, 30) for name, column in made.trace.items()}).assign(time=np.arange(30 * len(time)) * time[1], cylinder_volume=1e-4, cylinder_pressure=1e5)
         made = replace(made, trace=trace)
         made.summary.update({"cycle_start": (str(29 * len(time) * time[1]), "s"), "cycle_duration": (str(len(time) * time[1]), "s"), "cycle_revolutions": ("1", "")})
-        scene, data = report_page.scene_of(made, most=2 * len(time) + 400)
+        scene, data = report_scene.scene_of(made, most=2 * len(time) + 400)
         times = np.frombuffer(data["trace"], "<f4")[: scene["rows"]]
         self.assertGreaterEqual(np.count_nonzero(times >= scene["cycle"]["begin"] - time[1] / 2), len(time))
         self.assertTrue(all(plot["alone"] == (not plot["timed"]) for plot in scene["plots"]))   # lines between rows of other cycles are no curves
@@ -1952,7 +1954,7 @@ class Page(unittest.TestCase):
             force[0] = 2e3
             trace = made.trace.assign(pin_force_x=size * force, pin_force_y=0.0, cylinder_volume=size * 1e-7 * force, cylinder_pressure=1e5 * force)
             made = replace(made, trace=trace)
-            drawn = {plot["title"]: plot for plot in report_page.plots(report_page.with_sizes(made), made)}
+            drawn = {plot["title"]: plot for plot in report_curves.plots(report_curves.with_sizes(made), made)}
             plot = next(plot for plot in drawn.values() if plot["curves"][0]["y"] == "pin_force")
             self.assertEqual((plot["y"], plot["curves"][0]["y_factor"]), (unit, factor))
             self.assertEqual(drawn["p–V diagram"]["x"], f"cylinder volume [{volume}]")
@@ -1976,22 +1978,22 @@ class Page(unittest.TestCase):
     def test_the_time_line_has_the_extremes_of_the_summary(self) -> None:
         made = self.made()
         self.assertGreater(made["film_thickness"].min(), -9e-6)
-        line = report_page.time_line(report_page.with_sizes(made), made)
+        line = report_scene.time_line(report_curves.with_sizes(made), made)
         self.assertEqual(line["range"], [-9e-6, made["film_thickness"].max()])
         self.assertEqual(line["extremes"], line["range"])
 
     def test_energy_residuals_have_plots_of_their_own(self) -> None:
         made = self.made()
-        columns = report_page.with_sizes(made)
+        columns = report_curves.with_sizes(made)
         columns["ideal energy_residual"] = 3e4 * columns["energy_residual"]
-        drawn = {plot["title"]: plot for plot in report_page.plots(columns, made)}
+        drawn = {plot["title"]: plot for plot in report_curves.plots(columns, made)}
         own, ideal = drawn["Energy residual"], drawn["Energy residual of the ideal joint's run"]
         self.assertEqual([len(plot["curves"]) for plot in (own, ideal)], [1, 1])
         self.assertEqual((own["y"], ideal["y"]), ("nJ", "µJ") if columns["energy_residual"].max() < 1e-6 else ("µJ", "mJ"))
 
     def test_orbits_are_coloured_by_contact(self) -> None:
         made = self.made()
-        drawn = {plot["title"]: plot for plot in report_page.plots(report_page.with_sizes(made), made)}
+        drawn = {plot["title"]: plot for plot in report_curves.plots(report_curves.with_sizes(made), made)}
         orbit = drawn["Pin orbit over the clearance"]
         self.assertEqual((orbit["phase"], orbit["x"]), ("phase", "<i>e<sub>y</sub></i> / <i>c</i>"))
 
@@ -2018,7 +2020,7 @@ class Page(unittest.TestCase):
 
     def test_the_page_opens_where_the_force_is_largest(self) -> None:
         columns = {"time": np.linspace(0, 1, 11), "pin_force": np.array([9.0, 0, 1, 2, 7, 3, 2, 1, 1, 1, 1])}
-        self.assertAlmostEqual(report_page.first_moment(columns), 0.4)  # the fall of the pin at the beginning is not counted
+        self.assertAlmostEqual(report_scene.first_moment(columns), 0.4)  # the fall of the pin at the beginning is not counted
 
     def test_pages_in_both_languages(self) -> None:
         made, portuguese = self.made(), language.Language("pt")
@@ -2037,7 +2039,7 @@ class Page(unittest.TestCase):
 
     def test_every_word_of_the_page_has_its_portuguese(self) -> None:
         portuguese = language.Language("pt")
-        for text in [*report_page.script_words("drawing", "page", "explore"), *(title for _, title, *_ in (*report_page.OVER_TIME, *report_page.FIRST_OF_BEARINGS))]:
+        for text in [*report_page.script_words("drawing", "page", "explore"), *(title for _, title, *_ in (*report_curves.OVER_TIME, *report_curves.FIRST_OF_BEARINGS))]:
             portuguese.say(text)
         self.assertEqual(portuguese.unknown, set())
         self.assertGreater(len(report_page.script_words("drawing", "page", "explore")), 15)

@@ -101,6 +101,17 @@ def run_cycle(run: Run) -> float:
     return 2 * np.pi * float(turns[0]) if turns else run.cycle
 
 
+def first_angle(run: Run) -> float:
+    """Where an axis of the crank angle in the last cycle begins [degrees]: at -360 for two revolutions whose largest pressure is within
+    90 degrees of 0 or 720, where an axis from 0 would cut it in two; else at 0."""
+    gas = next((name for name in ("cylinder_pressure", "gas_force") if name in run), None)
+    if gas is None or round(run_cycle(run) / np.pi) != 4:
+        return 0.0
+    rows = last_cycle(run)
+    peak = np.degrees(run["crank_angle"][rows][np.argmax(run[gas][rows])]) % 720
+    return -360.0 if min(peak, 720 - peak) < 90 else 0.0
+
+
 def draw_circle(axes: Axes, track: np.ndarray, thinnest: int) -> None:
     """The clearance circle, and the thinnest film of an orbit of complex places over the clearance."""
     circle = np.exp(1j * np.linspace(0, 2 * np.pi, 361))

@@ -8,11 +8,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 from gudgeon import language
 from gudgeon.names import PLACES, suited
-from gudgeon.plots.bearing import last_cycle, run_cycle
+from gudgeon.plots.bearing import first_angle, last_cycle, run_cycle
 from gudgeon.plots.columns import COLOURS, crank_angles, values_of
 from gudgeon.plots.style import BLUE
 from gudgeon.report.answers import FIRM, Answers, amount, lines, losses_of, number, numbered_bearings, of_numbered, title
-from gudgeon.report.page import first_angle, notes, warnings
+from gudgeon.report.page import notes, warnings
 from gudgeon.results import MissingResult, Run
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing

@@ -89,7 +89,7 @@ def slider_range(key: Key, value: float) -> tuple[float, float]:
 
 def of_cycle(run: Any) -> Any:
     """The last whole cycle of a run of `gudgeon.results`, with the contacts that begin in it; the run itself without one."""
-    from gudgeon.report.page import last_cycle
+    from gudgeon.report.scene import last_cycle
 
     time = run["time"]
     cycle = last_cycle(run, {"time": time, "crank_angle": run["crank_angle"]})
@@ -210,7 +210,8 @@ class Explorer:
     def scene(self, run: gudgeon.Run) -> tuple[dict[str, Any], dict[str, bytes]]:
         """What the page draws and says of a run."""
         from gudgeon.report import answers
-        from gudgeon.report.page import scene_of, warnings
+        from gudgeon.report.page import warnings
+        from gudgeon.report.scene import scene_of
         from gudgeon.results import drawable
 
         whole, say = drawable(run), self.language.say
