@@ -25,7 +25,7 @@ quietly() {   # run a command; stop with what it said if it failed or warned
 .venv/bin/python scripts/manual/pages.py collect "$program" || exit 1
 quietly .venv/bin/ford scripts/manual/api.md
 .venv/bin/python scripts/manual/pages.py local || exit 1
-quietly env NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs build --strict -f scripts/manual/mkdocs.yml
+quietly env NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs build --strict -f scripts/manual/mkdocs.yml </dev/null   # without standard input it finds no folder
 echo build/manual/index.html
 $pdf || exit 0
 
