@@ -382,7 +382,7 @@ study long <<'END'
 END
 run sweep -o "$work/whole" "$work/long.nml"
 for signal in KILL TERM; do
-  "$gudgeon" sweep -o "$work/$signal" "$work/long.nml" >"$work/out" 2>"$work/err" &
+  "$gudgeon" sweep -j 2 -o "$work/$signal" "$work/long.nml" >"$work/out" 2>"$work/err" &
   pid=$!
   tries=0
   while [ "$(ls "$work/$signal/long.chunks" 2>/dev/null | grep -c 'runs.csv$')" -lt 5 ] && [ $tries -lt 3000 ]; do
@@ -395,7 +395,7 @@ for signal in KILL TERM; do
   chunks=$(ls "$work/$signal/long.chunks" | grep -c 'runs.csv$')
   check "$signal: stopped before the end, $chunks chunks" [ "$chunks" -ge 5 -a "$chunks" -lt 200 -a ! -e "$work/$signal/long.runs.csv" ]
   tries=0   # the processes of a killed sweep end with it
-  while pgrep -f "sweep -o $work/$signal" >/dev/null && [ $tries -lt 1500 ]; do tries=$((tries + 1)); sleep 0.02; done
+  while pgrep -f "sweep -j 2 -o $work/$signal" >/dev/null && [ $tries -lt 1500 ]; do tries=$((tries + 1)); sleep 0.02; done
   check "$signal: no process is left" [ $tries -lt 1500 ]
   [ "$signal" = TERM ] && check "interrupted: exit status 4, got $status" [ "$status" = 4 ]
   [ "$signal" = TERM ] && check "interrupted: the message names the command that continues" grep -q 'interrupted after .* of 3000 runs; the same command' "$work/err"
