@@ -19,7 +19,7 @@ if [ "$1" = --stage ]; then   # --stage FOLDER NAME|COMMAND: run the command, pr
   {
     echo "== ${3%%|*}"
     echo "   $seconds s, $processor s of processor time"
-    grep -v '^\[ *[0-9]*%\]' "$log"
+    grep -av '^\[ *[0-9]*%\]' "$log"
   } >"$log.said"
   cat "$log.said"
   LC_ALL=C awk -v status=$status '/^[0-9]+ passed, [0-9]+ failed$/ { passed = $1; failed = $3; counted = 1 }
