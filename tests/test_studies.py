@@ -491,6 +491,7 @@ class Sweeps(InDirectory):
         out = self.work / "cluster"
         settings = (f"study={self.study}", f"out={out}", "chunk=4", f"program={self.program}", f"options={options}")
         outcome = self.run_program(
+            *("env", f"XDG_CACHE_HOME={self.work}"),   # which Snakemake needs, also where nothing can be written to the home folder
             *(SNAKEMAKE, "--snakefile", TOP / "scripts" / "cluster" / "Snakefile"),
             *("--directory", self.work, "--cores", 2, "--config", *settings),
         )
