@@ -108,6 +108,7 @@ class Browser:
             except (urllib.error.URLError, ConnectionError) as error:
                 why = error.read().decode() if isinstance(error, urllib.error.HTTPError) else str(error)
                 time.sleep(0.2)
+        self.process.terminate()
         raise RuntimeError(f"chromedriver starts no browser: {why}")
 
     def call(self, method: str, path: str, body: dict | None = None) -> object:
