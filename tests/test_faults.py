@@ -163,7 +163,7 @@ def test_signals(gudgeon: Gudgeon, work: Path) -> None:
     check(not (folder / "sim_I.ideal.csv").exists(), "ideal twin: the earlier one is removed")
     whole(folder, "twin")
     folder = work / "later"   # the case is done, its ideal twin is not
-    process = gudgeon.start("-o", folder, "-j", "1", *SHORT[4:], "--set", "integrator.revolutions=20", "--set", "output.ideal_twin=T",
+    process = gudgeon.start("-o", folder, "-j", "1", *SHORT[4:], "--set", "integrator.revolutions=60", "--set", "output.ideal_twin=T",
                             "--set", "output.interval=1e-6", ROOT / "cases" / "sim_II.nml")
     wait_for((folder / "sim_II.ideal.csv.part").exists, "sim_II.ideal.csv.part")
     process.send_signal(signal.SIGINT)
