@@ -11,7 +11,9 @@ cd "$(dirname "$0")/.." || exit 1
 if [ "$1" = --stage ]; then   # --stage FOLDER NAME|COMMAND: run the command, print its output and add its counts to those in the folder
   log=$(mktemp "$2/log.XXXXXX")
   began=$(date +%s)
-  timeout 4800 sh -c "ulimit -t 1200; ${3#*|}" >"$log" 2>&1   # processor time of a process and time: none takes a third of that
+  # processor time of a process and time: none takes a third of that; signals as at a terminal, although nohup or a shell in the background
+  # started the tests
+  timeout 4800 env --default-signal sh -c "ulimit -t 1200; ${3#*|}" >"$log" 2>&1
   status=$?
   seconds=$(($(date +%s) - began))
   times >"$log.times"

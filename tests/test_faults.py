@@ -556,7 +556,9 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--program", type=Path)
     options = parser.parse_args()
-    signal.signal(signal.SIGINT, signal.default_int_handler)   # a background job and its children would ignore the signal
+    signal.signal(signal.SIGINT, signal.default_int_handler)   # a background job and its children would ignore signals, as with nohup
+    for number in (signal.SIGHUP, signal.SIGTERM, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU):
+        signal.signal(number, signal.SIG_DFL)
     gudgeon = Gudgeon(options.program or program_built())
     with tempfile.TemporaryDirectory(prefix="faults") as work:
         for test in (test_signals, test_full_disk, test_full_disk_has_summary, test_planted, test_names, test_standard_input, test_calls_not_offered,
