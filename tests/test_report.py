@@ -35,6 +35,7 @@ use_virtual_environment()
 
 from gudgeon.language import Language
 from gudgeon.report.answers import Answers, amount, html_of, lines, losses_of, number, of_numbered, section, warnings
+from gudgeon.report.explorer import answers_of, shown_unit
 
 TOP = Path(__file__).resolve().parents[1]
 
@@ -512,6 +513,14 @@ def check_answers(checks: Assertions) -> None:
     checks.check(table == [("main bearing 2", ["3 µm at 12.0°", "45 MPa", "1.234 kN", "250 mW"]), ("main bearing 10", ["4 µm at 12.0°", "45 MPa", "1.234 kN", "250 mW"]),
                            ("crank pin 1", ["2 µm at 12.0°", "45 MPa", "1.234 kN", "250 mW"])], f"numbered bearings in their order: {table}")
     checks.check(lines(engine)[2][:3] == [("Thinnest film", "2 µm at 12.0°, crank pin 1"), ("Loss of all bearings", "1.234 kW"), ("Oil flow of all bearings", "180 cm³/min")], f"of all bearings: {lines(engine)[2]}")
+    listed = answers_of(summarised({name: (value, "") for name, value in {"min_film_thickness": "1e-6", "cycle_min_film_thickness": "8e-6"}.items()} | bearings | {
+        "cycle_start": ("0", "s"), "cycle_thinnest_bearing": ("crank_pin_1", "")}), Language().say)
+    checks.check([pair for pair in listed if "film" in pair[0] or "2" in pair[0]] == [("Thinnest film, piston pin", "8 µm"), ("Thinnest film", "2 µm at 12.0°, crank pin 1"),
+                 ("main bearing 2", "3 µm at 12.0°, 45 MPa, 1.234 kN, 250 mW")] and len(dict(listed)) == len(listed), f"the explorer's answers of numbered bearings: {listed}")
+    for key, value, text in (("kg", 0.00015, "0.15 g"), ("kg", 0.38, "0.38 kg"), ("kg", 9e3, "9000 kg"), ("kg m^2", 2e-9, "2 g mm²"), ("kg m^2", 4e-5, "40 kg mm²"), ("kg m^2", 0.0045, "0.0045 kg m²"),
+                             ("m^2", 2.5e-5, "0.25 cm²"), ("m^2", 2e-8, "0.02 mm²"), ("J", 2.9e6, "2900 kJ"), ("J", 190.0, "190 J"), ("N", 0.05, "0.05 N"), ("rad/s", math.pi, "30 rpm")):
+        unit, factor, offset = shown_unit(key, value)
+        checks.check(f"{value * factor + offset:.4g} {unit}" == text, f"a slider of {value} {key}: {value * factor + offset:.4g} {unit}, wanted {text}")
     parts = {name: value for name, value, _ in losses_of(Answers(engine))}
     checks.check([parts.get(name) for name in ("Main bearing 2", "Main bearing 10", "Crank pin 1")] == [2e3] * 3, f"their parts in the losses: {parts}")
     portuguese.unknown.clear()

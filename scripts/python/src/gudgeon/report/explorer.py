@@ -19,7 +19,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -48,6 +48,10 @@ OILS = ("ISO VG 32", "ISO VG 46", "ISO VG 68", "ISO VG 100", "SAE 10W", "SAE 20"
 #: Units of keys, and what is shown: unit, factor and offset.
 SHOWN = {"K": ("°C", 1.0, -273.15), "rad/s": ("rpm", 30 / math.pi, 0.0), "Pa s": ("mPa s", 1e3, 0.0), "m^2/s": ("mm²/s", 1e6, 0.0), "degrees": ("°", 1.0, 0.0)}
 
+#: The same for values of at least a size, of which the first is taken: unit, factor and this size.
+SIZES = {"kg": (("t", 1e-3, 1e4), ("kg", 1.0, 0.1), ("g", 1e3, 1e-4), ("mg", 1e6, 0.0)), "kg m^2": (("kg m²", 1.0, 1e-3), ("kg mm²", 1e6, 1e-6), ("g mm²", 1e9, 0.0)),
+         "m^2": (("m²", 1.0, 0.1), ("cm²", 1e4, 1e-5), ("mm²", 1e6, 0.0)), "J": (("kJ", 1e-3, 1e4), ("J", 1.0, 0.0))}  # fmt: skip
+
 #: Curves over the crank angle; that of the gas is a p-V diagram.
 CURVES = re.compile(r"(\w+_)?(film_thickness|normal_force)|pin_force|piston_acceleration|crank_speed|guide_force|cylinder_pressure")
 
@@ -74,6 +78,8 @@ def shown_unit(of_key: str, value: float) -> tuple[str, float, float]:
         return ("µm", 1e6, 0.0) if abs(value) < 5e-4 else ("mm", 1e3, 0.0)
     if of_key == "Pa":
         return ("bar", 1e-5, 0.0) if abs(value) < 1e7 else ("MPa", 1e-6, 0.0)
+    if fitting := [(unit, factor, 0.0) for unit, factor, least in SIZES.get(of_key, ()) if abs(value) >= least]:
+        return fitting[0]
     return SHOWN.get(of_key, (plain_unit(of_key), 1.0, 0.0))
 
 
@@ -99,6 +105,18 @@ def of_cycle(run: Any) -> Any:
     rows = (time >= begin) & (time <= end)
     begun = run.events["time"] - run.events["duration"].fillna(0)
     return dataclasses.replace(run, trace=run.trace[rows].reset_index(drop=True), events=run.events[(begun >= begin) & (begun <= end)])
+
+
+def answers_of(run: Any, say: Callable[[str], str]) -> list[tuple[str, str]]:
+    """Names and HTML of the answers of a run of `gudgeon.results`, each name once; a numbered bearing has one line."""
+    from gudgeon.report import answers
+
+    (places, of_bearings, of_machine), (_, numbered) = answers.lines(run), answers.of_numbered(run)
+    found = [(say(name) + (f", {say(place)}" if len(places) > 1 or numbered else ""), say(text))
+             for name, texts in of_bearings for place, text in zip(places, texts) if text]  # fmt: skip
+    found += [(say(name), say(text)) for name, text in of_machine]
+    found += [(say(name), ", ".join(say(text) for text in texts if text)) for name, texts in numbered]
+    return [(name, answers.html_of(text)) for name, text in found]
 
 
 class Explorer:
@@ -209,23 +227,18 @@ class Explorer:
 
     def scene(self, run: gudgeon.Run) -> tuple[dict[str, Any], dict[str, bytes]]:
         """What the page draws and says of a run."""
-        from gudgeon.report import answers
         from gudgeon.report.page import warnings
         from gudgeon.report.scene import scene_of
         from gudgeon.results import drawable
 
         whole, say = drawable(run), self.language.say
         scene, data = scene_of(of_cycle(whole), None, None, self.language, MOST_ROWS, self.is_shown)
-        places, of_bearings, of_machine = answers.lines(whole)
-        found = [(say(name) + (f", {say(place)}" if len(places) > 1 else ""), answers.html_of(say(text)))
-                 for name, texts in of_bearings for place, text in zip(places, texts) if text]  # fmt: skip
         notes = [*(say(text) for text in warnings(whole)), *run.notes]
         if run.certificate is not None:
             notes.insert(0, say(f"Certified: {run.certificate.digits:.3g} digits until {1e3 * run.certificate.until:.4g} ms"))
         elif scene["contacts"]:
             notes.append(say("Contacts follow each other unpredictably: compare answers over many cycles, not single curves."))
-        head = {"scene": scene, "answers": [*found, *((say(name), answers.html_of(say(text))) for name, text in of_machine)], "notes": notes}
-        return head, data
+        return {"scene": scene, "answers": answers_of(whole, say), "notes": notes}, data
 
     @staticmethod
     def is_shown(plot: dict[str, Any]) -> bool:
