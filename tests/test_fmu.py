@@ -393,6 +393,12 @@ def command(folder: str) -> None:
     case = gudgeon.read(TOP / "cases" / "sim_I.nml").set({"case.title": "<b> & 'x'"})
     path = gudgeon.fmu(case, Path(folder) / "title.fmu")
     check(fmpy.read_model_description(str(path)).description == "<b> & 'x'", "titles are escaped")
+    for one, columns in ((case, ["crank_speed", "film_thickness", "piston_position"]), (case.set({"output.columns": "crank_speed, film_thickness, piston_position"}), None)):
+        path = gudgeon.fmu(one, Path(folder) / "timed.fmu", fmi=3, columns=columns)   # FMPy refuses a unit of FMI 3 without a time
+        found = {variable.name: variable for variable in fmpy.read_model_description(str(path)).modelVariables}
+        check(found["time"].causality == "independent" and len(fmpy.simulate_fmu(str(path), stop_time=1e-3)) > 1, "a unit has its time where its columns do not name it")
+        shown = {name: found[name].displayUnit for name in ("film_thickness", "piston_position", "mechanism.crank_length", "joint.clearance")}
+        check(shown == {"film_thickness": "um", "piston_position": None, "mechanism.crank_length": None, "joint.clearance": "um"}, f"lengths of films in um, strokes in m: {shown}")
 
 
 def main() -> int:

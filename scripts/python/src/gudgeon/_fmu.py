@@ -28,6 +28,7 @@ ALL_INPUTS = ("drive.torque", "drive.crank_speed", "cylinder_pressure")
 NO_PARAMETERS = {"output", "run"}  # groups whose values the master's experiment replaces
 ENDS = {"integrator.revolutions", "integrator.crank_revolutions", "integrator.end_time"}
 DISPLAY = {"rad/s": ("rpm", 30 / math.pi), "m": ("um", 1e6), "rad": ("deg", 180 / math.pi), "Pa": ("kPa", 1e-3)}
+SMALL = re.compile(r"clearance|eccentricity|film|gap|penetration|deflection|wear|roughness|deviation|offset$|stretch")  # lengths in um, others in m
 BASE = {
     "kg": {"kg": 1}, "m": {"m": 1}, "s": {"s": 1}, "rad": {"rad": 1}, "K": {"K": 1}, "N": {"kg": 1, "m": 1, "s": -2},
     "Pa": {"kg": 1, "m": -1, "s": -2}, "J": {"kg": 1, "m": 2, "s": -2}, "W": {"kg": 1, "m": 2, "s": -3}, "Hz": {"s": -1},
@@ -36,11 +37,13 @@ BASE = {
 
 
 def fmu(case: Case, path: str | Path | None = None, fmi: int = 2, columns: Sequence[str] | str | None = None) -> Path:
-    """Write a unit of the case: NAME.fmu, or `path`. Its outputs are the columns of the case, or those named; its inputs those of
+    """Write a unit of the case: NAME.fmu, or `path`. Its outputs are the columns of the case, or those named, and the time; its inputs those of
     `Case.begin`; its parameters all numbers of the groups that the case has. FMI 2.0, or 3.0 with `fmi=3`."""
     if fmi not in (2, 3):
         raise ValueError("fmi must be 2 or 3")
     case = case._with(None, columns)
+    if "time" not in (names := [column.name for column in case.columns]):   # which every unit of FMI 3 has
+        case = case._with(None, ["time", *names])
     target = Path(path or f"{case.name}.fmu")
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
@@ -196,7 +199,7 @@ class _Description:
         if unit not in ("", "-", "1", "%") and not whole:
             value["unit"] = unit
             self._units.add(unit)
-            if unit in DISPLAY:
+            if unit in DISPLAY and (unit != "m" or SMALL.search(name)):
                 value["displayUnit"] = DISPLAY[unit][0]
         if start is not None:
             value["start"] = repr(start)
@@ -242,8 +245,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
         Path(options.out).mkdir(parents=True, exist_ok=True)
         case = read(options.case)
         columns = options.columns and [name.strip() for name in options.columns.split(",")]
-        if columns and "time" not in columns:
-            columns = ["time", *columns]
         print(fmu(case, Path(options.out) / f"{case.name}.fmu", options.fmi, columns))
     except (OSError, ValueError) as error:
         sys.exit(f"gudgeon-fmu: {error}")
