@@ -1493,6 +1493,25 @@ class Portuguese(unittest.TestCase):
         self.assertEqual([text for text, said in printed.items() if TEXTS.get(text, said) != said and text not in other_sense], [])
         self.assertEqual([said for said in TEXTS.values() if re.search("moente|cabeça", said, re.IGNORECASE)], [])
 
+    def test_what_compare_prints(self) -> None:
+        time = np.linspace(0, 1, 11)
+        a, b = (run({"time": time, "crank_speed": 100 + 10 * time + size * time**2}) for size in (0, 2))
+        self.addCleanup(language.use, "en")
+        said = language.use("pt")
+        printed = compare.report(compare.agree(a, b, ["crank_speed"], 0.05), 0.05)
+        self.assertIn("horizonte: 0,5 s, por causa de crank_speed", printed)
+        self.assertIn("comparadas de 0 s a 1 s; concordância: diferença de até 0,05 da faixa", printed)
+        self.assertEqual(said.unknown, set())
+
+    def test_a_name_behind_what_it_is(self) -> None:
+        """As in the scenes of gudgeon-plot models; a name that is a word of a text, such as a run that is called friction, changes no text."""
+        said = language.Language("pt")
+        for name in ("lugre", "friction"):
+            said.keep(name)
+        self.assertEqual([said.say(text) for text in ("friction lugre at the crank pin", "no friction", "normal force over penetration")],
+                         ["atrito lugre no pino da manivela", "sem atrito", "força normal em função da penetração"])
+        self.assertEqual(said.unknown, set())
+
     def test_names_and_units_need_no_translation(self) -> None:
         """Units with the prefixes of large and small values; the user's own titles in `gudgeon-plot columns`."""
         portuguese = language.Language("pt")

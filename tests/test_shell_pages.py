@@ -6,6 +6,10 @@
 Needs f90nml and jsonschema. Ends with `N passed, N failed`; the exit status is 0 if nothing failed.
 """
 
+import ast
+import contextlib
+import io
+import itertools
 import json
 import os
 import re
@@ -23,6 +27,9 @@ TOP = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(TOP / "scripts" / "python" / "src"))
 os.environ.setdefault("GUDGEON_LIBRARY", str(TOP / "build" / "library" / "libgudgeon.so"))
 import gudgeon
+from gudgeon import cli
+from gudgeon.language import Language
+from gudgeon.portuguese import UNTRANSLATED
 
 passed = failed = 0
 
@@ -135,7 +142,7 @@ def completion(program: str) -> None:
 
 def words_of(text: str) -> set[str]:
     """Words of three letters and more; no paths, names with _, or notes on a run."""
-    text = re.sub(r"^  (?:note|aviso): .*$|\S*[/_=]\S*", "", re.sub(r"\b(\w+)/(diameter|diâmetro|s|min)\b", r"\1 \2", text), flags=re.MULTILINE)
+    text = re.sub(r"^  (?:note|aviso): .*$|\S*[/_=]\S*|\b[a-z]+\.[a-z]+", "", re.sub(r"\b(\w+)/(diameter|diâmetro|s|min)\b", r"\1 \2", text), flags=re.MULTILINE)
     return set(re.findall(r"(?<!-)[^\W\d]{3,}", text))
 
 
@@ -186,6 +193,120 @@ def portuguese(program: str, folder: str) -> None:
     check(done.stdout == output(program, "--resolved", str(cases[0])), "a resolved case is one in every language")
 
 
+#: Calls whose texts, and arguments whose texts, a picture or a page shows; texts that do not occur, or whose parts are translated.
+SHOWN_BY, SHOWN_AS = {"set_xlabel", "set_ylabel", "set_title", "suptitle", "annotate", "text", "say"}, {"label", "title", "xlabel", "ylabel"}
+OTHERS = {"None: {}.", "{}: {} cycle of a revolution, which repeat", "{}: {} cycle of {} revolutions, which repeat"}
+
+
+def variants(node: ast.AST, known: dict[str, ast.AST]) -> list[str]:
+    """The texts that an expression can be, {} for what only a run knows. `known`: expressions of local names."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        return [node.value]
+    if isinstance(node, ast.FormattedValue):
+        return variants(node.value, known) or ["{}"]
+    if isinstance(node, ast.IfExp):
+        return variants(node.body, known) + variants(node.orelse, known)
+    if isinstance(node, ast.Name) and node.id in known:
+        return variants(known[node.id], {})
+    parts = node.values if isinstance(node, ast.JoinedStr) else [node.left, node.right] if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add) else []
+    found = [variants(part, known) or ["{}"] for part in parts]
+    return ["".join(words) for words in itertools.product(*found)] if any(part != ["{}"] for part in found) else []
+
+
+def texts(path: Path) -> set[str]:
+    """The texts that a module shows, as far as they stand in its calls."""
+    found: set[str] = set()
+    module = ast.parse(path.read_text(encoding="utf-8"))
+    constants = {node.targets[0].id: node.value for node in module.body if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)}
+    for function in [node for node in ast.walk(module) if isinstance(node, ast.FunctionDef)]:
+        grown = {node.target.id for node in ast.walk(function) if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name)}
+        known = constants | {node.targets[0].id: node.value for node in ast.walk(function) if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name) and node.targets[0].id not in grown}
+        for call in [node for node in ast.walk(function) if isinstance(node, ast.Call)]:
+            name = getattr(call.func, "attr", getattr(call.func, "id", ""))
+            shown = [*(call.args if name in SHOWN_BY else ()), *(word.value for word in call.keywords if word.arg in SHOWN_AS)]
+            found.update(text for node in shown for text in variants(node, known))
+    return found - OTHERS
+
+
+def written_texts() -> None:
+    """Every text in a call that shows one has its Portuguese, with a number or with nothing for what only a run knows."""
+    count, said = 0, Language("pt")
+
+    def is_known(text: str) -> bool:
+        said.unknown.clear()
+        said.say(text)
+        return not said.unknown
+
+    for path in sorted((TOP / "scripts/python/src/gudgeon").rglob("*.py")):
+        for text in sorted(texts(path)):
+            values = itertools.product(("1", ""), repeat=text.count("{}"))
+            check(any(is_known(text.format(*found)) for found in values), f"{path.name}: no Portuguese of {text!r}")
+            count += 1
+    check(count > 150, f"texts in calls: {count}")
+
+
+#: Small studies: over a law, so that words stand at an axis; of two numbers; from a table, so that it has no grid.
+STUDIES = {
+    "words": "&study case = '{top}/cases/flores/dry_0500um.nml', title = 'Leis' /\n&parameter key = 'contact.law', values = 'exact', 'hertz' /\n",
+    "grid": "&study case = '{top}/cases/sim_I.nml', title = 'Filmes' /\n&parameter key = 'joint.clearance', from = 1e-5, to = 3e-5, count = 2 /\n"
+    "&parameter key = 'lubrication.viscosity', from = 0.005, to = 0.02, count = 2 /\n",
+}
+
+#: Words that are Portuguese too, and names in what is printed.
+SAME = {"degC", "angular", "normal", "sigma", "morris", "sobol", "star", "Poincaré"}
+
+#: What gudgeon-plot draws and prints of shipped cases, by the case of each command.
+DRAWN: dict[str, tuple[str, ...]] = {
+    "sim_I": ("columns", "laws", "report --short", "compare {folder}/sim_I_fed.csv", "table", "export"), "film/sim_I_fed": ("film", "bearing"),
+    "flores/dry_0500um": ("columns --columns normal_force pin_force_x crank_moment --over time", "laws", "report"),
+    "wear/flores": ("wear", "report --short"), "pin/engine": ("columns --cycle -1", "report", "report --short", "table"), "elastic/engine_crankshaft": ("report",),
+    "joints/piston": ("skirt", "report", "report --short"), "gas/compressor_valves": ("indicator", "orders", "report", "report --short"), "joints/piston_slap": ("report",),
+    "film/heat": ("bearing --place crank_pin", "report"), "cylinders/inline_four_bearings": ("bearing", "report", "report --short"), "cylinders/six_mwm": ("campbell", "report", "orders"),
+    "joints/rings": ("orders", "indicator"), "bearings/big_end": ("bearing", "report --short"), "film/engine_pin": ("film",),
+}  # fmt: skip
+
+
+def plotted(words: list[str]) -> tuple[str, str, set[str]]:
+    """What a command of gudgeon-plot prints, its errors, and the texts for which it lacks a translation."""
+    with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.redirect_stderr(io.StringIO()) as errors:
+        status = cli.main(words)
+    check(status == 0, f"gudgeon-plot {' '.join(words)}: {errors.getvalue()}")
+    return said.getvalue(), errors.getvalue(), gudgeon.language.current.unknown
+
+
+def plots(program: str, folder: str) -> None:
+    """With --language pt no text of a picture or a page of gudgeon-plot lacks its Portuguese, and no English word is left in what it prints."""
+    commands = []
+    for case, drawn in DRAWN.items():
+        subprocess.run([program, "-q", "-o", folder, str(TOP / "cases" / f"{case}.nml")], check=True, stderr=subprocess.DEVNULL)
+        for command in drawn:
+            what, *options = command.format(folder=folder).split()
+            out = [] if what == "table" else ["-o", f"{folder}/out{'.pdf' if '--short' in options else '/'}"]
+            commands.append([what, f"{folder}/{Path(case).name}.csv", *options, *out])
+    Path(folder, "out").mkdir()
+    for name, text in STUDIES.items():
+        study = Path(folder, f"{name}.nml")
+        study.write_text(text.format(top=TOP))
+        subprocess.run([program, "sweep", "-q", "-o", folder, str(study)], check=True)
+        commands.append(["study", f"{folder}/{name}.runs.csv", "-o", f"{folder}/out"])
+    study = str(Path(folder, "grid.nml"))
+    commands += [
+        ["table", f"{folder}/grid.runs.csv"], ["sample", study, "--runs", "4", "-o", folder], ["figure", "--list"],
+        ["sensitivity", study, "--program", program, "--morris", "4", "--sobol", "4", "--convergence", "--fresh", "-o", f"{folder}/out"],
+        ["sensitivity", "--table", study, "-o", f"{folder}/out"], ["models", str(TOP / "cases/bearings/big_end.nml"), "--program", program, "-o", folder],
+        ["branch", str(TOP / "cases/flores/dry_0100um.nml"), "initial.crank_speed", "90", "85", "--points", "2", "-o", f"{folder}/out"],
+    ]  # fmt: skip
+    kept = enumerated(json.loads(output(program, "--reference", "schema"))) | UNTRANSLATED | {Path(words[1]).stem for words in commands} | SAME
+    for words in commands:
+        said, errors, unknown = plotted([*words, "--language", "pt"])
+        check(not unknown and "no translation" not in errors, f"{words}: no Portuguese of {sorted(unknown)}")
+        if [line for line in said.splitlines() if not re.fullmatch(rf"({re.escape(folder)}\S+ ?)+", line)]:
+            left = (words_of(plotted([*words, "--language", "en"])[0]) & words_of(said)) - kept
+            check(not left, f"{words}: no word stays English: {sorted(left)}")
+            wrong = [] if words[0] in ("table", "models", "figure") else re.findall(r"^(?! {4}|.*[/=]).*\d\.\d.*$", said, re.MULTILINE)
+            check(not wrong, f"{words}: decimal commas: {wrong}")
+
+
 def manual_page(program: str) -> None:
     page = output(program, "--man")
     with tempfile.NamedTemporaryFile("w", suffix=".1") as file:
@@ -233,6 +354,9 @@ def main() -> int:
     installed(program)
     with tempfile.TemporaryDirectory() as folder:
         portuguese(program, folder)
+    written_texts()
+    with tempfile.TemporaryDirectory() as folder:
+        plots(program, folder)
     print(f"{passed} passed, {failed} failed")
     return failed > 0
 

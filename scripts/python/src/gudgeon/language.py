@@ -68,6 +68,9 @@ class Language:
                 for part in match.groups():
                     said = said.replace("{}", self._line(part), 1)
                 return said
+        head, _, last = text.rpartition(" ")
+        if head and last in self.names and last not in self.exact:   # a name behind what it is, as in "friction lugre"
+            return f"{self._line(head)} {last}"
         if text[:1].isupper() and (text[0].lower() + text[1:]) in self.exact:
             said = self.exact[text[0].lower() + text[1:]]
             return said[0].upper() + said[1:]

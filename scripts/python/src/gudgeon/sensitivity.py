@@ -12,6 +12,7 @@ from SALib.analyze import sobol as sobol_analysis
 from SALib.sample import morris as morris_sample
 from SALib.sample import sobol as sobol_sample
 
+from gudgeon import language
 from gudgeon.names import of_column, of_parameter, plain_unit, prefixed
 from gudgeon.plots.style import (
     BLACK,
@@ -182,29 +183,30 @@ def records(found: Indices) -> list[dict[str, object]]:
 
 
 def describe(found: Indices) -> str:
-    """One to three sentences about the result."""
+    """One to three sentences about the result, in the language of the pictures."""
+    say, number = language.current.say, language.current.number
     left_out = f", {found.left_out} left out for runs without a value" if found.left_out else ""
     what = "trajectories" if found.method == "morris" else "base points"
-    head = f"{found.output}, {found.method} ({found.points} {what}{left_out}):"
+    head = f"{found.output}, {found.method} ({say(f'{found.points} {what}{left_out}')}):"
     if found.points < 2:
-        return f"{head} too few are left for a result."
+        return f"{head} {say('too few are left for a result.')}"
     if found.constant:
-        return f"{head} {found.mean:.4g} in every run: no parameter matters within these ranges."
+        return f"{head} {say(f'{found.mean:.4g} in every run: no parameter matters within these ranges.')}"
     index, beside = INDICES[found.method]
     ranked = found.ranked
     ahead = ranked[ranked[index] > ranked[f"{index}_conf"]]
     said = [
-        f"{key} {row[index]:.2g} +- {row[f'{index}_conf']:.1g} ({row[beside]:.2g})" for key, row in ahead.iterrows()
+        f"{key} " + number(f"{row[index]:.2g} +- {row[f'{index}_conf']:.1g} ({row[beside]:.2g})") for key, row in ahead.iterrows()
     ]
-    text = f"{head} mean {found.mean:.4g}, standard deviation {found.spread:.3g}; {index} ({beside}): {', '.join(said)}"
+    text = f"{head} {say(f'mean {found.mean:.4g}, standard deviation {found.spread:.3g}')}; {index} ({beside}): {', '.join(said)}"
     nothing = [key for key, row in ranked.iterrows() if row[index] == 0]
     unclear = [key for key in ranked.index if key not in ahead.index and key not in nothing]
-    text += f"; not distinguishable from no effect: {', '.join(unclear)}" if unclear else ""
-    text += f"; no effect at all: {', '.join(nothing)}." if nothing else "."
+    text += f"; {say('not distinguishable from no effect')}: {', '.join(unclear)}" if unclear else ""
+    text += f"; {say('no effect at all')}: {', '.join(nothing)}." if nothing else "."
     if found.method == "sobol":
         alone = 100 * ranked["S1"].sum()
-        text += f" The parameters one by one explain {np.clip(alone, 0, 100):.0f} % of the variance, "
-        text += "their interaction the rest (including random errors)." if alone < 100 else "their interaction no measurable part."
+        rest = "the rest (including random errors)" if alone < 100 else "no measurable part"
+        text += " " + say(f"The parameters one by one explain {np.clip(alone, 0, 100):.0f} % of the variance, their interaction {rest}.")
     return text
 
 

@@ -17,7 +17,7 @@ import pandas as pd
 import gudgeon
 from gudgeon import language
 from gudgeon.commands import Refused, add_output, number, save
-from gudgeon.names import plain_unit, shown_unit
+from gudgeon.names import PLACES, plain_unit, shown_unit
 from gudgeon.plots.studies import read_strobe
 from gudgeon.plots.style import WIDTH, add_legend, plt
 from gudgeon.study import Runs
@@ -53,6 +53,8 @@ def finding(table: pd.DataFrame, key: str, unit: str) -> str:
 
 def run(options: argparse.Namespace) -> int:
     limits = (options.start, options.end)
+    for name in (options.key, *PLACES):
+        language.current.keep(name)
     over = None
     if options.over is not None:
         over = read_strobe(options.over, Runs.read(Path(str(options.over).replace(".strobe.csv", ".runs.csv"))))
@@ -61,12 +63,12 @@ def run(options: argparse.Namespace) -> int:
         case = gudgeon.read(options.case)
         at_start = case if options.key.startswith("held.") else case.set({options.key: options.start})
         start = gudgeon.orbit(at_start, options.revolutions, held=options.held)
-        print(start)
+        print(language.current.say(str(start)))
         branches = [gudgeon.continuation(case, options.key, limits, start=start, points=options.points, both=False)]
-        print(branches[0])
+        print(language.current.say(str(branches[0])))
         for _ in range(options.doubled):
             branches.append(branches[-1].doubled(0, points=options.points))
-            print(branches[-1])
+            print(language.current.say(str(branches[-1])))
     except (gudgeon.OrbitError, gudgeon.CaseError, KeyError) as problem:
         raise Refused(problem.args[0].replace("give start= or revolutions=", "give --revolutions")) from None
     table = pd.concat([branch.points for branch in branches])

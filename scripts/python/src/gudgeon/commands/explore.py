@@ -65,7 +65,7 @@ def run(options: argparse.Namespace) -> int:
         raise Refused(f"port {options.port}: must be at most 65535") from None
     print(server.address, flush=True)
     port = server.server_port
-    print(f"Ctrl-C ends it. From another machine: ssh -L {port}:localhost:{port} {os.uname().nodename}", file=sys.stderr, flush=True)
+    print(f"{language.current.say('Ctrl-C ends it. From another machine:')} ssh -L {port}:localhost:{port} {os.uname().nodename}", file=sys.stderr, flush=True)
     if not options.no_browser and (sys.platform == "darwin" or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         webbrowser.open(server.address)
     try:

@@ -12,6 +12,7 @@ import argparse
 import sys
 import time
 
+from gudgeon import language
 from gudgeon.commands import Refused, add_output, add_results, save
 from gudgeon.plots import figures
 from gudgeon.plots.figure_map import Figure, read_figures
@@ -43,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
     if options.list:
         for figure in table.values():
             window = f", revolutions {figure.window[0]} to {figure.window[1]}" if figure.window else ""
-            print(f"{figure.number:5} {figure.title}{window}  ({' '.join(figure.runs)})")
+            print(f"{figure.number:5} {language.current.say(f'{figure.title}{window}')}  ({' '.join(figure.runs)})")
         return 0
     if bool(options.numbers) == options.all:
         raise Refused("give the numbers of figures, --all or --list")
@@ -55,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
     if options.window == "start":
         wanted = [figure.at_start for figure in wanted]
     failed = draw_figures(wanted, results, options)
-    print(f"{len(wanted) - failed} of {len(wanted)} figures in {time.monotonic() - started:.0f} s")
+    print(language.current.say(f"{len(wanted) - failed} of {len(wanted)} figures in {time.monotonic() - started:.0f} s"))
     return 1 if failed else 0
 
 

@@ -18,6 +18,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from gudgeon import language
 from gudgeon.commands import FORMATS, Refused, add_output
 from gudgeon.models import table
 from gudgeon.models.effects import QUANTITIES, Laboratory, find_cheapest
@@ -43,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
         raise Refused(f"no such case: {options.case}")
     if not 0 < options.within < 1:
         raise Refused(f"--within {options.within:g}: must be > 0 and < 1")
-    name = case_name(options.case)
+    name = language.current.keep(case_name(options.case))
     laboratory = Laboratory(
         options.case.resolve(),
         options.program or release_program(),
@@ -53,6 +54,8 @@ def run(options: argparse.Namespace) -> int:
     )
     try:
         variants = laboratory.read_base()
+        for setting in (setting for variant in variants for setting in variant.settings):
+            language.current.keep(setting.partition("=")[2])   # words of keys
         outcomes = [laboratory.measure(variant) for variant in (Variant("given", "the case as it is", ()), *variants)]
         if not outcomes[0].is_there:
             raise MissingResult(outcomes[0].refusal)

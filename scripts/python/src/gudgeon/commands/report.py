@@ -57,5 +57,5 @@ def run(options: argparse.Namespace) -> int:
     except OSError as problem:
         print(f"gudgeon-plot report: {out}: {problem.strerror}", file=sys.stderr)
         return 5
-    print(f"{out}: {len(text.encode('utf-8')) / 1e6:.2f} MB")
+    print(f"{out}: {language.current.number(f'{len(text.encode()) / 1e6:.2f}')} MB")
     return 0

@@ -86,8 +86,8 @@ def print_convergence(found: list[Indices], parts: list[Indices]) -> None:
         sizes = [*(part for part in parts if (part.method, part.output) == (whole.method, whole.output)), whole]
         table = pd.DataFrame({part.points: part.table[index] for part in sizes})
         table["+-"] = whole.table[f"{index}_conf"]
-        print(f"\n{whole.output}, {whole.method} {index} by points:")
-        print(table.to_string(float_format=lambda value: f"{value:.3g}"))
+        print(f"\n{whole.output}, {whole.method} {index} {language.current.say('by points')}:")
+        print(table.to_string(float_format=lambda value: language.current.number(f"{value:.3g}")))
 
 
 def report(path: Path, program: Path, options: argparse.Namespace) -> None:
@@ -117,9 +117,10 @@ def print_table(studies: list[Path], folder: Path) -> None:
             columns[f"{given.name.removeprefix('sensitivity_')}: {output}"] = {
                 row.parameter: f"{row.value:.2f} ± {row.confidence:.2f}" for row in rows.itertuples()
             }
-    table = pd.DataFrame(columns).fillna("not varied")
-    print("Total Sobol indices with 95 % intervals.\n")
-    print("| parameter |", " | ".join(table.columns), "|")
+    say = language.current.say
+    table = pd.DataFrame(columns).fillna("not varied").map(say)
+    print(say("Total Sobol indices with 95 % intervals."), end="\n\n")
+    print(f"| {say('parameter')} |", " | ".join(table.columns), "|")
     print("|---" * (len(table.columns) + 1) + "|")
     for parameter, row in table.iterrows():
         print(f"| `{parameter}` |", " | ".join(row), "|")

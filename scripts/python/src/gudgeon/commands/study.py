@@ -44,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def read(results: Path, name: str) -> Runs:
     runs = Runs.read(results / f"{name}.runs.csv")
-    warn_of_failures(name, runs)
+    warn_of_failures(language.current.keep(name), runs)
     return runs
 
 
@@ -124,7 +124,8 @@ def run(options: argparse.Namespace) -> int:
         for stem, drawing in any_study(path, options.columns).items():
             save(drawing, options, path.parent, stem)
     for name in options.picture or ([] if options.runs else PICTURES):
-        drawing, lines = PICTURES[name](results)
+        drawing, said = PICTURES[name](results)
+        lines = [language.current.say(line) for line in said]
         if options.numbers:
             print(*(f"- {line}".replace("\n  ", "\n    - ") for line in lines), sep="\n")
             continue

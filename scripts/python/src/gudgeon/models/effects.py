@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from gudgeon import language
 from gudgeon.models.variants import (
     Case,
     Key,
@@ -250,10 +251,10 @@ def find_cheapest(laboratory: Laboratory, outcomes: list[Outcome], names: list[s
             return False
         if not will_do(names, limit, top, trial):
             worst = max((name for name in names if name in top.values), key=lambda name: size_of(change(name, top, trial)))
-            search.needed.append((label, f"{QUANTITIES[worst].label} {percent(change(worst, top, trial))}"))
+            search.needed.append((label, f"{language.current.say(QUANTITIES[worst].label)} {language.current.number(percent(change(worst, top, trial)))}"))
             return False
         if not saves(search.cheapest, trial, is_simpler):
-            search.needed.append((label, "saves nothing"))
+            search.needed.append((label, language.current.say("saves nothing")))
             return False
         search.cheapest = trial
         search.left_out.append(label)

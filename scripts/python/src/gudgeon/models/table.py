@@ -2,6 +2,7 @@
 
 import matplotlib.pyplot as plt
 import pandas as pd
+from gudgeon import language
 from gudgeon.models.effects import (
     QUANTITIES,
     Outcome,
@@ -16,6 +17,15 @@ from matplotlib.patches import Patch
 
 COLOURS = {"taken out": VERMILION, "exchanged": BLUE, "refined": GREEN, "added": ORANGE}
 SMALLEST, LARGEST = 1e-2, 1e3  # changes that the picture shows [%]; larger ones are at its edge
+
+
+INTRODUCTION = """\
+One model at a time is taken out, exchanged, refined or added; method auto integrates all scenes. The cost is given as the number of
+evaluations of the right-hand side and the processor time, both divided by those of the case; the time is the shortest of three runs.
+The changes refer to the whole run, that of the loss to a revolution of the last whole cycle: those of the peak force at the piston
+pin, of the loss and of the mean crank speed are relative to the value of the case, that of the minimum film thickness is relative to
+the clearance, and that of the contact share is in per cent of the time. After ± stands the uncertainty of the change, by the
+certificates of both scenes, where it is at least a tenth of the change. `-`: the scene does not have the quantity."""
 
 
 def as_data(outcomes: list[Outcome]) -> pd.DataFrame:
@@ -42,40 +52,42 @@ def ratio(value: float, reference: float) -> str:
 
 
 def as_markdown(file: str, outcomes: list[Outcome], search: Search, names: list[str], limit: float) -> str:
-    """The table and the answer; `file`: the case's, as a command would name it."""
-    given = outcomes[0]
+    """The table and the answer, in the language of the pictures; `file`: the case's, as a command would name it."""
+    say, given = language.current.say, outcomes[0]
     shown = [quantity for quantity in QUANTITIES if quantity in given.values]
     lines = [
-        "One model at a time is taken out, exchanged, refined or added; method auto integrates all scenes. The cost is given as the number of",
-        "evaluations of the right-hand side and the processor time, both divided by those of the case; the time is the shortest of three runs.",
-        "The changes refer to the whole run, that of the loss to a revolution of the last whole cycle: those of the peak force at the piston",
-        "pin, of the loss and of the mean crank speed are relative to the value of the case, that of the minimum film thickness is relative to",
-        "the clearance, and that of the contact share is in per cent of the time. After ± stands the uncertainty of the change, by the",
-        "certificates of both scenes, where it is at least a tenth of the change. `-`: the scene does not have the quantity.",
+        *say(INTRODUCTION).split("\n"),
         "",
-        "| # | | scene | evaluations | time | " + " | ".join(QUANTITIES[one].label for one in shown) + " | certificate |",
+        "| # | | " + " | ".join(say(head) for head in ("scene", "evaluations", "time", *(QUANTITIES[one].label for one in shown), "certificate")) + " |",
         "|---|---|---|---|---|" + "---|" * (len(shown) + 1),
     ]
     idle = idle_scenes(outcomes)
     for number, outcome in enumerate(outcomes):
         if not outcome.is_there or number in idle:
             continue
-        cells = [str(number), outcome.variant.kind, outcome.variant.label + (" *" if outcome.variant.assumed else "")]
+        cells = [str(number), outcome.variant.kind, say(outcome.variant.label) + (" *" if outcome.variant.assumed else "")]
         cells += [ratio(outcome.evaluations, given.evaluations), ratio(outcome.seconds, given.seconds)]
         if number == 0:
             cells[3:5] = [str(given.evaluations), f"{given.seconds:.2g} s"]
             cells += [figure(one, given) for one in shown]
         else:
             cells += [percent(change(one, given, outcome)) for one in shown]
-        lines.append("| " + " | ".join([*cells, outcome.certificate]) + " |")
+        cells = [cells[0], say(cells[1]), cells[2], *map(say, cells[3:]), say(outcome.certificate)]
+        lines.append("| " + " | ".join(cells) + " |")
     lines.append("")
     if idle:
-        lines += ["No effect at all in this case: " + ", ".join(f"{n} ({outcomes[n].variant.label})" for n in idle) + ".", ""]
-    if assumed := [f"{n}: {one.variant.assumed}" for n, one in enumerate(outcomes) if one.is_there and one.variant.assumed and n not in idle]:
-        lines += ["\\* Assumed, since the case does not give it: " + "; ".join(assumed) + ".", ""]
-    if refused := [(outcome.variant.label, outcome.refusal) for outcome in outcomes if not (outcome.is_there or outcome.is_no_choice)]:
-        lines += ["Not possible with this case:", "", *(f"- {label}: {why}" for label, why in refused), ""]
+        lines += [say("No effect at all in this case") + ": " + ", ".join(f"{n} ({say(outcomes[n].variant.label)})" for n in idle) + ".", ""]
+    if assumed := [f"{n}: {spoken(one.variant.assumed)}" for n, one in enumerate(outcomes) if one.is_there and one.variant.assumed and n not in idle]:
+        lines += [r"\* " + say("Assumed, since the case does not give it") + ": " + "; ".join(assumed) + ".", ""]
+    if refused := [(say(outcome.variant.label), outcome.refusal) for outcome in outcomes if not (outcome.is_there or outcome.is_no_choice)]:
+        lines += [say("Not possible with this case") + ":", "", *(f"- {label}: {why}" for label, why in refused), ""]
     return "\n".join([*lines, *answer(search, given, names, limit, file)]) + "\n"
+
+
+def spoken(listed: str) -> str:
+    """A list with commas, part by part in the language of the pictures; keys with their values stay."""
+    pairs = (part.partition(" at ") if " = " in part else ("", "", part) for part in listed.split(", "))
+    return ", ".join(f"{key}{at and ' '}{language.current.say(at.lstrip() + rest)}" for key, at, rest in pairs)
 
 
 def idle_scenes(outcomes: list[Outcome]) -> list[int]:
@@ -97,27 +109,31 @@ def figure(name: str, outcome: Outcome) -> str:
 def answer(search: Search, given: Outcome, names: list[str], limit: float, file: str) -> list[str]:
     """The cheapest scene within the limit of the fullest, and what was tried on the way."""
     told = [name for name in names if name in search.fullest.values]
-    lines = ["## What this scene requires", ""]
-    parts = ", ".join(part.label for part in search.parts) or "nothing beyond the case"
-    lines += [f"The most complete scene is the case with: {parts}. It takes {cost(search.fullest, given)} of the case.", ""]
-    changes = ", ".join(f"{QUANTITIES[name].label} {percent(change(name, search.fullest, given))}" for name in told)
-    lines += [f"The case as it is differs from it: {changes}.", ""]
-    changes = ", ".join(f"{QUANTITIES[name].label} {percent(change(name, search.fullest, search.cheapest))}" for name in told)
+    say, number = language.current.say, language.current.number
+
+    def changes(outcome: Outcome) -> str:
+        return ", ".join(f"{say(QUANTITIES[name].label)} {number(percent(change(name, search.fullest, outcome)))}" for name in told)
+
+    labels = ", ".join(say(QUANTITIES[name].label) for name in told)
+    lines = ["## " + say("What this scene requires"), ""]
+    parts = ", ".join(say(part.label) for part in search.parts) or say("nothing beyond the case")
+    lines += [f"{say('The most complete scene is the case with')}: {parts}. {say(f'It takes {cost(search.fullest, given)} of the case.')}", ""]
+    lines += [f"{say('The case as it is differs from it')}: {changes(given)}.", ""]
     lines += [
-        f"The cheapest scene found within {100 * limit:g} % of the most complete one ({', '.join(QUANTITIES[name].label for name in told)}) takes"
-        f" {cost(search.cheapest, given)} of the case: {changes}.",
+        say(f"The cheapest scene found within {100 * limit:g} % of the most complete one") + f" ({labels}) "
+        + say(f"takes {cost(search.cheapest, given)} of the case") + f": {changes(search.cheapest)}.",
         "",
         "    " + " ".join(["gudgeon", file, *(f"--set {setting}" for setting in ("integrator.method=auto", *search.cheapest.variant.settings))]),
         "",
     ]
     if search.left_out:
-        lines += ["Left out of the most complete scene, one after the other: " + "; ".join(label.removeprefix("without: ") for label in search.left_out) + ".", ""]
+        lines += [say("Left out of the most complete scene, one after the other") + ": " + "; ".join(say(label.removeprefix("without: ")) for label in search.left_out) + ".", ""]
     if search.needed:
-        lines += ["Needed, or tried without any saving:", "", *(f"- {label}: {why}" for label, why in search.needed), ""]
+        lines += [say("Needed, or tried without any saving") + ":", "", *(f"- {say(label)}: {why}" for label, why in search.needed), ""]
     open_ones = [name for name in told if search.fullest.uncertainty[name] > limit * scale_of(name, search.fullest)]
     if open_ones:
-        words = ", ".join(QUANTITIES[name].label for name in open_ones)
-        lines += [f"By its certificate, the most complete scene itself is uncertain by more than {100 * limit:g} % in: {words}.", ""]
+        words = ", ".join(say(QUANTITIES[name].label) for name in open_ones)
+        lines += [say(f"By its certificate, the most complete scene itself is uncertain by more than {100 * limit:g} % in") + f": {words}.", ""]
     return lines
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from gudgeon import language
 from gudgeon.names import shown_unit
 from gudgeon.plots import style
 from gudgeon.plots.style import BLACK, BLUE, GREY, VERMILION, WIDTH
@@ -116,17 +117,17 @@ def draw(a: Run, b: Run, names: tuple[str, str], found: list[Agreement], agreeme
 
 
 def report(found: list[Agreement], agreement: float) -> str:
-    """The text to print: largest difference and horizon of each column, then the horizon of the runs."""
+    """The text to print, in the language of the pictures: largest difference and horizon of each column, then the horizon of the runs."""
+    say = language.current.say
     lines = [
-        f"compared from {found[0].time[0]:.6g} s to {found[0].time[-1]:.6g} s; "
-        f"agreement: within {agreement:g} of a column's range in A"
+        say(f"compared from {found[0].time[0]:.6g} s to {found[0].time[-1]:.6g} s; agreement: within {agreement:g} of a column's range in A")
     ]
     for item in found:
         largest = np.abs(item.difference).max() / item.scale if item.scale else np.abs(item.difference).max()
-        until = "to the end" if item.whole else f"up to {item.horizon:.6g} s"
-        lines.append(f"{item.column:24} agrees {until:20} largest difference {largest:.2e} of its range")
+        until = say("agrees to the end" if item.whole else f"agrees up to {item.horizon:.6g} s")
+        lines.append(f"{item.column:24} {until:27} " + say(f"largest difference {largest:.2e} of its range"))
     first = min(found, key=lambda item: (item.whole, item.horizon))
-    lines.append(f"horizon: {first.horizon:.6g} s, " + ("the end" if first.whole else f"set by {first.column}"))
+    lines.append(say(f"horizon: {first.horizon:.6g} s, the end" if first.whole else f"horizon: {first.horizon:.6g} s, set by {language.current.keep(first.column)}"))
     return "\n".join(lines)
 
 
