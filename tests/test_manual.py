@@ -325,13 +325,23 @@ def check_pictures_of_pages() -> None:
 
 
 def check_tutorials(program: Path) -> None:
-    """The commands of README and the tutorials print what the pages show; the Portuguese pages have the same files, commands and outputs."""
+    """The commands of README and the tutorials print what the pages show; the Portuguese pages have the same files, commands and outputs, with
+    `--language pt` where they draw or write a page, and what these commands print in Portuguese."""
+    from gudgeon.language import Language   # in .venv
+
+    spoken = Language("pt")
+    spoken.keep("film_thickness")
     for name, other in (("README.md", "data/manual/readme_pt.md"), ("data/manual/tutorial_engine.md", "data/manual/tutorial_engine_pt.md"),
                         ("data/manual/tutorial_compressor.md", "data/manual/tutorial_compressor_pt.md"), ("data/manual/tutorial_laws.md", "data/manual/tutorial_laws_pt.md")):
         wrong = tutorial.run(ROOT / name, program)
         check(not wrong, f"{name} shows what its commands print", "\n".join(wrong))
-        ours, theirs = ([body for _, body, _ in tutorial.blocks((ROOT / one).read_text(encoding="utf-8"))] for one in (name, other))
-        check(len(ours) > 2 and ours == theirs, f"{other} has the same commands")
+        ours, theirs = ([tutorial.COMMAND.findall(body) or body for _, body, _ in tutorial.blocks((ROOT / one).read_text(encoding="utf-8"))] for one in (name, other))
+        for i, block in enumerate(theirs):
+            for k, (command, _) in enumerate(block if isinstance(block, list) else ()):
+                if " --language pt" in command and i < len(ours) and k < len(ours[i]):
+                    english, printed = ours[i][k]
+                    ours[i][k] = (command if command.replace(" --language pt", "").replace("horizonte", "horizon") == english else english, spoken.say(printed))
+        check(len(ours) > 2 and ours == theirs, f"{other} has the same commands", str([pair for pair in zip(ours, theirs) if pair[0] != pair[1]]))
 
 
 def check_notebooks() -> None:
@@ -355,6 +365,9 @@ def check_pictures_of_tutorials() -> None:
     for page in sorted((ROOT / "data/manual").glob("tutorial_*.md")):
         text = page.read_text(encoding="utf-8")
         named, shown = set(re.findall(r"^    results/([\w.]+\.png)", text, re.MULTILINE)), set(re.findall(r"!\[[^]]+\]\(tutorials/([\w.]+\.png)\)", text))
+        if page.stem.endswith("_pt"):
+            named = {name.replace(".png", "_pt.png") for name in named}
+            check(all(name.endswith("_pt.png") for name in shown), f"{page.name} shows pictures in Portuguese", str(shown))
         check(named <= shown, f"{page.name} shows what it makes", str(named - shown))
         seen |= shown
     check(seen == kept, "the pictures of tutorials are shown", str(seen ^ kept))

@@ -89,12 +89,12 @@ def rungs(question: str, page: Path, wanted: set[Path]) -> str:
 
 
 def gallery() -> str:
-    """Every picture of the checkout with its question and its command, as a table; drawings last. It leads to its vectors, and says where its
+    """Every picture of the checkout, but for those in Portuguese, with its question and its command, as a table; drawings last. It leads to its vectors, and says where its
     pixels are."""
     with (TOP / "data/pictures.csv").open(encoding="utf-8", newline="") as lines:
         listed = sorted(csv.DictReader(lines), key=lambda row: row["picture"].endswith(".svg"))
     rows = []
-    for row in listed:
+    for row in (row for row in listed if not Path(row["picture"]).stem.endswith(tutorial.PORTUGUESE)):
         picture = os.path.relpath(TOP / row["picture"], SOURCE)
         vectors = os.path.relpath(shown(TOP / row["picture"]), SOURCE)
         pixels = f" [PNG]({picture})" if vectors != picture else ""

@@ -2,7 +2,8 @@
 """Runs the commands of a tutorial in their order, and compares what they print with what the page shows.
 
     scripts/manual/tutorial.py PAGE [--program PROGRAM] [--write]     --write: puts what they print into the page, and the
-                                                                       pictures that they make, as PNG and SVG, into data/manual/tutorials
+                                                                       pictures that they make, as PNG and SVG, into data/manual/tutorials,
+                                                                       those of a page NAME_pt.md with the ending _pt
     scripts/manual/tutorial.py PAGE --notebook                         prints the page as a notebook for Jupyter
 
 A block after a line that ends with "`NAME`:" is a file. In a block that begins with "$ " each such line is a command, run in the folder of the files, and the lines behind it are its output; `...` stands for anything, and numbers may be off by
@@ -25,6 +26,7 @@ NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 BLOCK = re.compile(r"^(\S[^\n]*)\n\n((?:    [^\n]*\n|\n(?=    ))+)", re.MULTILINE)
 FILE = re.compile(r"`([\w.]+\.\w+)`[^`]*:$")
 COMMAND = re.compile(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", re.MULTILINE)
+PORTUGUESE = "_pt"   # end of the name of a page in Portuguese, and of its pictures
 PICTURE = re.compile(r"^!\[[^]]*\]\(tutorials/([^)]*)\)\n", re.MULTILINE)
 
 
@@ -86,8 +88,13 @@ def run(page: Path, program: Path, write: bool = False) -> list[str]:
                     wrong.append(f"{command} prints: {printed}")
             text = text.replace(block, now)
         if write:
+            from gudgeon.plots.style import fewer_colours  # only here: needs .venv
+
             for picture in sorted((work / "results").glob("*.*g")):
-                shutil.copy(picture, TOP / "data/manual/tutorials")
+                kept = TOP / "data/manual/tutorials" / f"{picture.stem}{PORTUGUESE if page.stem.endswith(PORTUGUESE) else ''}{picture.suffix}"
+                shutil.copy(picture, kept)
+                if kept.suffix == ".png":
+                    fewer_colours(kept)
     if write:
         page.write_text(text, encoding="utf-8")
     return wrong
@@ -106,7 +113,7 @@ def notebook(text: str) -> str:
         texts = PICTURE.split(part)   # texts and, between them, names of pictures
         for i, one in enumerate(texts):
             if i % 2:
-                code(f'from IPython.display import Image\n\nImage("results/{one}")')
+                code(f'from IPython.display import Image\n\nImage("results/{one.replace(PORTUGUESE + ".", ".")}")')
             elif plain := re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", one).strip():
                 cells.append({"cell_type": "markdown", "metadata": {}, "source": plain})
 

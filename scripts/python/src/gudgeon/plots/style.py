@@ -19,6 +19,7 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from matplotlib.ticker import FuncFormatter, Locator, LogLocator, MaxNLocator
+from PIL import Image
 
 BLACK = "#000000"
 ORANGE = "#E69F00"
@@ -210,6 +211,14 @@ def save(drawing: Drawing, directory: Path, stem: str, formats: Sequence[str]) -
     return paths
 
 
+def fewer_colours(picture: Path) -> None:
+    """Write a PNG again with 128 colours of its own: a third of its bytes, without a difference that is seen."""
+    with Image.open(picture) as image:
+        image.convert("RGB").quantize(128, dither=Image.Dither.NONE).save(picture, optimize=True)
+
+
 def keep(drawing: Drawing, picture: str | Path) -> list[Path]:
     """Write a drawing that is kept: to the path of its PNG, and as vectors beside it."""
-    return save(drawing, Path(picture).parent, Path(picture).stem, KEPT)
+    paths = save(drawing, Path(picture).parent, Path(picture).stem, KEPT)
+    fewer_colours(paths[0])
+    return paths
