@@ -491,6 +491,22 @@ class OnePage(unittest.TestCase):
         self.assertEqual(titles, ["film thickness [µm]", "force [kN]", "cylinder pressure [bar]", "crank moment [N m]"])
         self.fits(drawing)
 
+    def test_page_in_portuguese(self) -> None:
+        """The longer words cover no value, and an oil has decimal commas."""
+        self.addCleanup(language.use, "en")
+        said = language.use("pt")
+        made = self.made({"cycle_max_drive_torque": "1234.5", "cycle_min_drive_torque": "-1234.5"})
+        made.case["lubrication"] = {"oil": "", "temperature": 0.0, "viscosity": 0.0117}
+        drawing = short.draw(made, "engine")
+        said.localise(drawing)
+        self.assertEqual(said.unknown, set())
+        self.fits(drawing)
+        texts = [text for axes in drawing.axes for text in axes.texts]
+        self.assertIn("11,7 mPa s", [text.get_text() for text in texts])
+        covered = [(one.get_text(), other.get_text()) for i, one in enumerate(texts) for other in texts[i + 1 :] if one.axes is other.axes
+                   and one.get_window_extent().overlaps(other.get_window_extent()) and one.get_text() and other.get_text()]
+        self.assertEqual(covered, [])
+
     def fits(self, drawing: Drawing) -> None:
         """All texts are on the page, values beside their units, and no table covers another one or a plot."""
         broken = [text.get_text() for axes in drawing.axes for text in axes.texts if re.search(r"\d\n(kW|kN|bar|µm|%|cm³)", text.get_text())]
@@ -2076,6 +2092,18 @@ class Page(unittest.TestCase):
         of_engine[0][1].append(("gravity", "9.80665 m/s²"))   # without the library, which knows the defaults
         of_engine[3][1].insert(0, ("cycle", "four_stroke"))
         self.assertEqual(case_rows(made, None), of_engine)
+
+    def test_the_case_in_portuguese(self) -> None:
+        """Decimal commas, semicolons between numbers, sim for yes; titles, paths and words of keys are those of the case file."""
+        case = parse_case("&case\n  title = 'Clearance 0.5 mm'\n/\n&mechanism\n  rod_com = 0.0105, 0.0  ! m\n/\n&output\n  ideal_twin = .true.\n/\n&drive\n  kind = 'free'\n"
+                          "  torque_table = 'motor_2.5.csv'\n/\n", units := {})
+        made = Run("a", pd.DataFrame({"time": [0.0]}), {}, pd.DataFrame(), {}, case, units)
+        self.assertEqual(case_rows(made, None, language.Language("pt")),
+                         [("case", [("title", "Clearance 0.5 mm")]), ("mechanism", [("rod_com", "10,5; 0 mm")]), ("output", [("ideal_twin", "sim")]),
+                          ("drive", [("kind", "free"), ("torque_table", "motor_2.5.csv")])])
+        found = self.made()
+        found.summary["wall_time"] = ("0.25", "s")
+        self.assertIn("<td>0,25</td>", report_page.page(found, None, None, language.Language("pt")))
 
     def test_packing_depends_on_the_data_only(self) -> None:
         self.assertEqual(report_page.packed(b"abc"), report_page.packed(b"abc"))

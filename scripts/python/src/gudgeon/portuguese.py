@@ -730,6 +730,11 @@ mudança. `-`: a cena não tem a grandeza.""",
     "without: {}": "sem: {}",
     "saves nothing": "não economiza nada",
     "By its certificate, the most complete scene itself is uncertain by more than {} % in": "Pelo seu certificado, a própria cena mais completa tem incerteza de mais de {} % em",
+    # the picture of README.md
+    "clearance × {}": "folga × {}",
+    "pin centre in the clearance circle": "centro do pino no círculo da folga",
+    "dry, with friction": "a seco, com atrito",
+    "oil film": "filme de óleo",
     # a fit, tolerances, an animation
     "measured": "medido",
     "fit": "ajuste",

@@ -54,7 +54,7 @@ def case_lines(run: Run) -> list[tuple[str, str]]:
             size = " × ".join(part for part in (shown(group, "bearing_radius", "mm", 2e3), shown(group, "bearing_length", "mm", 1e3)) if part)
             found.append((name.capitalize(), ", ".join(part for part in (size, f"clearance {clearance}") if part)))
     oil = [str(run.parameter("lubrication", "oil", "") or ""), shown("lubrication", "temperature", "°C", 1.0, -273.15), shown("lubrication", "viscosity", "mPa s", 1e3)]
-    return [(name, text) for name, text in [*found, ("Oil", language.current.keep(", ".join(part for part in oil if part)))] if text]
+    return [(name, text) for name, text in [*found, ("Oil", language.current.keep(language.current.number(", ".join(part for part in oil if part))))] if text]
 
 
 def write(axes: Axes, heading: str, head: Sequence[str], rows: Sequence[tuple[str, Sequence[str]]], widths: Sequence[float]) -> float:

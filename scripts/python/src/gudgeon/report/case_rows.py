@@ -4,19 +4,22 @@ from collections.abc import Mapping
 
 from gudgeon._keys import keys
 from gudgeon._library import LibraryMissing
+from gudgeon.language import Language
 from gudgeon.report.explorer import shown_unit
 from gudgeon.results import Run, parse_case
 
 
-def shown(value: object, unit: str = "") -> str:
-    """A value of a case, in the unit that an engineer writes."""
+def shown(value: object, unit: str, language: Language) -> str:
+    """A value of a case, in the unit that an engineer writes; texts and words are those of the case file in every language."""
     if isinstance(value, bool):
-        return "yes" if value else "no"
+        return language.say("yes" if value else "no")
     numbers = value if isinstance(value, list) else [value]
     if not all(isinstance(one, float) for one in numbers):
         return str(value)
     said, factor, offset = shown_unit(unit, max(map(abs, numbers), default=0.0))
-    return f"{', '.join(f'{one * factor + offset:.6g}' for one in numbers)} {said}".replace("-", "−").replace(" °", "°" if said == "°" else " °").strip()
+    between = ", " if language.is_english else "; "   # of numbers with decimal commas
+    text = f"{between.join(f'{one * factor + offset:.6g}' for one in numbers)} {said}".replace("-", "−").replace(" °", "°" if said == "°" else " °").strip()
+    return language.number(text)
 
 
 def defaults() -> dict[str, object] | None:
@@ -29,8 +32,9 @@ def defaults() -> dict[str, object] | None:
     return {name: parse_case(f"&a\nx = {text}")["a"]["x"] for name, text in words.items()}
 
 
-def case_rows(run: Run, known: Mapping[str, object] | None) -> list[tuple[str, list[tuple[str, str]]]]:
+def case_rows(run: Run, known: Mapping[str, object] | None, language: Language | None = None) -> list[tuple[str, list[tuple[str, str]]]]:
     """The groups of a case with those keys that differ from their `known` defaults, or without these from nothing, no and 0."""
+    language = language or Language()
 
     def is_default(name: str, value: object) -> bool:
         parts = value if isinstance(value, list) else [value]
@@ -38,6 +42,6 @@ def case_rows(run: Run, known: Mapping[str, object] | None) -> list[tuple[str, l
             return not any(parts)
         return name in known and all(part == known[name] for part in parts)
 
-    groups = ((group, [(key, shown(value, run.case_units.get(f"{group}.{key}", ""))) for key, value in given.items() if not is_default(f"{group}.{key}", value)])
+    groups = ((group, [(key, shown(value, run.case_units.get(f"{group}.{key}", ""), language)) for key, value in given.items() if not is_default(f"{group}.{key}", value)])
               for group, given in run.case.items())
     return [(group, rows) for group, rows in groups if rows]

@@ -51,12 +51,12 @@ def page(
     said = [*(say(text) for text in warnings(run)), *notes(run)]
     known = defaults()
     left_out = say("Keys that have their defaults are left out." if known is not None else "Keys that are empty, 0 or no are left out.")
-    case = "".join(rows_html([(key, language.number(text)) for key, text in rows], f"&{group}") for group, rows in case_rows(run, known))
+    case = "".join(rows_html(rows, f"&{group}") for group, rows in case_rows(run, known, language))
 
     def summary(of_program: bool) -> str:
         return rows_html(
             [
-                (name, summary_number(value), "" if unit == "1" else unit)
+                (name, summary_number(value, language), "" if unit == "1" else unit)
                 for name, (value, unit) in run.summary.items()
                 if not name.startswith(("steps_of_order", "note_")) and (name in OF_THE_PROGRAM) == of_program
             ]
@@ -133,9 +133,9 @@ def rows_html(rows: list[tuple[str, ...]], heading: str = "") -> str:
     return head + "".join(cells)
 
 
-def summary_number(text: str) -> str:
+def summary_number(text: str, language: Language) -> str:
     try:
-        return f"{float(text):.6g}"
+        return language.number(f"{float(text):.6g}")
     except ValueError:
         return text
 
