@@ -24,6 +24,7 @@ import gudgeon
 import numpy as np
 from assertions import Assertions
 from gudgeon.language import Language
+from gudgeon.plots.style import fewer_colours
 from gudgeon.program import release_program
 from gudgeon.report.explorer import Explorer, slider_range
 from test_explore_server import served
@@ -358,6 +359,17 @@ def check_frame_and_language(browser: Browser, checks: Assertions) -> None:
         session.close()
 
 
+def picture_in_portuguese(browser: Browser, picture: Path) -> None:
+    """The explorer in Portuguese with two clearances of an engine."""
+    with served(Explorer(gudgeon.template("engine"), language=Language("pt"))) as server:
+        page = Page(browser, server.address)
+        page.settled()
+        browser.run("explorer.drawing.seek(0.3 * explorer.drawing.begin + 0.7 * explorer.drawing.end); document.getElementById('keep').click()")
+        page.moved(SLIDE, "joint.clearance", 0.6)
+        browser.screenshot(picture)
+        fewer_colours(picture)
+
+
 def check_keyboard(browser: Browser, checks: Assertions) -> None:
     """Everything by keys alone: Tab reaches all controls, arrows move a slider, k keeps a run, Enter opens a curve, Escape closes it."""
     def press(*keys: str) -> None:
@@ -446,6 +458,8 @@ def main() -> int:
             check_films(browser, checks)
             check_many_answers(browser, checks)
             check_frame_and_language(browser, checks)
+            if options.screenshots:
+                picture_in_portuguese(browser, options.screenshots / "explore_pt.png")
         finally:
             browser.close()
     return checks.report()

@@ -319,7 +319,7 @@ def check_pictures_of_pages() -> None:
         wanted: set[Path] = set()
         text = page.read_text(encoding="utf-8")
         there = manual_pages.relinked(text, page, manual_pages.place_in_manual(page), wanted)
-        pixels = [name for name in re.findall(r"!\[[^]]*\]\(([^)]*\.png)\)", there) if not name.endswith("explore.png")]
+        pixels = [name for name in re.findall(r"!\[[^]]*\]\(([^)]*\.png)\)", there) if not name.endswith(("explore.png", "explore_pt.png"))]
         sizes = [one.stat().st_size for one in wanted if one.suffix in (".png", ".svg")]
         check(not pixels and (len(sizes) > hooks.MANY or sum(sizes) < 5e5), f"{page.relative_to(ROOT)}: its pictures are vectors in the manual, and light", f"{pixels} {sizes}")
 
@@ -327,7 +327,7 @@ def check_pictures_of_pages() -> None:
 def check_tutorials(program: Path) -> None:
     """The commands of README and the tutorials print what the pages show; the Portuguese pages have the same files, commands and outputs, with
     `--language pt` where they draw or write a page, and what these commands print in Portuguese."""
-    from gudgeon.language import Language   # in .venv
+    from gudgeon.language import Language  # in .venv
 
     spoken = Language("pt")
     spoken.keep("film_thickness")

@@ -29,7 +29,7 @@ os.environ.setdefault("GUDGEON_LIBRARY", str(TOP / "build" / "library" / "libgud
 import gudgeon
 from gudgeon import cli
 from gudgeon.language import Language
-from gudgeon.portuguese import UNTRANSLATED
+from gudgeon.portuguese import TEXTS, UNTRANSLATED
 
 passed = failed = 0
 
@@ -237,12 +237,26 @@ def written_texts() -> None:
         said.say(text)
         return not said.unknown
 
-    for path in sorted((TOP / "scripts/python/src/gudgeon").rglob("*.py")):
+    for path in sorted([*(TOP / "scripts/python/src/gudgeon").rglob("*.py"), *(TOP / "scripts/bench").glob("*.py")]):
         for text in sorted(texts(path)):
             values = itertools.product(("1", ""), repeat=text.count("{}"))
             check(any(is_known(text.format(*found)) for found in values), f"{path.name}: no Portuguese of {text!r}")
             count += 1
     check(count > 150, f"texts in calls: {count}")
+
+
+def glossary() -> None:
+    """The Portuguese glossary has the words of the English one, and those of pictures, pages and the program."""
+    tables = [re.findall(r"^\| ([^|]+) \| ([^|]+) \|", (TOP / f"data/manual/glossary{end}.md").read_text(encoding="utf-8"), re.MULTILINE)[1:] for end in ("", "_pt")]
+    ours, words = ({word for english, _ in table for word in re.split(", ", english)} for table in tables)
+    missing = ours - words - {"digest", "mobility", "chatter", "place", "row of a study", "row", "column"}
+    check(not missing, f"glossary_pt.md lacks {sorted(missing)}")
+    printed = dict(re.findall(r"^    '(.*)', '(.*)', &$", (TOP / "src/io/portuguese.f90").read_text(encoding="utf-8"), re.MULTILINE))
+    for english, portuguese in tables[1]:
+        for word, said in zip(english.split(", "), portuguese.split("; ")[0].split(", ")):
+            for texts_of in (TEXTS, printed):
+                other = {"bore", "speed", "frame", "impact"}  # the diameter, of the animation, axes of a load, a law
+                check(word in other or texts_of.get(word, said) == said, f"{word}: {said} in glossary_pt.md, but {texts_of.get(word)}")
 
 
 #: Small studies: over a law, so that words stand at an axis; of two numbers; from a table, so that it has no grid.
@@ -355,6 +369,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         portuguese(program, folder)
     written_texts()
+    glossary()
     with tempfile.TemporaryDirectory() as folder:
         plots(program, folder)
     print(f"{passed} passed, {failed} failed")

@@ -64,7 +64,11 @@ def main() -> int:
         print(text)
         if options.write:
             print(write_table(options.what, title, f"scripts/bench/measure_elastic.py {options.what} --write", text))
-        print(*style.save(drawing, shipped if options.write else options.out, options.what, options.format or style.KEPT[: 1 + options.write]))
+        stem = options.what if language.current.is_english else f"{options.what}_pt"
+        paths = style.save(drawing, shipped if options.write else options.out, stem, options.format or style.KEPT[: 1 + options.write])
+        if options.write:
+            style.fewer_colours(paths[0])
+        print(*paths)
     except OSError as failure:
         print(f"measure_elastic.py: {failure}", file=sys.stderr)
         return 1

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
-"""Draws the picture of README.md, data/readme.png: the mechanism with its clearance magnified, pin orbits, piston accelerations."""
+"""Draws the picture of README.md, data/readme.png: the mechanism with its clearance magnified, pin orbits, piston accelerations. With --language pt
+data/readme_pt.png."""
 
+import argparse
 from pathlib import Path
 
 from measured import TOP, use_virtual_environment
@@ -9,6 +11,7 @@ use_virtual_environment()
 
 import matplotlib.pyplot as plt
 import numpy as np
+from gudgeon import language
 from gudgeon.plots.quantity import ideal_line
 from gudgeon.plots.style import BLACK, BLUE, GREY, VERMILION, keep
 from gudgeon.results import Results, Run, default_folder
@@ -108,4 +111,7 @@ def write(results: Results, path: Path) -> None:
 
 
 if __name__ == "__main__":
-    write(Results(default_folder()), TOP / "data" / "readme.png")
+    parser = argparse.ArgumentParser(description=__doc__)
+    language.add_option(parser)
+    parser.parse_args()
+    write(Results(default_folder()), TOP / "data" / ("readme.png" if language.current.is_english else "readme_pt.png"))
