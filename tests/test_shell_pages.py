@@ -30,6 +30,7 @@ import gudgeon
 from gudgeon import cli
 from gudgeon.language import Language
 from gudgeon.portuguese import TEXTS, UNTRANSLATED
+from gudgeon.portuguese_keys import MEANINGS
 
 passed = failed = 0
 
@@ -245,6 +246,16 @@ def written_texts() -> None:
     check(count > 150, f"texts in calls: {count}")
 
 
+def meanings() -> None:
+    """The explorer tells in Portuguese what each of its keys is; no translation is of a text that is gone."""
+    said, shown = Language("pt"), {key.meaning: key for key in gudgeon.keys.values() if (key.kind != "text" or key.name == "oil") and (key.count == 1 or key.words)}
+    for key in shown.values():
+        said.unknown.clear()
+        text = key.described(said.say)
+        check(not said.unknown and ("padrão" in text or "obrigatória" in text), f"{key.group}.{key.name}: no Portuguese of {sorted(said.unknown)}: {text}")
+    check(len(shown) > 250 and MEANINGS.keys() <= shown.keys(), f"portuguese_keys.py: no key has {sorted(MEANINGS.keys() - shown.keys())}")
+
+
 def glossary() -> None:
     """The Portuguese glossary has the words of the English one, and those of pictures, pages and the program."""
     tables = [re.findall(r"^\| ([^|]+) \| ([^|]+) \|", (TOP / f"data/manual/glossary{end}.md").read_text(encoding="utf-8"), re.MULTILINE)[1:] for end in ("", "_pt")]
@@ -369,6 +380,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         portuguese(program, folder)
     written_texts()
+    meanings()
     glossary()
     with tempfile.TemporaryDirectory() as folder:
         plots(program, folder)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from math import inf
@@ -51,10 +51,14 @@ class Key:
         return least, most, with_least, with_most
 
     def __str__(self) -> str:
-        parts = [self.unit and f"[{self.unit}]", self.limits, self.usual and f"usually {self.usual}"]
-        parts += ["one of " + ", ".join(self.words)] if self.words else []
-        parts += ["required" if self.required else f"default {self.default or repr('')}"]
-        return f"{self.name}: {self.meaning} ({'; '.join(part for part in parts if part)})"
+        return self.described()
+
+    def described(self, say: Callable[[str], str] = str) -> str:
+        """What the key is, on a line; `say` translates. Words and the default are those of a case file."""
+        parts = [self.unit and f"[{self.unit}]", say(self.limits), self.usual and say(f"usually {self.usual}")]
+        parts += [f"{say('one of')} {', '.join(self.words)}"] if self.words else []
+        parts += [say("required") if self.required else f"{say('default')} {self.default or repr('')}"]
+        return f"{self.name}: {say(self.meaning)} ({'; '.join(part for part in parts if part)})"
 
 
 @dataclass(frozen=True)

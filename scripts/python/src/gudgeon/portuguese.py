@@ -1,5 +1,7 @@
 """Portuguese of every text in the pictures and on the page of a run; see language.py."""
 
+from gudgeon.portuguese_keys import MEANINGS
+
 #: Words that are the same, symbols of units, and names.
 UNTRANSLATED = {
     "rad", "cm", "cm³", "Pa", "bar", "kg", "mrad", "Hz", "rpm", "deg", "min",
@@ -8,7 +10,7 @@ UNTRANSLATED = {
     "zhiying", "qishao", "gonthier", "flores", "carvalho", "martins", "csv", "sim", "Reynolds", "Lyapunov", "gudgeon", "plotly", "js", "adams", "radau", "auto", "SciPy", "DOP", "Radau", "LSODA", "CVODE", "RADAU", "Adams", "BDF",
 } | {f"{prefix}{unit}" for prefix in "nµmkMG" for unit in ("m", "s", "N", "Pa", "J", "W")}
 
-TEXTS = {
+TEXTS = MEANINGS | {
     # members of a mechanism (measure_elastic.py) and integrators (compare_integrators.py)
     "piston pin loose": "folga no pino do pistão",
     "crank pin loose too": "folga também no pino da manivela",
@@ -922,6 +924,10 @@ mudança. `-`: a cena não tem a grandeza.""",
     "crank pin": "pino da manivela",
     "Depth around each surface, exaggerated, and over the angle on it": "Profundidade em torno de cada superfície, exagerada, e pelo ângulo nela",
     # the explorer
+    "usually {}": "em geral {}",
+    "one of": "uma de",
+    "required": "obrigatória",
+    "default": "padrão",
     "keep this run beside the next ones (k)": "manter esta simulação ao lado das próximas (k)",
     "keep": "manter",
     "reset": "valores do caso",

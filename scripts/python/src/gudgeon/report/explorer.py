@@ -154,7 +154,7 @@ class Explorer:
     def control(self, case: gudgeon.Case, name: str) -> dict[str, Any] | None:
         """What the page needs for a key: its kind, words, or range and unit of its slider, value, meaning. None for tables, texts and lists."""
         key, value = gudgeon.keys[name], case[name]
-        about = {"name": name, "value": value, "start": self.case[name], "help": str(key), "kind": key.kind}
+        about = {"name": name, "value": value, "start": self.case[name], "help": key.described(self.language.say), "kind": key.kind}
         if key.kind == "switch":
             return about | {"words": ["false", "true"]}
         if key.kind == "word" or key.name == "oil":
