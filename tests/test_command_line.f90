@@ -68,9 +68,9 @@ contains
   subroutine test_portuguese(check)
     class(checks_t), intent(inout) :: check
     character(len=1), parameter :: n = achar(10)
-    call same('done: done; 2.5 revolutions in 1 s', 'done', 'done: terminada; 2,5 rotações em 1 s', 'a case named as a word')
+    call same('done: done; 2.5 revolutions in 1 s', 'done', 'done: concluída; 2,5 rotações em 1 s', 'a case named as a word')
     call same('a: done'//n//'  my run/rows of.csv; 1 steps', 'a'//n//'my run/rows of', &
-      'a: terminada'//n//'  my run/rows of.csv; 1 passos', 'a path of words')
+      'a: concluída'//n//'  my run/rows of.csv; 1 passos', 'a path of words')
     call same('a.nml: correct'//n//'  main bearing short_bearing film'//n//'  rings       3, oil 4.5 mPa s', 'a.nml'//n//'rings', &
       'a.nml: correto'//n//'  mancal principal filme short_bearing'//n//'  anéis            3, óleo 4,5 mPa s', &
       'labels and a star')
@@ -78,7 +78,7 @@ contains
       'x; filme de no mínimo 1e-3 m (2,5 m no último ciclo) film_2.5/b', 'brackets, and words that are no numbers')
     call same('running, contacts)', '', 'running, contatos)', 'the end of a word')
     call same('a: done'//n//'  note: done in 1.5 runs'//n//'  note: of', 'a', &
-      'a: terminada'//n//'  aviso: done in 1.5 runs'//n//'  aviso: of', 'notes')
+      'a: concluída'//n//'  aviso: done in 1.5 runs'//n//'  aviso: of', 'notes')
     call same('a.nml: correct'//n//'  film table  piston pin: stored in /my rows of 1.5/x; crank pin: must be '// &
       'computed, in about 1 s', 'a.nml', 'a.nml: correto'//n// &
       '  tabela do filme  pino do pistão: guardada em /my rows of 1.5/x; '// &

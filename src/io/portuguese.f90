@@ -15,33 +15,33 @@ module portuguese
   !> and of keys stay those of the case file.
   character(len=*), parameter :: phrases(*) = [character(len=84) :: &
     'ended early', 'parou antes do fim', &
-    'done', 'terminada', &
+    'done', 'concluída', &
     'not periodic within', 'não periódica em', &
     'repeats every revolution', 'repete-se a cada rotação', &
     'repeats every', 'repete-se a cada', &
-    'recognised after', 'reconhecida após', &
+    'recognised after', 'o que se reconheceu após', &
     'no contact', 'sem contato', &
     'contacts', 'contatos', &
     'faster', 'mais rápidos', &
-    'than the theory holds', 'do que a teoria permite', &
-    'deeper', 'mais fundos', &
+    'than the theory holds', 'do que a teoria admite', &
+    'deeper', 'mais profundos', &
     'penetration up to', 'penetração de até', &
     'film of at least', 'filme de no mínimo', &
-    'its table good to', 'sua tabela com erro de até', &
+    'its table good to', 'erro de sua tabela até', &
     'pin force up to', 'força no pino de até', &
     'force up to', 'força de até', &
     'pressure up to', 'pressão de até', &
     'in the last cycle', 'no último ciclo', &
-    'not settled: the film thickness still changes by', 'fora do regime: a espessura do filme ainda muda', &
-    'from cycle to cycle', 'de ciclo a ciclo', &
+    'not settled: the film thickness still changes by', 'não está em regime: a espessura do filme ainda muda', &
+    'from cycle to cycle', 'de um ciclo para o outro', &
     'thinnest film', 'filme mais fino', &
     'thinnest', 'no mínimo', &
     'bearings', 'mancais', &
     'bearing', 'mancal', &
     'main bearing', 'mancal principal', &
     'piston skirt', 'saia do pistão', &
-    'film at the skirt from', 'filme na saia a partir de', &
-    'across the bore up to', 'através do cilindro até', &
+    'film at the skirt from', 'filme na saia de no mínimo', &
+    'across the bore up to', 'velocidade transversal de até', &
     'Lyapunov exponent', 'expoente de Lyapunov', &
     'per revolution', 'por rotação', &
     'steps', 'passos', &
@@ -56,7 +56,7 @@ module portuguese
     'in the run', 'na simulação', &
     'digits to the end', 'algarismos até o fim', &
     'digits to', 'algarismos até', &
-    'then results of the whole run within', 'depois resultados da simulação inteira com até', &
+    'then results of the whole run within', 'depois resultados da simulação inteira com erro de até', &
     'not certified: no tolerance ten times smaller is possible', 'sem certificado: não há tolerância dez vezes menor', &
     'not certified: the run at a hundredth of the tolerance could not continue', &
     'sem certificado: a simulação com um centésimo da tolerância não pôde continuar', &
@@ -86,7 +86,7 @@ module portuguese
     'note', 'aviso', &
     'stroke', 'curso', &
     'rod', 'biela', &
-    'crank over rod', 'manivela sobre biela', &
+    'crank over rod', 'razão manivela/biela', &
     'axis off by', 'eixo deslocado de', &
     'dead centres at', 'pontos mortos em', &
     'bore', 'diâmetro', &
@@ -101,7 +101,7 @@ module portuguese
     'released', 'liberados', &
     'largest at', 'máximo em', &
     'IMEP', 'PMI', &
-    'dead space', 'espaço morto', &
+    'dead space', 'volume morto', &
     'valves of', 'válvulas de', &
     'measured pressure', 'pressão medida', &
     'pressure set from outside', 'pressão dada por outro programa', &
@@ -112,7 +112,7 @@ module portuguese
     'after', 'após', &
     'rows of up to', 'linhas de até', &
     'frame', 'referencial', &
-    'journal', 'eixo', &
+    'journal', 'munhão', &
     'held', 'imposta', &
     'at first, free crank', 'no início, manivela livre', &
     'mean piston speed', 'velocidade média do pistão', &
@@ -133,7 +133,7 @@ module portuguese
     'wear', 'desgaste', &
     'the film is that of a long bearing, too thick below', 'o filme é o de um mancal longo, espesso demais abaixo de', &
     'the contact is that of two spheres, far too soft for a pin in its bearing', &
-    'o contato é o de duas esferas, mole demais para um pino em seu mancal', &
+    'o contato é o de duas esferas, flexível demais para um pino em seu mancal', &
     'piston on the axis of the cylinder', 'pistão no eixo do cilindro', &
     'around a piston of', 'em torno de um pistão de', &
     'radius', 'de raio', &
