@@ -34,6 +34,9 @@ from gudgeon import (
 from gudgeon._table import Unit
 from gudgeon.commands import study as study_command
 from gudgeon.plots import contact_laws as contact_study
+from gudgeon.plots import maps as study_maps
+from gudgeon.plots import restitution as restitution_study
+from gudgeon.plots import strobes as study_strobes
 from gudgeon.plots import studies as study_pictures
 from gudgeon.program import release_program
 from gudgeon.results import MissingResult
@@ -209,7 +212,7 @@ class Pictures(InDirectory):
 
     def test_period(self) -> None:
         def period(*values: float) -> int:
-            return study_pictures.period(np.array(values)[:, None], 1e-3)
+            return study_strobes.period(np.array(values)[:, None], 1e-3)
 
         self.assertEqual(period(*[1.0, 1.0005] * 4), 1)
         self.assertEqual(period(*[1.0, 2.0] * 4), 2)
@@ -221,7 +224,7 @@ class Pictures(InDirectory):
         rows = []
         for run, (value, points) in enumerate(((1.0, [0.1] * 6), (2.0, [0.1, 0.2] * 3), (3.0, [1, 5, 2, 8, 3, 9]))):
             rows += [{"run": run, "a": value, "eccentricity_ratio_y": point} for point in points]
-        text = study_pictures.describe_bifurcation(pd.DataFrame(rows), "x", "a", 10.0, "m")
+        text = study_strobes.describe_bifurcation(pd.DataFrame(rows), "x", "a", 10.0, "m")
         self.assertIn("of 3 values from 10 to 30 m 1 repeat every revolution, 1 after 2 to 8, 1 do not", text)
         self.assertIn("that repeat lie from 10 to 20; those that do not lie from 30 to 30", text)
 
@@ -231,8 +234,8 @@ class Pictures(InDirectory):
             for run, (value, exponent) in enumerate(((1e-5, -2.0), (2e-5, -0.1), (4e-5, 0.3)))
             for point in (0.1, 0.2, 0.3)
         ]
-        strobe = study_pictures.with_ratios(pd.DataFrame(rows), None, 100.0)
-        drawing = study_pictures.draw_bifurcation({"one": (strobe, "joint.clearance", "held")}, "title")
+        strobe = study_strobes.with_ratios(pd.DataFrame(rows), None, 100.0)
+        drawing = study_strobes.draw_bifurcation({"one": (strobe, "joint.clearance", "held")}, "title")
         panels = [axis for axis in drawing.axes if axis.collections and axis.get_label() != "<colorbar>"]
         self.assertEqual(len(panels), 2)
         for axis in panels:
@@ -244,7 +247,7 @@ class Pictures(InDirectory):
         self.assertEqual(labels, ["Lyapunov exponent [1/revolution]: below 0 the motion repeats, above it is chaotic"])
         plt.close(drawing)
         plain = strobe.drop(columns="lyapunov_exponent")
-        drawing = study_pictures.draw_bifurcation({"one": (plain, "joint.clearance", "held")}, "title")
+        drawing = study_strobes.draw_bifurcation({"one": (plain, "joint.clearance", "held")}, "title")
         self.assertFalse([axis for axis in drawing.axes if axis.get_label() == "<colorbar>"])
         plt.close(drawing)
 
@@ -261,8 +264,8 @@ class Pictures(InDirectory):
 
             out.terminal = True
             found = solve_ivp(motion, (0, 20), [0.0, 1.0], events=out, rtol=1e-9, atol=1e-12)
-            self.assertAlmostEqual(study_pictures.restitution_of_law(nominal), -found.y[1][-1], places=5)
-        self.assertEqual(study_pictures.restitution_of_law(1.0), 1.0)
+            self.assertAlmostEqual(restitution_study.restitution_of_law(nominal), -found.y[1][-1], places=5)
+        self.assertEqual(restitution_study.restitution_of_law(1.0), 1.0)
 
     def test_measured_restitution(self) -> None:
         rows = ["time[s],crank_angle[rad],event,normal_speed[m/s],duration[s],max_penetration[m],max_normal_force[N]"]
@@ -271,7 +274,7 @@ class Pictures(InDirectory):
             rows += [f"0.2,{angle},contact_ends,{after},0.1,1e-6,10"] if after else []
         self.write("r/1.events.csv", "\n".join(rows) + "\n")
         runs = Runs(pd.DataFrame({"run": [1], "contact.restitution": [0.7]}), {})
-        found = study_pictures.measured_restitution(self.work / "r", runs, settled_from=6.28).iloc[0]
+        found = restitution_study.measured_restitution(self.work / "r", runs, settled_from=6.28).iloc[0]
         self.assertEqual(found["count"], 2)  # without the first impact, which is not settled, the slow one, and the last
         self.assertAlmostEqual(found["middle"], 0.55)
 
@@ -301,7 +304,7 @@ class Pictures(InDirectory):
         table = pd.DataFrame(
             {"run": range(1, 5), "a": [1, 1, 2, 2], "b": [5, 6, 5, 6], "status": 3 * ["done"] + ["no"]}
         )
-        x, y, z = study_pictures.grid(Runs(table.assign(h=[1.0, 2.0, 3.0, 4.0]), {}), "a", "b", "h")
+        x, y, z = study_maps.grid(Runs(table.assign(h=[1.0, 2.0, 3.0, 4.0]), {}), "a", "b", "h")
         np.testing.assert_array_equal([*x, *y], [1, 2, 5, 6])
         np.testing.assert_array_equal(z, [[1.0, 3.0], [2.0, np.nan]])
 
@@ -329,7 +332,7 @@ class AnyStudy(InDirectory):
 
     def test_maps_of_grids_that_are_even_in_their_logarithm(self) -> None:
         columns = ("min_film_thickness", "contact_time_fraction", "max_pin_force")
-        drawing = study_pictures.draw_map(self.grid_runs(), "joint.clearance", "initial.crank_speed", columns, "films")
+        drawing = study_maps.draw_map(self.grid_runs(), "joint.clearance", "initial.crank_speed", columns, "films")
         panels = [axes for axes in drawing.axes if axes.get_xlabel() == "radial clearance [µm]"]
         self.assertEqual(len(panels), 2)  # a column that is equal in every run is in the title and has no panel
         self.assertEqual(drawing._suptitle.get_text(), "films; 1 of 90 runs failed (×)\ntime in contact: 0 % in every run")
@@ -354,7 +357,7 @@ class AnyStudy(InDirectory):
         runs = self.grid_runs()
         few = runs.table["joint.clearance"].isin(sorted(set(runs.table["joint.clearance"]))[:4]) & (runs.table["initial.crank_speed"] < 120)
         small = Runs(runs.table[few].reset_index(drop=True), runs.units)
-        drawing = study_pictures.draw_map(small, "joint.clearance", "initial.crank_speed", ["min_film_thickness"], "films")
+        drawing = study_maps.draw_map(small, "joint.clearance", "initial.crank_speed", ["min_film_thickness"], "films")
         (axes,) = drawing.axes
         shown = [text.get_text() for text in axes.texts]
         self.assertEqual((len(shown), len(axes.get_xticks()), axes.get_title()), (len(small.table), 4, "smallest film thickness [µm]"))
@@ -363,16 +366,16 @@ class AnyStudy(InDirectory):
         found = f"up to {1e6 * most['min_film_thickness']:.3g} µm, at {1e6 * most['joint.clearance']:.3g} µm and {most['initial.crank_speed']:.3g} rad/s"
         self.assertEqual(drawing.get_suptitle(), f"films: {found}")
         failed = Runs(small.table.assign(status="failed"), small.units)
-        drawing = study_pictures.draw_map(failed, "joint.clearance", "initial.crank_speed", ["min_film_thickness"], "films")
+        drawing = study_maps.draw_map(failed, "joint.clearance", "initial.crank_speed", ["min_film_thickness"], "films")
         self.assertIn("runs failed", drawing.get_suptitle())
         self.assertNotIn("up to", drawing.get_suptitle())
 
     def test_colours_say_what_lies_beyond_them(self) -> None:
         values = np.concatenate([np.linspace(1, 2, 400), [50.0]])
-        norm, extend = study_pictures.colour_scale(values)
+        norm, extend = study_maps.colour_scale(values)
         self.assertEqual(extend, "both")
         self.assertLess(norm.vmax, 2.1)
-        norm, extend = study_pictures.colour_scale(np.linspace(1, 2, 400))
+        norm, extend = study_maps.colour_scale(np.linspace(1, 2, 400))
         self.assertEqual((norm.vmin, norm.vmax, extend), (1, 2, "neither"))
 
     def test_curves(self) -> None:
@@ -388,7 +391,7 @@ class AnyStudy(InDirectory):
     def test_samples_are_points_over_each_parameter(self) -> None:
         runs = self.grid_runs()
         runs.table["joint.clearance"] = np.random.default_rng(1).permutation(np.linspace(1e-5, 2e-5, 90))
-        self.assertFalse(study_pictures.is_grid(runs, "joint.clearance", "initial.crank_speed"))
+        self.assertFalse(study_maps.is_grid(runs, "joint.clearance", "initial.crank_speed"))
         drawing = study_pictures.draw_scatter(runs, ["joint.clearance", "initial.crank_speed"], ["min_film_thickness"], "x")
         self.assertEqual(len(drawing.axes), 2)
         self.assertEqual(drawing.axes[0].get_yscale(), "log")

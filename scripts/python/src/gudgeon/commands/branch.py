@@ -18,7 +18,7 @@ import gudgeon
 from gudgeon import language
 from gudgeon.commands import Refused, add_output, number, save
 from gudgeon.names import PLACES, plain_unit, shown_unit
-from gudgeon.plots.studies import read_strobe
+from gudgeon.plots.strobes import read_strobe
 from gudgeon.plots.style import WIDTH, add_legend, plt
 from gudgeon.study import Runs
 

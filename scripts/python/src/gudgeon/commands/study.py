@@ -19,7 +19,9 @@ import pandas as pd
 from gudgeon import language
 from gudgeon.commands import Names, Refused, add_output, save
 from gudgeon.plots import contact_laws as contact_study
-from gudgeon.plots import figures, studies
+from gudgeon.plots import figures, strobes, studies
+from gudgeon.plots.maps import describe_maps, draw_map, draw_maps, is_grid
+from gudgeon.plots.restitution import describe_restitution, draw_restitution, measured_restitution
 from gudgeon.results import MissingResult, default_folder
 from gudgeon.study import Runs, asked_columns, warn_of_failures
 
@@ -50,7 +52,7 @@ def read(results: Path, name: str) -> Runs:
 
 def maps(results: Path) -> tuple[figures.Drawing, list[str]]:
     found = {name: read(results, name) for name in MAPS}
-    return studies.draw_maps(found), studies.describe_maps(found)
+    return draw_maps(found), describe_maps(found)
 
 
 def bifurcation(results: Path) -> tuple[figures.Drawing, list[str]]:
@@ -58,21 +60,21 @@ def bifurcation(results: Path) -> tuple[figures.Drawing, list[str]]:
         "bifurcation_clearance": ("joint.clearance", 1e6, "µm", None, FLORES_SPEED, "at 5000 rpm"),
         "bifurcation_speed": ("initial.crank_speed", 1.0, "rad/s", FLORES_CLEARANCE, None, "at a clearance c of 100 µm"),
     }
-    strobes, lines = {}, []
+    found, lines = {}, []
     for name, (parameter, unit, label, clearance, speed, held) in kinds.items():
-        strobe = studies.read_strobe(results / f"{name}.strobe.csv", read(results, name))
-        strobe = studies.with_ratios(strobe, clearance, speed)
-        strobes[name] = (strobe, parameter, held)
-        lines.append(studies.describe_bifurcation(strobe, name, parameter, unit, label))
+        strobe = strobes.read_strobe(results / f"{name}.strobe.csv", read(results, name))
+        strobe = strobes.with_ratios(strobe, clearance, speed)
+        found[name] = (strobe, parameter, held)
+        lines.append(strobes.describe_bifurcation(strobe, name, parameter, unit, label))
     title = "Dry joint, state at the dead centre: chaos at large clearance and low speed, else the motion repeats"
-    return studies.draw_bifurcation(strobes, title), lines
+    return strobes.draw_bifurcation(found, title), lines
 
 
 def restitution(results: Path) -> tuple[figures.Drawing, list[str]]:
     runs = read(results, "restitution")
-    measured = studies.measured_restitution(results / "restitution", runs, settled_from=80 * np.pi)
-    drawing = studies.draw_restitution(runs, measured)
-    return drawing, [studies.describe_restitution(runs, measured)]
+    measured = measured_restitution(results / "restitution", runs, settled_from=80 * np.pi)
+    drawing = draw_restitution(runs, measured)
+    return drawing, [describe_restitution(runs, measured)]
 
 
 def contact_laws(results: Path) -> tuple[figures.Drawing, list[str]]:
@@ -103,14 +105,14 @@ def any_study(path: Path, columns: list[str] | None) -> dict[str, figures.Drawin
     title = language.current.keep(str(settings.get("title") or stem))
     if len(parameters) == 1:
         found = {stem: studies.draw_curves(runs, *parameters, columns, title)}
-    elif len(parameters) == 2 and studies.is_grid(runs, *parameters):
-        found = {stem: studies.draw_map(runs, *parameters, columns, title)}
+    elif len(parameters) == 2 and is_grid(runs, *parameters):
+        found = {stem: draw_map(runs, *parameters, columns, title)}
     else:
         found = {stem: studies.draw_scatter(runs, parameters, columns, title)}
-    strobes = path.with_name(f"{stem}.strobe.csv")
-    if strobes.exists() and len(parameters) == 1:
-        strobe = studies.read_strobe(strobes, runs)
-        found[f"{stem}.strobe"] = studies.draw_strobes(strobe, parameters[0], title)
+    points = path.with_name(f"{stem}.strobe.csv")
+    if points.exists() and len(parameters) == 1:
+        strobe = strobes.read_strobe(points, runs)
+        found[f"{stem}.strobe"] = strobes.draw_strobes(strobe, parameters[0], title)
     return found
 
 
