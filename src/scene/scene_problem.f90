@@ -277,9 +277,9 @@ module scene_problem
       class(scene_t), intent(inout) :: self
     end subroutine set_layout
 
-    !> Request the integrals of the joints; must be called before the run. In a scene with clearance they do not influence the steps.
-    !> In a mechanism without clearance the only one, the integral of the force, takes part in the error control, since otherwise the
-    !> steps would be too long for it.
+    !> Request the integrals of the joints; must be called before the run. In a scene with clearance they do not influence the
+    !> steps. In a mechanism without clearance the only one, the integral of the force, takes part in the error control, since
+    !> otherwise the steps would be too long for it.
     module subroutine measure_joint(self)
       class(scene_t), intent(inout) :: self
     end subroutine measure_joint
@@ -290,8 +290,8 @@ module scene_problem
       real(dp) :: y(self%n)
     end function initial_state
 
-    !> Indices of the states by which motions are compared: all except quadratures, the crank angle, and the angle of a floating pin,
-    !> on which nothing depends and which drifts.
+    !> Indices of the states by which motions are compared: all except quadratures, the crank angle, and the angle of a floating
+    !> pin, on which nothing depends and which drifts.
     pure module function compared_states(self) result(at)
       class(scene_t), intent(in) :: self
       integer, allocatable :: at(:)
