@@ -1,5 +1,5 @@
-"""Build hook of hatchling: compiles the shared library and the program into the package. With GUDGEON_PREFIX in the environment they are
-those that `build_library.py --install` has put there, and the package has none of its own."""
+"""Hooks of hatchling: the commands of the package; its build, which compiles the shared library and the program into the package. With
+GUDGEON_PREFIX in the environment they are those that `build_library.py --install` has put there, and the package has none of its own."""
 
 import os
 import shutil
@@ -10,9 +10,19 @@ import tempfile
 from pathlib import Path
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+from hatchling.metadata.plugin.interface import MetadataHookInterface
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import build_library
+
+
+class Commands(MetadataHookInterface):
+    """As scripts that pip writes, which start also in a folder whose name has a blank."""
+
+    def update(self, metadata):
+        metadata["scripts"] = {"gudgeon-fmu": "gudgeon._fmu:main", "gudgeon-plot": "gudgeon.cli:main"}
+        if not os.environ.get("GUDGEON_PREFIX"):
+            metadata["scripts"]["gudgeon"] = "gudgeon._launch:main"
 
 
 class Hook(BuildHookInterface):
@@ -36,7 +46,6 @@ class Hook(BuildHookInterface):
         build_data["pure_python"] = False
         build_data["tag"] = "py3-none-" + sysconfig.get_platform().replace("-", "_").replace(".", "_")
         build_data["artifacts"] += ["src/gudgeon/libgudgeon.so", "src/gudgeon/bin/gudgeon"]
-        build_data["shared_scripts"][str(Path(self.root) / "launcher")] = "gudgeon"
         for words, place in build_library.PAGES.items():
             page = package / "bin" / ("-".join(words) + ".page")
             page.write_text(build_library.page(program, words))
