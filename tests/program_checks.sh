@@ -8,6 +8,8 @@ work=$(mktemp -d)
 trap 'chmod -R u+w "$work" 2>/dev/null; rm -rf "$work"' EXIT
 gudgeon=$(scripts/build.sh) || { echo "0 passed, 1 failed"; exit 1; }
 
+awk() { LC_ALL=C command awk "$@"; }   # numbers have decimal points in every locale
+
 check() {   # check NAME COMMAND...: the command must succeed
   name=$1
   shift
