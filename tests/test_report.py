@@ -64,6 +64,9 @@ BROWSER_OPTIONS = (
     "--window-size=1280,1000",
 )
 
+#: For a server on this machine, whatever proxy the environment names.
+DIRECT = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+
 #: Whether anything has been drawn on a canvas.
 PAINTED = """const c = document.getElementById(arguments[0]), blank = document.createElement('canvas');
 blank.width = c.width; blank.height = c.height; return c.toDataURL() !== blank.toDataURL();"""
@@ -117,7 +120,7 @@ class Browser:
         data = None if body is None else json.dumps(body).encode()
         url = self.base + (f"/session/{self.session}" if self.session else "") + path
         request = urllib.request.Request(url, data, {"Content-Type": "application/json"}, method=method)
-        with urllib.request.urlopen(request, timeout=120) as answer:
+        with DIRECT.open(request, timeout=120) as answer:
             return json.load(answer)["value"]
 
     def cdp(self, command: str, **values: object) -> object:
