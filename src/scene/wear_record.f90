@@ -323,14 +323,15 @@ contains
   end function sweep
 
   !> Distribute the load path of an interval over the surfaces: along the arcs of contact at the points of Gauss's rule, or where
-  !> surfaces touch along a line evenly over the angle that it passes over.
+  !> surfaces touch along a line, which may turn back, the part of each node over the angle that it passes over around this node.
   subroutine distribute(self, scene, total, samples)
     type(wear_record_t), intent(inout) :: self
     type(scene_t), intent(in) :: scene
     real(dp), intent(in) :: total   !! [N m]
     type(samples_t), intent(in) :: samples
+    real(dp), parameter :: to_end = (1 + nodes(1))/(nodes(2) - nodes(1))   !! from the outer nodes to the ends of the interval
     type(contact_arc_t) :: arc
-    real(dp) :: shares(n_nodes), on_line, overhang(2)
+    real(dp) :: shares(n_nodes), on_line, edges(0:n_nodes)
     integer :: i, j, k
     shares = gauss*samples%load
     if (.not. sum(shares) > 0) shares = weights*samples%load
@@ -351,9 +352,17 @@ contains
       end do
     end do
     if (.not. on_line > 0) return
-    overhang = 0.5_dp*(1/nodes(n_nodes) - 1)*(samples%angle(n_nodes, :) - samples%angle(1, :))
+    shares = weights*samples%load
+    shares = on_line/sum(shares)*shares
     do k = 1, size(self%surface)
-      call self%surface(k)%add(samples%angle(1, k) - overhang(k), samples%angle(n_nodes, k) + overhang(k), on_line)
+      associate (angle => samples%angle(:, k))
+        edges(1:n_nodes - 1) = 0.5_dp*(angle(:n_nodes - 1) + angle(2:))
+        edges(0) = angle(1) - to_end*(angle(2) - angle(1))
+        edges(n_nodes) = angle(n_nodes) + to_end*(angle(n_nodes) - angle(n_nodes - 1))
+      end associate
+      do i = 1, n_nodes
+        if (shares(i) > 0) call self%surface(k)%add(edges(i - 1), edges(i), shares(i))
+      end do
     end do
   end subroutine distribute
 
