@@ -761,8 +761,8 @@ class Tables(unittest.TestCase):
         path.with_suffix(".summary.csv").write_text(
             "quantity,value,unit\nstatus,done,\ncycle_start,0,s\ncycle_min_skirt_film_thickness,1.61E-05,m\ncycle_max_slap_speed,2.78E-02,m/s\n"
             "cycle_min_ring_1_film_thickness,5.42E-07,m\ncycle_mass_flow,2.161E-03,kg/s\ncycle_volumetric_efficiency,9.16E-01,1\n"
-            "cycle_discharge_temperature,3.639130349E+02,K\ncycle_suction_loss,4.45,W\n")
-        self.assertEqual(list(self.rows(path).values()), [["16.1 um"], ["27.8 mm/s"], ["0.542 um"], ["2.16 g/s"], ["0.916"], ["90.8 degC"], ["4.45 W"]])
+            "cycle_discharge_temperature,3.639130349E+02,K\ncycle_suction_loss,4.45,W\ncycle_max_drive_torque,180.04,N.m\ncycle_min_drive_torque,-440,N.m\nrecent_mass_flow,2E-03,kg/s\n")
+        self.assertEqual(list(self.rows(path).values()), [["16.1 um"], ["27.8 mm/s"], ["0.542 um"], ["2.16 g/s"], ["0.916"], ["90.8 degC"], ["4.45 W"], ["180 N m"], ["-440 N m"], ["2.00 g/s"]])
 
 
 class Poincare(unittest.TestCase):

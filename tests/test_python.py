@@ -10,6 +10,7 @@ With --all every shipped case is compared. Ends with `N passed, N failed`; the e
 import ast
 import copy
 import doctest
+import html
 import importlib
 import keyword
 import math
@@ -325,6 +326,10 @@ def runs() -> None:
     found = gudgeon.orders(run, "piston_acceleration")
     check(found.order[found.amplitude.idxmax()] == 1 and set(found) == {"order", "amplitude", "phase_deg", "scatter"}, "orders")
     check("<svg" in run._repr_html_() and "sim_I" in run._repr_html_(), "a run shows itself")
+    valves = gudgeon.template("compressor").set({"mechanism.piston_mass": 30.0}).run()
+    shown = valves._repr_html_()   # answers in readable units, as gudgeon.table has them, with the notes of the run
+    check("cycle_start" not in shown and f"{valves.summary['cycle_max_force'] / 1e3:.2f} kN" in shown and "last cycle" in shown, f"answers of a run that shows itself: {shown}")
+    check(all(html.escape(note) in shown for note in valves.notes) and valves.notes, f"and its notes: {valves.notes}")
     title = case_of("sim_I")
     title.name = "<script>"
     check("<script>" not in title.run(end=0.001)._repr_html_(), "names are escaped")

@@ -25,9 +25,9 @@ OF_CYCLE = (
     "*cycle_mean_film_temperature", "*cycle_mean_film_side_flow", "*cycle_wear_depth_rate_*", "cycle_imep", "cycle_bmep", "cycle_fmep", "cycle_skirt_fmep", "cycle_ring_fmep",
     "cycle_min_skirt_film_thickness", "cycle_max_slap_speed", "cycle_slap_speed", "cycle_slap_energy", "cycle_min_ring_*_film_thickness",
     "cycle_indicated_power", "cycle_brake_power", "cycle_max_cylinder_pressure", "cycle_mean_crank_speed", "cycle_speed_fluctuation",
-    "cycle_mass_flow", "cycle_volumetric_efficiency", "cycle_isentropic_efficiency", "cycle_discharge_temperature", "cycle_suction_loss",
+    "cycle_mass_flow", "recent_mass_flow", "cycle_volumetric_efficiency", "cycle_isentropic_efficiency", "cycle_discharge_temperature", "cycle_suction_loss",
     "cycle_discharge_loss", "cycle_leak_flow", "cycle_wall_heat_flow",
-    "cycle_max_drive_torque", "pin_swing", "pin_drift_per_revolution",
+    "cycle_max_drive_torque", "cycle_min_drive_torque", "pin_swing", "pin_drift_per_revolution",
 )  # fmt: skip
 OF_RUN = (
     "status", "*min_film_thickness", "*min_gap", "*max_film_pressure", "*max_pin_force", "*max_force", "*contacts", "*contact_time_fraction",

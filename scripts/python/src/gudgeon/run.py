@@ -325,11 +325,13 @@ class Run:
     def _repr_html_(self) -> str:
         from html import escape
 
-        chosen = [name for name in self.summary if name.startswith("cycle_")][:10] or list(self.summary)[:10]
-        rows = [(name, self.summary[name], self.summary.units[name]) for name in chosen]
+        from ._table import table
+
         name = next((name for name in ("piston_acceleration", *self.names[1:]) if name in self._index), None)
-        picture = _polyline(self["time"], self[name]) if name and len(self) > 1 else ""
-        return f"<b>{escape(self.name)}</b>: {escape(str(self.summary.get('status', '')))}{picture}<br>{escape(name or '')}{_table(rows)}"
+        shown, said = (self.cycle(-1), ", last cycle") if "cycle_start" in self.summary and "crank_angle" in self._index else (self, "")
+        picture = _polyline(shown["time"], shown[name]) if name and len(shown) > 1 else ""
+        notes = "".join(f"<br>{escape(note)}" for note in self.notes)
+        return f"<b>{escape(self.name)}</b>: {escape(str(self.summary.get('status', '')))}{picture}<br>{escape(name or '')}{said}{table(self)._repr_html_() if self.summary else ''}{notes}"
 
 
 def _label(column: str, unit: str) -> str:
