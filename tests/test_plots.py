@@ -1522,8 +1522,9 @@ class Portuguese(unittest.TestCase):
     def test_a_name_behind_what_it_is(self) -> None:
         """As in the scenes of gudgeon-plot models; a name that is a word of a text, such as a run that is called friction, changes no text."""
         said = language.Language("pt")
-        for name in ("lugre", "friction"):
+        for name in ("lugre", "friction", "0.01"):
             said.keep(name)
+        self.assertEqual(said.say("0.01"), "0,01")   # a number is no name
         self.assertEqual([said.say(text) for text in ("friction lugre at the crank pin", "no friction", "normal force over penetration")],
                          ["atrito lugre no pino da manivela", "sem atrito", "força normal em função da penetração"])
         self.assertEqual(said.unknown, set())

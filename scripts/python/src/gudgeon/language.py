@@ -36,8 +36,9 @@ class Language:
         ]
 
     def keep(self, name: str) -> str:
-        """Take a text as a name that the user gave, which is not translated; the text itself."""
-        self.names.add(name)
+        """Take a text as a name that the user gave, which is not translated; the text itself. A number is no name."""
+        if re.search(r"[^\d.]", name):
+            self.names.add(name)
         return name
 
     @property
