@@ -282,12 +282,11 @@ SAME = {"degC", "angular", "normal", "sigma", "morris", "sobol", "star", "Poinca
 
 #: What gudgeon-plot draws and prints of shipped cases, by the case of each command.
 DRAWN: dict[str, tuple[str, ...]] = {
-    "sim_I": ("columns", "laws", "report --short", "compare {folder}/sim_I_fed.csv", "table", "export"), "film/sim_I_fed": ("film", "bearing"),
-    "flores/dry_0500um": ("columns --columns normal_force pin_force_x crank_moment --over time", "laws", "report"),
-    "wear/flores": ("wear", "report --short"), "pin/engine": ("columns --cycle -1", "report", "report --short", "table"), "elastic/engine_crankshaft": ("report",),
-    "joints/piston": ("skirt", "report", "report --short"), "gas/compressor_valves": ("indicator", "orders", "report", "report --short"), "joints/piston_slap": ("report",),
-    "film/heat": ("bearing --place crank_pin", "report"), "cylinders/inline_four_bearings": ("bearing", "report", "report --short"), "cylinders/six_mwm": ("campbell", "report", "orders"),
-    "joints/rings": ("orders", "indicator"), "bearings/big_end": ("bearing", "report --short"), "film/engine_pin": ("film",),
+    "sim_I": ("columns", "laws", "compare {folder}/sim_I_fed.csv", "table", "export"), "film/sim_I_fed": ("film", "bearing"), "wear/flores": ("wear",),
+    "flores/dry_0500um": ("columns --columns normal_force pin_force_x crank_moment --over time", "report"), "pin/engine": ("report --short", "table"),
+    "joints/piston": ("skirt", "report"), "joints/piston_slap": ("report --short",), "joints/rings": ("orders",), "gas/compressor_valves": ("indicator", "report --short"),
+    "film/heat": ("bearing --place crank_pin",), "cylinders/inline_four_bearings": ("bearing", "report"), "cylinders/six_mwm": ("campbell", "report --short"),
+    "bearings/big_end": ("report --short",),
 }  # fmt: skip
 
 
@@ -302,8 +301,9 @@ def plotted(words: list[str]) -> tuple[str, str, set[str]]:
 def plots(program: str, folder: str) -> None:
     """With --language pt no text of a picture or a page of gudgeon-plot lacks its Portuguese, and no English word is left in what it prints."""
     commands = []
-    for case, drawn in DRAWN.items():
+    for case in DRAWN:
         subprocess.run([program, "-q", "-o", folder, str(TOP / "cases" / f"{case}.nml")], check=True, stderr=subprocess.DEVNULL)
+    for case, drawn in DRAWN.items():
         for command in drawn:
             what, *options = command.format(folder=folder).split()
             out = [] if what == "table" else ["-o", f"{folder}/out{'.pdf' if '--short' in options else '/'}"]
