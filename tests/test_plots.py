@@ -1864,7 +1864,7 @@ class Columns(unittest.TestCase):
         plt.close(drawing)
 
     def test_bearings_of_an_engine_stand_along_its_shaft(self) -> None:
-        """Circles of main bearings at the journals, of big ends at their throws; two rods on one throw stand beside each other."""
+        """Circles of main bearings at the journals, of crank pins at their throws; two rods on one throw stand beside each other."""
         angle = np.radians(np.arange(0, 721, 4.0))
         columns, rows = {"time": angle / 100, "crank_angle": angle}, {"cycle_thinnest_bearing": "crank_pin_2", "cycle_bearings_power": "30"}
         names = [f"main_bearing_{b}" for b in (1, 2)] + [f"crank_pin_{i}" for i in (1, 2)]
@@ -1879,9 +1879,9 @@ class Columns(unittest.TestCase):
         drawing = bearing_pictures.engine(made, "made")
         shaft, losses = drawing.axes
         self.assertEqual({text.get_text().split("\n")[0]: text.get_position()[0] for text in shaft.texts},
-                         {"main bearing 1": 0.0, "main bearing 2": 2.0, "big end 1": 0.55, "big end 2": 1.45})
+                         {"main bearing 1": 0.0, "main bearing 2": 2.0, "crank pin 1": 0.55, "crank pin 2": 1.45})
         self.assertEqual([bar.get_height() for bar in losses.patches], [5.0, 10.0, 15.0, 20.0])
-        self.assertIn("thinnest film 2 µm at big end 2", drawing.get_suptitle())
+        self.assertIn("thinnest film 2 µm at crank pin 2", drawing.get_suptitle())
         plt.close(drawing)
 
     def test_orbits_have_the_angles_of_the_trace(self) -> None:

@@ -162,7 +162,7 @@ def draw_quarters(axes: Axes, track: np.ndarray, angle: np.ndarray, cycle: float
 
 
 def numbered(run: Run) -> dict[str, tuple[int, ...]]:
-    """Numbers of the main bearings and big ends of an engine that the rows of a run have."""
+    """Numbers of the main bearings and crank pins of an engine that the rows of a run have."""
     return {place: tuple(int(found[1]) for name in run.trace.columns if (found := re.fullmatch(rf"{place}_(\d+)_film_thickness", name)))
             for place in ("main_bearing", "crank_pin")}
 
@@ -189,7 +189,7 @@ def engine(run: Run, name: str) -> Drawing:
             draw_small_orbit(shaft, run, prefix, at, height)
             thickness, angle, loss = (float(run.summary[f"{prefix}cycle_{what}"][0]) for what in
                                       ("min_film_thickness", "min_film_thickness_angle", "mean_film_power"))
-            label = bearing_label(f"{place}_{number}")
+            label = f"{PLACES[place][1]} {number}"
             shaft.text(at, height + 0.9 * np.sign(height), f"{label}\n{1e6 * thickness:.3g} µm\n{angle:.0f}°", ha="center",
                        va="bottom" if height > 0 else "top", fontsize=6)
             losses.bar(at, loss, width=0.5, color=BLUE if place == "main_bearing" else ORANGE)
@@ -199,18 +199,12 @@ def engine(run: Run, name: str) -> Drawing:
     shaft.set_xlim(-1, 2 * n + 1)
     shaft.axis("off")
     losses.set_ylabel("loss [W]")
-    losses.set_xticks(places, [label.replace("main bearing", "main").replace("big end", "end") for label in labels], fontsize=6)
+    losses.set_xticks(places, [label.replace("main bearing", "main").replace("crank pin", "pin") for label in labels], fontsize=6)
     thinnest = run.summary["cycle_thinnest_bearing"][0]
     thickness = float(run.summary[f"{thinnest}_cycle_min_film_thickness"][0])
-    drawing.suptitle(f"{language.current.keep(name)}: thinnest film {1e6 * thickness:.3g} µm at {bearing_label(thinnest)}, "
+    drawing.suptitle(f"{language.current.keep(name)}: thinnest film {1e6 * thickness:.3g} µm at {thinnest.replace('_', ' ')}, "
                      f"bearings {float(run.summary['cycle_bearings_power'][0]):.4g} W")
     return drawing
-
-
-def bearing_label(name: str) -> str:
-    """main_bearing_3: main bearing 3; crank_pin_2: big end 2."""
-    place, _, number = name.rpartition("_")
-    return f"{'main bearing' if place == 'main_bearing' else 'big end'} {number}"
 
 
 def draw_shaft(axes: Axes, ups: list[bool]) -> None:
