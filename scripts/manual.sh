@@ -13,7 +13,7 @@ program=${1:-$(scripts/build.sh)} || exit 1
 rm -rf build/manual
 work=$(mktemp -d)
 log=$work/log
-trap 'rm -rf "$work"' EXIT
+trap 'rm -rf "$work" 2>/dev/null' EXIT   # Chromium may still be writing
 
 quietly() {   # run a command; stop with what it said if it failed or warned
   "$@" >"$log" 2>&1 && ! grep -v '━' "$log" | grep -qiwE 'warnings?|errors?' && return   # lines of progress name variables

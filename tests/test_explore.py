@@ -445,7 +445,7 @@ def main() -> int:
     if options.screenshots:
         options.screenshots.mkdir(parents=True, exist_ok=True)
     checks = Assertions()
-    with tempfile.TemporaryDirectory() as work:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as work:   # Chromium may still be writing
         browser = Browser(chromium, driver, work)
         try:
             check_memory(browser, checks, options.changes or 60)

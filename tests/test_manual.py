@@ -427,7 +427,7 @@ def check_read() -> None:
     check(chromium and driver, "Chromium is there: scripts/setup.sh --browser")
     if not (chromium and driver):
         return
-    with tempfile.TemporaryDirectory() as profile:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:   # Chromium may still be writing
         browser = Browser(chromium, driver, profile, "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1")
         try:
             for page in ("index", "theory", "case_file"):

@@ -586,7 +586,7 @@ def main() -> int:
     checks = Assertions()
     check_answers(checks)
     check_shaft(checks)
-    with tempfile.TemporaryDirectory() as work:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as work:   # Chromium may still be writing
         pages = options.page
         for case in (*CASES, FIRES_AT_0) if not pages else ():
             page = Path(work) / f"{case}.html"
