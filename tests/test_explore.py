@@ -12,6 +12,7 @@ Ends with the line "N passed, N failed".
 import argparse
 import http.server
 import json
+import shlex
 import shutil
 import signal
 import subprocess
@@ -167,7 +168,7 @@ def check_sliders(browser: Browser, checks: Assertions, program: Path) -> None:
         with tempfile.TemporaryDirectory() as folder:
             work = Path(folder)
             case.to_nml(work / "CASE.nml")
-            done = subprocess.run(words.replace("gudgeon", f"{program} -q -o {work}", 1), shell=True, cwd=work, capture_output=True, text=True, check=False)
+            done = subprocess.run(words.replace("gudgeon", shlex.join([str(program), "-q", "-o", str(work)]), 1), shell=True, cwd=work, capture_output=True, text=True, check=False)
             here = server.explorer.changed(browser.run("return explorer.values")).run()
             rows = dict(line.split(",")[:2] for line in (work / "CASE.summary.csv").read_text().splitlines()) if done.returncode == 0 else {}
             kept = [name for name in rows if name.startswith(("min_", "max_", "cycle_m"))]
