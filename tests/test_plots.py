@@ -394,7 +394,7 @@ class ForPapers(unittest.TestCase):
                 self.assertEqual(cli.main(["columns", str(path), *words]), 0)
                 both = ["--columns", "crank_speed,crank_angle", "--over", "time", "-o", f"{work}/both.svg"]
                 self.assertEqual(cli.main(["--language", "pt", "columns", str(path), *both]), 0)
-                portuguese = Path(work, "both.svg").read_text()
+                portuguese = Path(work, "both.svg").read_text(encoding="utf-8")
                 text = path.with_name("x_columns.svg").read_text()
             self.assertIn('width="240.944882pt" height="170.07874pt"', text)   # 8.5 cm and 6 cm, of 72 points an inch
             said = re.findall("<!-- (.*?) -->", text)   # texts of the picture, which are drawn as paths
