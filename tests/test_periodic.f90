@@ -34,6 +34,7 @@ contains
     call exponents_of_orbits(check)
     call shortest_period(check)
     call alternating_approach(check)
+    call slow_behind_fast(check)
     call exponent_in_lasting_contact(check)
     call no_exponent(check)
     call exponents_of_machines(check)
@@ -262,6 +263,41 @@ contains
       call check%that(wrong == 0, 'alternating approach: the period')
     end do
   end subroutine alternating_approach
+
+  !> States that approach their limit quickly, and one that does so slowly from revolution to revolution by less than the tolerance:
+  !> the period is told when that one too has no more than the tolerance before it.
+  subroutine slow_behind_fast(check)
+    class(checks_t), intent(inout) :: check
+    real(dp), parameter :: tolerance = 1e-4_dp
+    type(period_watch_t) :: watch
+    type(scene_t), allocatable :: scene
+    type(case_t) :: case
+    type(error_t), allocatable :: failure
+    real(dp), allocatable :: y(:)
+    real(dp) :: left
+    integer, allocatable :: at(:)
+    integer :: k
+    call read_case('cases/sim_I.nml', [character(len=long) :: until], case, failure)
+    if (.not. allocated(failure)) call build_scene(case, .false., scene, failure)
+    call check%that(.not. allocated(failure), 'slow behind fast: a scene')
+    if (allocated(failure)) return
+    allocate (y(scene%n), source=0.0_dp)
+    at = scene%compared_states()
+    watch%is_on = .true.
+    watch%tolerance = tolerance
+    call watch%begin(scene, 0.0_dp, y)
+    left = 0
+    do k = 1, 1000
+      call watch%record_point(y + 1, 0.0_dp)
+      left = 10*tolerance*exp(-k/100.0_dp)
+      y = 0.3_dp*0.5_dp**k
+      y(at(1)) = left
+      call watch%end_revolution(real(k, dp), y, 0.0_dp)
+      if (watch%has_ended) exit
+    end do
+    call check%that(watch%period == 1, 'slow behind fast: the period')
+    call check%that(left < 1.1_dp*tolerance, 'slow behind fast: not before the slow state has come')   ! 1: its ranges are 1
+  end subroutine slow_behind_fast
 
   !> A motion with the multipliers 0.8405 and -0.6961 (from variational equations of its orbit of one revolution) approaches it from
   !> alternating sides: two revolutions repeat first.

@@ -5,8 +5,10 @@
 !> relative to its range in the last revolutions. The motion has the period p (the shortest possible) if for three consecutive
 !> periods every state differs from that p revolutions earlier by at most the tolerance, and the remaining change is expected to be
 !> at most that too: differences d that shrink by the factor q from period to period leave d q/(1 - q). Without this second
-!> condition a motion that approaches its limit slowly would be accepted too early. Differences below a hundredth of the tolerance
-!> are not tested for this, since they are errors of the integration. Periods are multiples of the period of the gas.
+!> condition a motion that approaches its limit slowly would be accepted too early. It holds for the largest difference, and for
+!> each component that moves in one sense: the speed of a heavy flywheel may drift behind larger differences that vanish soon.
+!> Differences below a hundredth of the tolerance are not tested for this, since they are errors of the integration. Periods are
+!> multiples of the period of the gas.
 !>
 !> A motion that approaches its limit from alternating sides has small differences over two periods first. Before a period is told,
 !> its divisors are tested: one over which the states differ by the tolerance at most is the period; one over which they still
@@ -31,6 +33,7 @@ module period_watch
                                                 !! shrink at all
   real(dp), parameter :: approaching = 0.9_dp   !! larger ones, while they have shrunk to less than this part in up to 32
                                                 !! revolutions: errors of the integration change them by less
+  integer, parameter :: moves = 8               !! revolutions, or three periods, that show a drift: errors change their sense
   real(dp), parameter :: noise = 1e-2_dp            !! differences due to the integration, relative to the tolerance
 
   type :: period_watch_t
@@ -240,6 +243,7 @@ contains
         if (.not. newest < oldest) cycle
         factor = (newest/oldest)**(1.0_dp/(repeats_needed - 1))
         if (newest*factor > self%tolerance*(1 - factor)) cycle
+        if (drifts(p)) cycle
       end if
       do told = self%forcing, p - 1, self%forcing   ! the divisors
         if (mod(p, told) /= 0) cycle
@@ -258,6 +262,24 @@ contains
     end do
 
   contains
+
+    !> Whether a component has moved in one sense from period to period and so little slower each time that what is to come exceeds
+    !> the tolerance.
+    logical function drifts(period)
+      integer, intent(in) :: period
+      real(dp) :: moved(min(max(moves, repeats_needed*period), self%made - period, depth - period)), factor
+      integer :: i, j, n
+      n = size(moved)
+      drifts = .false.
+      do i = 1, size(range)
+        moved = [(self%states(i, mod(self%made - j, depth)) - self%states(i, mod(self%made - j - period, depth)), j=0, n - 1)]
+        moved = moved/range(i)
+        if (abs(moved(1)) <= noise*self%tolerance .or. any(.not. moved*moved(1) > 0)) cycle
+        factor = (moved(1)/moved(1 + (repeats_needed - 1)*period))**(1.0_dp/(repeats_needed - 1))
+        drifts = abs(moved(1))*factor > self%tolerance*(1 - factor)
+        if (drifts) return
+      end do
+    end function drifts
 
     !> Largest difference of states `first` to `last` from those some revolutions earlier, relative to the ranges of their
     !> components.
