@@ -248,7 +248,7 @@ def written_texts() -> None:
 
 def meanings() -> None:
     """The explorer tells in Portuguese what each of its keys is; no translation is of a text that is gone."""
-    said, shown = Language("pt"), {key.meaning: key for key in gudgeon.keys.values() if (key.kind != "text" or key.name == "oil") and (key.count == 1 or key.words)}
+    said, shown = Language("pt"), {key.meaning: key for key in gudgeon.keys.values() if key.name == "oil" or (key.kind != "text" and key.count == 1)}
     for key in shown.values():
         said.unknown.clear()
         text = key.described(said.say)

@@ -154,14 +154,14 @@ class Explorer:
     def control(self, case: gudgeon.Case, name: str) -> dict[str, Any] | None:
         """What the page needs for a key: its kind, words, or range and unit of its slider, value, meaning. None for tables, texts and lists."""
         key, value = gudgeon.keys[name], case[name]
+        if key.name != "oil" and (key.kind == "text" or key.count > 1):
+            return None
         about = {"name": name, "value": value, "start": self.case[name], "help": key.described(self.language.say), "kind": key.kind}
         if key.kind == "switch":
             return about | {"words": ["false", "true"]}
         if key.kind == "word" or key.name == "oil":
             words = key.words or OILS
             return about | {"words": list(words) if value in words else [value, *words]}
-        if key.kind not in ("real", "integer") or key.count > 1:
-            return None
         low, high = slider_range(key, value)
         unit, factor, offset = shown_unit(key.unit, value or high)
         return about | {"low": low, "high": high, "log": low > 0 and high / low > 20, "unit": unit, "factor": factor, "offset": offset}
