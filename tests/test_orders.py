@@ -147,6 +147,8 @@ def runs(folder: Path) -> None:
     still = SimpleNamespace(place=settled_cycles.place, length=settled_cycles.length, number=1, run=settled_cycles.run)
     with patch("gudgeon.plots.cycles.bearing_loads", lambda _: {"a load that does not turn": np.ones((2, 1, len(settled_cycles.place)))}):
         numbers = [text.xyann for text in draw_bearings(still).axes[0].texts]
+        drawn = draw_bearings(still).axes[0]
+    check("[N]" in drawn.get_title() and abs(drawn.lines[0].get_ydata().max() - 2**0.5) < 1e-12, "loads of a very small machine are in N", drawn.get_title())
     check(len({tuple(np.round(place, 3)) for place in numbers}) == 4, "the numbers of four dots in one place stand around it", str(numbers))
     drawing = draw_bearings(settled_cycles)
     force = bearing_loads(settled_cycles)["crank on the main bearing"].mean(axis=1)

@@ -4,7 +4,7 @@
     gudgeon-plot orders results/sim_IV.csv --columns crank_speed guide_force
     gudgeon-plot orders engine --settle 20 --highest 60    cycles after 20 revolutions, orders up to 60
 
-A cycle is one revolution of the crank, or two if there is gas. The analysis takes the whole cycles after the first half of the run,
+A cycle is one revolution of the crank, or two of a four-stroke engine. The analysis takes the whole cycles after the first half of the run,
 or after --settle revolutions. A trace with `&output sampling = 'crank_angle'` is used as it is; other traces are interpolated to
 equal crank angles. The most accurate input is a run with `&run until = 'periodic'` and `&output window = 'last_period'`. Writes:
 

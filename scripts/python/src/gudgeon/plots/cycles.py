@@ -4,8 +4,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from gudgeon._heat import heat_release
 from gudgeon.cycles import Cycles, bearing_loads, orders, spectrum
-from gudgeon.names import Shown, plain_unit, shown_unit
+from gudgeon.names import Shown, plain_unit, shown_unit, suited
 from gudgeon.plots.style import BLACK, BLUE, GREY, ORANGE, VERMILION, WIDTH, CrankAngles
+from gudgeon.report.answers import number
 from gudgeon.results import Run, numbered
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -89,16 +90,17 @@ def draw_bearings(cycles: Cycles) -> Drawing:
     )
     marks = [int(np.argmin(np.abs(cycles.place - k * cycles.length / 4))) for k in range(4)]
     for axis, (name, force) in zip(axes[0], loads.items()):
+        unit, factor = suited("kN", 1e-3, np.hypot(*force))
         for k in range(min(cycles.number, 20)):
             x, y = force[0, k], force[1, k]
-            axis.plot(np.arctan2(y, x), np.hypot(x, y) / 1e3, color=GREY, linewidth=0.25, alpha=0.6)
+            axis.plot(np.arctan2(y, x), factor * np.hypot(x, y), color=GREY, linewidth=0.25, alpha=0.6)
         x, y = force.mean(axis=1)
         x, y = np.append(x, x[0]), np.append(y, y[0])
-        axis.plot(np.arctan2(y, x), np.hypot(x, y) / 1e3, color=BLUE)
+        axis.plot(np.arctan2(y, x), factor * np.hypot(x, y), color=BLUE)
         # numbers stand outwards; two of the marks are close together where the gas is thin: the later one is turned aside
         turned: list[tuple[float, int]] = []
         for mark in marks:
-            angle, size = np.arctan2(y[mark], x[mark]), np.hypot(x[mark], y[mark]) / 1e3
+            angle, size = np.arctan2(y[mark], x[mark]), factor * np.hypot(x[mark], y[mark])
             axis.plot(angle, size, "o", color=VERMILION, markersize=2.5)
             near = [other for other, its in turned if np.hypot(x[its] - x[mark], y[its] - y[mark]) < 0.2 * np.hypot(x, y).max()]
             aside = max(angle + np.array([0, 0.7, -0.7, 1.4, -1.4, 2.1, -2.1, np.pi]), key=lambda way: min((min(1.3, abs(np.angle(np.exp(1j * (way - other))))) for other in near), default=1.3))
@@ -107,7 +109,7 @@ def draw_bearings(cycles: Cycles) -> Drawing:
                 f"{round(np.degrees(cycles.place[mark])) % round(np.degrees(cycles.length))}", (angle, size), fontsize=6, ha="center", va="center",
                 xytext=(9 * np.sin(aside), 9 * np.cos(aside)), textcoords="offset points", color=VERMILION,
             )
-        axis.set_title(f"{name if ', ' in name else f'{name}, in fixed axes'} [kN]".replace(", ", ",\n"), pad=6)
+        axis.set_title(f"{name if ', ' in name else f'{name}, in fixed axes'} [{unit}]".replace(", ", ",\n"), pad=6)
         axis.set_theta_zero_location("N")   # x, or the outward axis of the rod, points upwards and y to the right, as in the other pictures
         axis.set_theta_direction(-1)
         axis.set_xticks(np.radians([0, 90, 180, 270]))
@@ -141,7 +143,8 @@ def draw_indicator(cycles: Cycles) -> Drawing:
     heats = shows_heat(run)
     drawing, axes = plt.subplots(1, 1 + heats, figsize=((1 if heats else 0.65) * WIDTH, (0.42 if heats else 0.5) * WIDTH), squeeze=False)
     axis = axes[0, 0]
-    volume, pressure = cycles["cylinder_volume"] * 1e6, cycles["cylinder_pressure"] / 1e5
+    unit, factor = suited("cm³", 1e6, cycles["cylinder_volume"])
+    volume, pressure = cycles["cylinder_volume"] * factor, cycles["cylinder_pressure"] / 1e5
     if cycles.number > 1:
         axis.plot(volume[:40].ravel(), pressure[:40].ravel(), color=GREY, linewidth=0.3)
     mean_volume, mean_pressure = (np.append(mean, mean[0]) for mean in (volume.mean(axis=0), pressure.mean(axis=0)))
@@ -155,7 +158,7 @@ def draw_indicator(cycles: Cycles) -> Drawing:
         axis.legend()
     if heats:
         draw_heat(cycles, axes[0, 1])
-    axis.set_xlabel(f"{cycles.run.volume} [cm³]")
+    axis.set_xlabel(f"{cycles.run.volume} [{unit}]")
     axis.set_ylabel("cylinder pressure [bar]")
     drawing.suptitle(f"{run.name}: {indicator_finding(run)}".removesuffix(": "))
     return drawing
@@ -166,7 +169,7 @@ def indicator_finding(run: Run) -> str:
     found = {name: float(run.summary[f"cycle_{name}"][0]) for name in ("suction_loss", "discharge_loss", "imep", "max_cylinder_pressure") if f"cycle_{name}" in run.summary}
     if lost := [value for name, value in found.items() if name.endswith("_loss")]:
         return f"the valves take {sum(lost):.3g} W"
-    return f"IMEP {1e-5 * found['imep']:.4g} bar, largest pressure {1e-5 * found['max_cylinder_pressure']:.4g} bar" if len(found) == 2 else ""
+    return f"IMEP {number(1e-5 * found['imep'])} bar, largest pressure {number(1e-5 * found['max_cylinder_pressure'])} bar" if len(found) == 2 else ""
 
 
 def draw_heat(cycles: Cycles, axis: Axes) -> None:

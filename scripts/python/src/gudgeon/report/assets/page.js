@@ -187,7 +187,7 @@
   // on paper colours are light, and two charts stand beside each other
   const onPaper = (on) => {
     document.documentElement.classList.toggle("on-paper", on);
-    recolour((c) => ({ ...framed(c, on), ...(on ? { width: 340, height: c.timed || c.main ? 210 : 330 } : { width: null, height: null, autosize: true }) }));
+    recolour((c) => ({ ...framed(c, on), ...(on ? { width: 340, height: c.timed || c.main ? 195 : 270 } : { width: null, height: null, autosize: true }) }));
   };
   window.addEventListener("beforeprint", () => onPaper(true));
   window.addEventListener("afterprint", () => onPaper(false));
