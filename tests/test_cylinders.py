@@ -474,7 +474,7 @@ def refusals(run: Runner) -> None:
     moved = run.folder / "gas_first.nml"
     moved.write_text(text.replace(gas, "").replace("&cylinder station = 3", gas.replace("mwm_pressure.csv", str(CASES / "mwm_pressure.csv")) + "&cylinder station = 3", 1))
     found = subprocess.run([run.program, "--check", moved], capture_output=True, text=True, check=False)
-    check(found.returncode == 0 and "cylinders: 6" in found.stdout, "a gas group before the cylinders", found.stderr[:200])
+    check(found.returncode == 0 and "displacement 6 x 1186 = 7118 cm3; cylinders: 6" in found.stdout, "a gas group before the cylinders", found.stderr[:200])
 
 
 def misfire(run: Runner) -> None:

@@ -55,6 +55,8 @@ module test_notes
     mistake_t('sim_IV', 'contact.density=2*7.85', 'density = 7.85 kg/m^3: usually 500 to 2.5e4: g/cm^3?'), &
     mistake_t('sim_IV', 'joint.bearing_radius=0.020', &
       'is 0.286 of bore = 0.07 m, usually 0.04 to 0.26: the diameter instead of the radius?'), &
+    mistake_t('sim_IV', 'mechanism.crank_length=0.09 joint.bearing_radius=0.050', &   ! with a crosshead
+      'is 0.714 of bore = 0.07 m, usually 0.04 to 0.65: the diameter instead of the radius?'), &
     mistake_t('sim_IV', 'joint.bearing_radius=10', 'bearing_radius = 10 m is 131 of the room beside crank and rod'), &
     mistake_t('sim_IV', 'joint.bearing_length=15', &
       'is 750 of the diameter of the bearing, 0.02 m, usually 0.1 to 3: millimetres?'), &

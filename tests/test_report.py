@@ -486,6 +486,10 @@ def check_answers(checks: Assertions) -> None:
         found = dict(lines(summarised({"cycle_start": ("0", "s")} | summary))[2])["Gas"]
         checks.check(found == text, f"answers of the gas: {found}")
         checks.check(len(portuguese.say(found)) > 10 and not portuguese.unknown, f"answers of the gas in Portuguese: {portuguese.unknown}")
+    flutter = {"cycle_start": ("0", "s"), "cycle_max_gas_temperature": ("400", "K"), "cycle_mass_flow": ("2.67e-4", "kg/s"), "recent_mass_flow": ("2.43e-4", "kg/s")}
+    for scatter, text in (("0.44", "up to 126.9 °C, delivers 0.267 g/s, in the mean of the last revolutions 0.243 g/s"), ("1e-4", "up to 126.9 °C, delivers 0.267 g/s")):
+        found = dict(lines(summarised(flutter | {"recent_mass_flow_scatter": (scatter, "1")}))[2])["Gas"]
+        checks.check(found == text and len(portuguese.say(found)) > 10 and not portuguese.unknown, f"the flow of valves that flutter: {found}, {portuguese.unknown}")
     of_losses = {"cycle_work_gas": ("200", "J"), "cycle_imep": ("8e5", "Pa"), "cycle_fmep": ("2.5e4", "Pa"), "cycle_indicated_power": ("8e3", "W"), "cycle_work_guide": ("-4", "J"),
                  "cycle_ring_fmep": ("1e4", "Pa"), "cycle_ring_1_fmep": ("7e3", "Pa"), "cycle_ring_2_fmep": ("3e3", "Pa"), "crank_pin_cycle_joint_fmep": ("6e3", "Pa"),
                  "cycle_joint_fmep": ("2e3", "Pa"), "cycle_work_contact": ("-0.25", "J")}

@@ -72,6 +72,7 @@ contains
     type(case_t), intent(in) :: case
     character(len=:), allocatable :: text
     real(dp) :: stroke, bore   !! [m]
+    real(dp) :: swept          !! [cm^3]
     type(linkage_t) :: linkage
     linkage = case%mechanism%linkage()
     stroke = linkage%stroke()
@@ -83,8 +84,13 @@ contains
     if (abs(linkage%axis_offset) > 0) text = text//', axis off by '//quantity_text(linkage%axis_offset, 'm', digits)// &
       ': dead centres at '//short_text(linkage%top_angle()/degree, digits)//' and '// &
       short_text(linkage%bottom_angle()/degree, digits)//' degrees'
-    if (bore > 0) text = text//', bore '//quantity_text(bore, 'm', digits)//', displacement '// &
-      short_text(mm3_to_cm3*pi/4*bore**2*stroke, digits)//' cm3'
+    if (bore > 0) then
+      swept = mm3_to_cm3*pi/4*bore**2*stroke
+      text = text//', bore '//quantity_text(bore, 'm', digits)//', displacement '
+      if (allocated(case%cylinders)) text = text//integer_text(size(case%cylinders))//' x '//short_text(swept, digits)//' = '
+      if (allocated(case%cylinders)) swept = size(case%cylinders)*swept
+      text = text//short_text(swept, digits)//' cm3'
+    end if
     if (allocated(case%pin)) text = text//', piston pin: '//case%pin%kind
     if (allocated(case%elastic_rod)) text = text//', elastic rod'
     if (allocated(case%crankshaft)) text = text//', elastic crankshaft'

@@ -116,6 +116,13 @@ contains
     if (linkage%crank_length > 0) stroke_of = linkage%stroke()
   end function stroke_of
 
+  !> Whether the stroke is longer than that of any trunk piston: the pin is then that of a crosshead, as wide as the bore.
+  pure logical function has_crosshead(c)
+    type(case_t), intent(in) :: c
+    real(dp), parameter :: longest = 2.5_dp   ! stroke of a trunk piston over its bore
+    has_crosshead = bore_of(c) > 0 .and. stroke_of(c) > longest*bore_of(c)
+  end function has_crosshead
+
   !> Lengths of the machine. Centres of mass lie within their bodies; that of the rod is nearer to the crank pin, where its end is
   !> larger.
   subroutine note_lengths(c, to)
@@ -220,12 +227,14 @@ contains
       room = max(length, 0.5_dp*(c%mechanism%rod_length - length))
       call to%expect(group, 'bearing_radius', r, room, 0.0_dp, merge(1.0_dp, 3.0_dp, at_piston), &   ! 3: an eccentric shaft
         'is # of the room beside crank and rod (@ m)', 'mechanism.crank_length mechanism.rod_length')
-      if (at_piston) call to%expect(group, 'bearing_radius', r, bore_of(c), 0.04_dp, 0.26_dp, 'is # of bore = @ m', &
+      if (at_piston) call to%expect(group, 'bearing_radius', r, bore_of(c), 0.04_dp, merge(0.65_dp, 0.26_dp, has_crosshead(c)), &
+        'is # of bore = @ m', &
         'combustion.bore cylinder_pressure.bore', 'the diameter instead of the radius')
       if (is_engine(c) .and. .not. at_piston) then
         call to%expect(group, 'bearing_radius', r, length, 0.0_dp, 1.0_dp, 'is # of crank_length = @ m', 'mechanism.crank_length', &
           'the diameter instead of the radius')
-        call to%expect(group, 'bearing_radius', r, bore_of(c), 0.0_dp, 0.45_dp, 'is # of bore = @ m', &
+        call to%expect(group, 'bearing_radius', r, bore_of(c), 0.0_dp, merge(0.75_dp, 0.45_dp, has_crosshead(c)), &
+          'is # of bore = @ m', &
           'combustion.bore cylinder_pressure.bore', 'the diameter instead of the radius')
       end if
       call to%expect(group, 'bearing_length', joint%bearing_length, 2*r, 0.1_dp, 3.0_dp, &

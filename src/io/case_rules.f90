@@ -317,7 +317,8 @@ contains
     end if
     if (size(c%valves) == 2) then
       call values%forbid(c%valves(1)%port == c%valves(2)%port .or. c%valves(1)%port == 'both' .or. c%valves(2)%port == 'both', &
-        'valve_2', 'port', 'must be the other of suction and discharge: the first group is of '//c%valves(1)%port)
+        'valve_2', 'port', 'with two groups one has port = ''suction'', the other ''discharge'': the first has '''// &
+        c%valves(1)%port//'''')
     else
       call values%forbid(c%valves(1)%port /= 'both', 'valve_1', 'port', 'is one of two: give the other valve too, or both')
     end if

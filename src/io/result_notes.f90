@@ -24,6 +24,7 @@ module result_notes
   real(dp), parameter :: least_period_tolerance = 10   !! of a periodic motion, over the relative tolerance of its integration
   real(dp), parameter :: largest_pressure = 5e9_dp     !! beyond the strength of every bearing [Pa]
   real(dp), parameter :: most_energy_change = 0.02_dp  !! in a cycle, of the work of the gas: more is no settled motion
+  real(dp), parameter :: most_change = 0.05_dp         !! of a flow from cycle to cycle, as of films in the line of a run
   character(len=*), parameter :: too_much = ': no bearing carries it'
 
 contains
@@ -71,9 +72,11 @@ contains
       notes = notes//text//achar(10)
     end subroutine add_line
 
-    !> A leak of worn rings, temperatures of no gas in a cylinder, a compressor that does not deliver, a valve that does not shut.
+    !> A leak of worn rings, temperatures of no gas in a cylinder, a compressor that does not deliver, a valve that does not shut,
+    !> valves that move otherwise in each cycle.
     subroutine note_gas()
       real(dp), parameter :: largest_share = 0.1_dp, hottest = 4000, coldest = 150   ! [-], [K], [K]
+      real(dp), parameter :: grams = 1000   ! in a kg
       character(len=:), allocatable :: open_valve
       real(dp) :: temperature
       logical :: is_known
@@ -94,6 +97,12 @@ contains
       open_valve = trim(report%text_of('cycle_open_valve'))
       if (open_valve /= '') call add_line('the '//open_valve//' valve is open through the whole cycle: more &valve area, or '// &
         'less leak_area')
+      associate (flow => machine_answer(report, 'cycle_mass_flow'), mean => machine_answer(report, 'recent_mass_flow'), &
+          scatter => machine_answer(report, 'recent_mass_flow_scatter'))
+        if (scatter > most_change) call add_line('the flow scatters by '//short_text(100*scatter, 2)//' % from cycle to cycle: '// &
+          short_text(grams*flow, 3)//' g/s in the last one, as all answers are, '//short_text(grams*mean, 3)// &
+          ' g/s in the mean of the last revolutions, recent_mass_flow; the run has not settled, or its valves flutter')
+      end associate
     end subroutine note_gas
 
     !> A lubricated skirt that runs on its asperities, or whose faces bend more than there is room.

@@ -4,6 +4,7 @@
 !> completed a revolution. Work is that on the bodies, so losses are negative.
 module cycle_answers
   use kinds, only: dp
+  use run_length, only: longest_period
   use constants, only: two_pi
   use load_element, only: of_contact, of_friction, of_film, of_asperities
   use chain_motion, only: body_pin
@@ -109,7 +110,9 @@ module cycle_answers
       'over the size of its work: the error of the integration'), &
     quantity_t('cycle_mass_flow', 'kg/s', 'gas that the cylinder of a compressor delivers through its discharge valve, with '// &
       '`&working_gas`'), &
-    quantity_t('cycle_volumetric_efficiency', '1', 'that over the displacement full of gas of the suction chamber'), &
+    quantity_t('recent_mass_flow', 'kg/s', 'that in the mean of the last revolutions: of the second half of a run, 16 at most'), &
+    quantity_t('recent_mass_flow_scatter', '1', 'largest less least flow of the cycles in these revolutions, over their mean'), &
+    quantity_t('cycle_volumetric_efficiency', '1', '`cycle_mass_flow` over the displacement full of gas of the suction chamber'), &
     quantity_t('cycle_isentropic_efficiency', '1', 'work of the isentropic compression of that gas over the work on the gas'), &
     quantity_t('cycle_discharge_temperature', 'K', 'mean temperature of that gas, by its mass'), &
     quantity_t('cycle_suction_loss', 'W', 'power lost in the suction valve: by pressures below that of suction'), &
@@ -378,6 +381,7 @@ contains
         ideal = g/(g - 1)*chamber%gas_constant*chamber%closing_temperature* &
           ((charge%discharge_pressure/chamber%closing_pressure)**((g - 1)/g) - 1)
         call add('cycle_mass_flow', cycle%gas(delivered)/cycle%duration)
+        call add_recent_flow()
         call add('cycle_volumetric_efficiency', cycle%gas(delivered)*chamber%gas_constant*chamber%closing_temperature/ &
           (chamber%closing_pressure*chamber%displacement*revolutions))
         if (cycle%gas(work_on_gas) > 0) call add('cycle_isentropic_efficiency', cycle%gas(delivered)*ideal/cycle%gas(work_on_gas))
@@ -394,6 +398,22 @@ contains
         if (allocated(charge%walls)) call add('cycle_wall_heat_flow', cycle%gas(to_walls)/cycle%duration)
       end associate
     end subroutine add_compressor
+
+    !> The flow in the mean of the last cycles and its scatter among them: valves that flutter deliver another mass in each.
+    subroutine add_recent_flow()
+      type(cycle_t) :: one
+      real(dp) :: flow(longest_period), mean
+      integer :: n, k
+      n = min(longest_period, cycles%followed/2)/revolutions
+      if (n < 2) return
+      do k = 1, n
+        one = cycles%last_cycle(revolutions, (k - 1)*revolutions)
+        flow(k) = one%gas(delivered)/one%duration
+      end do
+      mean = sum(flow(:n))/n
+      call add('recent_mass_flow', mean)
+      if (mean > 0) call add('recent_mass_flow_scatter', (maxval(flow(:n)) - minval(flow(:n)))/mean)
+    end subroutine add_recent_flow
 
     !> The largest lift of a valve, the speed of its impacts if it has a mass, and whether it does not shut; without mass from the
     !> largest and the least difference of the pressures on it [Pa].

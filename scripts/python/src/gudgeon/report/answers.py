@@ -231,11 +231,12 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
         mean = rows.shown("cycle_work_drive", "N m", 1 / (2 * math.pi * (rows("cycle_revolutions") or 1)))
         found.append(("Drive torque", " to ".join(torques) + (f", mean {mean}" if mean else "")))
     found += shaft(rows)
+    scattered = (rows("recent_mass_flow_scatter") or 0.0) > 0.05   # from cycle to cycle: a run that has not settled, or valves that flutter
     gas = [f"{name} {text}" for name, text in (
         ("up to", rows.shown("cycle_max_gas_temperature", "°C", 1, -273.15)), ("to the walls", rows.shown("cycle_heat_to_walls", "J")),
         ("to the walls", rows.shown("cycle_wall_heat_flow", "W")), ("leak", rows.shown("cycle_leak_share", "%", 100)),
         ("leak", rows.shown("cycle_leak_flow", "g/s", 1000)), ("efficiency", rows.shown("cycle_indicated_efficiency", "%", 100)),
-        ("delivers", rows.shown("cycle_mass_flow", "g/s", 1000)), ("volumetric efficiency", rows.shown("cycle_volumetric_efficiency", "%", 100)),
+        ("delivers", rows.shown("cycle_mass_flow", "g/s", 1000)), ("in the mean of the last revolutions", rows.shown("recent_mass_flow", "g/s", 1000) if scattered else ""), ("volumetric efficiency", rows.shown("cycle_volumetric_efficiency", "%", 100)),
         ("isentropic efficiency", rows.shown("cycle_isentropic_efficiency", "%", 100)), ("delivery temperature", rows.shown("cycle_discharge_temperature", "°C", 1, -273.15)),
         ("lost in the suction valve", rows.shown("cycle_suction_loss", "W")), ("in the discharge valve", rows.shown("cycle_discharge_loss", "W")),
         ("suction valve hits with", rows.shown("cycle_max_suction_valve_speed", "m/s")),
