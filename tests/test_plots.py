@@ -569,7 +569,10 @@ class OnePage(unittest.TestCase):
         self.fits(drawing)
 
     def test_warnings_and_notes(self) -> None:
-        """What the long page says of a run is not left out of the short one; what has no room is counted."""
+        """What the long page says of a run is not left out of the short one; what has no room is counted; a run without any has its page."""
+        drawing = short.draw(self.made({"status": "done"}), "engine")
+        self.assertNotIn("Note", [text.get_text() for axes in drawing.axes for text in axes.texts])
+        self.fits(drawing)
         more = {"cycle_is_settled": "no", "motion": "not_periodic", "crank_revolutions": "1000", "status": "done", "note_1": "&joint clearance = 2 mm: usually 1 to 500 um"}
         drawing = short.draw(self.made(more), "engine")
         said = " ".join(text.get_text() for axes in drawing.axes for text in axes.texts).replace("\n", " ")
@@ -582,6 +585,19 @@ class OnePage(unittest.TestCase):
         more = next(int(match[1]) for text in said if (match := re.fullmatch(r"(\d+) more: gudgeon-plot report", text)))
         self.assertEqual(said.count("Note"), 41 - more + 1)
         self.fits(drawing)
+
+    def test_the_gas_of_the_case(self) -> None:
+        for group, keys, text, spoken in (
+            ("combustion", {"cycle": "compressor", "suction_pressure": 0.62e5, "discharge_pressure": 7.6e5}, "compressor, 0.62 bar to 7.6 bar", "compressor, 0,62 bar a 7,6 bar"),
+            ("combustion", {"cycle": "two_stroke", "compression_ratio": 8.0, "heat": 2.9e6}, "two strokes, compression ratio 8, 2.9 MJ a cycle", "dois tempos, taxa de compressão 8, 2,9 MJ por ciclo"),
+            ("combustion", {"compression_ratio": 8.5}, "four strokes, compression ratio 8.5", "quatro tempos, taxa de compressão 8,5"),
+            ("cylinder_pressure", {"table": "p.csv"}, "measured pressure", "pressão medida"),
+        ):
+            case = {"mechanism": {"crank_length": 0.045}, group: keys}
+            portuguese = language.Language("pt")
+            found = dict(short.case_lines(run({"time": [0.0]}, case)))["Gas"]
+            self.assertEqual((found, portuguese.say(found), portuguese.unknown), (text, spoken, set()))
+        self.assertNotIn("Gas", dict(short.case_lines(run({"time": [0.0]}, {"mechanism": {"crank_length": 0.045}}))))
 
     def test_units_of_very_small_and_very_large_machines(self) -> None:
         """Axes end between 0.1 and 1e4: a pin force of 1.4 N is not 0.0014 kN, a moment of 1.4e6 N m has no factor above its axis."""

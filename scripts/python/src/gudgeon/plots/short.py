@@ -37,7 +37,7 @@ PLOTS: tuple[Plot, ...] = (
 def case_lines(run: Run) -> list[tuple[str, str]]:
     """The machine, its bearings and its oil in engineering units."""
 
-    def shown(group: str, key: str, unit: str, factor: float, offset: float = 0.0) -> str:
+    def shown(group: str, key: str, unit: str, factor: float = 1.0, offset: float = 0.0) -> str:
         value = run.parameter(group, key)
         try:
             value = float(str(value))
@@ -47,7 +47,7 @@ def case_lines(run: Run) -> list[tuple[str, str]]:
 
     found = [("Stroke", shown("mechanism", "crank_length", "mm", 2e3)), ("Rod", shown("mechanism", "rod_length", "mm", 1e3)),
              ("Bore", shown("combustion", "bore", "mm", 1e3) or shown("cylinder_pressure", "bore", "mm", 1e3)),
-             ("Crank speed", shown("initial", "crank_speed", "rpm", 30 / np.pi))]
+             ("Crank speed", shown("initial", "crank_speed", "rpm", 30 / np.pi)), ("Gas", gas_of(run, shown))]
     for place, (_, name) in PLACES.items():
         group = "joint" if place == "piston_pin" else f"{place}.joint"
         if clearance := shown(group, "clearance", "µm", 1e6):
@@ -55,6 +55,18 @@ def case_lines(run: Run) -> list[tuple[str, str]]:
             found.append((name.capitalize(), ", ".join(part for part in (size, f"clearance {clearance}") if part)))
     oil = [str(run.parameter("lubrication", "oil", "") or ""), shown("lubrication", "temperature", "°C", 1.0, -273.15), shown("lubrication", "viscosity", "mPa s", 1e3)]
     return [(name, text) for name, text in [*found, ("Oil", language.current.keep(language.current.number(", ".join(part for part in oil if part))))] if text]
+
+
+def gas_of(run: Run, shown: Callable[..., str]) -> str:
+    """What the gas of the case is: pressures of a compressor, compression ratio and heat of an engine, or a measured pressure; empty without one."""
+    if "cylinder_pressure" in run.case:
+        return "measured pressure"
+    kind = str(run.parameter("combustion", "cycle", "four_stroke")) if "combustion" in run.case else ""
+    pressures = [shown("combustion", f"{side}_pressure", "bar", 1e-5) for side in ("suction", "discharge")]
+    if kind == "compressor":
+        return f"compressor, {' to '.join(pressures)}"
+    ratio, heat = shown("combustion", "compression_ratio", "").strip(), float(str(run.parameter("combustion", "heat", 0.0) or 0.0))
+    return f"{kind.split('_')[0]} strokes, compression ratio {ratio}" + (f", {amount(heat, 'J')} a cycle" if heat else "") if kind and ratio else ""
 
 
 def write(axes: Axes, heading: str, head: Sequence[str], rows: Sequence[tuple[str, Sequence[str]]], widths: Sequence[float]) -> float:
@@ -109,7 +121,10 @@ def draw(run: Run, name: str) -> Drawing:
             axes[letter].remove()
             wide.append(0.01)
     losses = 0.2 * draw_losses(axes["losses"], Answers(run)) + 0.1
-    wide.append(write(axes["notes"], "", (), lines_of_notes(run, SPACE - tall - sum(wide) - losses - LEAST), (0.06, 0.94)))
+    said = lines_of_notes(run, SPACE - tall - sum(wide) - losses - LEAST)
+    wide.append(write(axes["notes"], "", (), said, (0.06, 0.94)) if said else 0.01)
+    if not said:
+        axes["notes"].remove()
     left = SPACE - tall - sum(wide) - losses   # what the tables leave
     plots = [0.5 * left] * 2 if left >= 2 * LEAST else [max(left, LEAST), 0.01]
     axes["case"].get_subplotspec().get_gridspec().set_height_ratios([max(tall, 0.1), *wide, losses, *plots])
