@@ -265,7 +265,7 @@ contains
       end associate
     end do
     allocate (self%varied)
-    call self%varied%prepare(self%values, self%path, keys, '', error)
+    call self%varied%prepare(self%values, self%path, keys, error)
     if (allocated(error)) deallocate (self%varied)
   end subroutine vary
 

@@ -1,6 +1,7 @@
 !> The base case of a study with the values of one run. Everything is read and checked once; a run only converts its own values.
 module study_case
   use kinds, only: dp
+  use text_tools, only: integer_text
   use error_handling, only: error_t, fail, status_case_file
   use number_text, only: short_text
   use case_definition, only: case_t
@@ -41,14 +42,16 @@ module study_case
 
 contains
 
-  !> Read the values of a base case, which must be valid by itself, and find the keys of the parameters. `at` names the place of the
-  !> keys in messages. A key of a model that the base case does not have adds the model.
-  subroutine prepare(self, values, path, keys, at, error)
+  !> Read the values of a base case, which must be valid by itself, and find the keys of the parameters. Messages name the lines of
+  !> the file where these keys are given. A key of a model that the base case does not have adds the model.
+  subroutine prepare(self, values, path, keys, error, file, lines)
     class(study_case_t), intent(inout) :: self
     type(case_values_t), intent(in) :: values
-    character(len=*), intent(in) :: path, keys(:), at
+    character(len=*), intent(in) :: path, keys(:)
     type(error_t), allocatable, intent(out) :: error
-    character(len=:), allocatable :: key
+    character(len=*), intent(in), optional :: file
+    integer, intent(in), optional :: lines(:)   !! given with `file`
+    character(len=:), allocatable :: key, at
     integer :: i, k, dot
 
     self%values = values
@@ -59,6 +62,8 @@ contains
     self%values%values%is_override = .false.   ! the base case takes the place of the file, the parameters that of the overrides
     do i = 1, size(keys)
       key = trim(keys(i))
+      at = ''
+      if (present(file)) at = file//':'//integer_text(lines(i))//': '
       dot = index(key, '.', back=.true.)
       call values%find(key(:dot - 1), key(dot + 1:), at, self%places(i), error, self%elements(i))
       do k = 1, merge(0, i - 1, allocated(error))

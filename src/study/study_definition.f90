@@ -20,6 +20,7 @@ module study_definition
     character(len=:), allocatable :: scale    !! spacing of the values: linear, log
     character(len=:), allocatable :: values   !! list of values, separated by commas
     type(text_t), allocatable :: list(:)      !! the values of that list; empty: a range
+    integer :: key_line = 0, values_line = 0  !! of the file
   contains
     procedure :: parameters => parameters_of_parameter
     procedure :: levels

@@ -213,6 +213,8 @@ contains
       associate (p => study%varied(i))
         call load_model(groups(i), 'parameter', p)
         p%key = lowercase(p%key)
+        p%key_line = groups(i)%values(groups(i)%place_of('parameter', 'key'))%line
+        p%values_line = groups(i)%values(groups(i)%place_of('parameter', 'values'))%line
         call split(p%values, p%list)
       end associate
       call check_parameter(groups(i), study%varied(i))

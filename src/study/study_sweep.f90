@@ -52,6 +52,7 @@ contains
     type(case_values_t) :: values
     type(case_t) :: case
     character(len=:), allocatable :: at
+    integer, allocatable :: lines(:)   ! of the keys that are varied
     integer :: i
 
     call read_study(path, sweep%study, error)
@@ -69,8 +70,13 @@ contains
       call refuse_varied(with_preset(options%accuracy, options%overrides), options, values, design%keys, error)
       if (allocated(error)) return
       at = printable(path, 200)//': '
-      if (study%table /= '') at = printable(study%table, 200)//':1: '
-      call sweep%base%prepare(values, study%case, design%keys, at, error)
+      if (study%table == '') then
+        lines = study%varied%key_line
+        call sweep%base%prepare(values, study%case, design%keys, error, printable(path, 200), lines)
+      else
+        lines = [(1, i=1, size(design%keys))]
+        call sweep%base%prepare(values, study%case, design%keys, error, printable(study%table, 200), lines)
+      end if
       if (allocated(error)) return
       if (study%traces == 'none') then   ! no run writes what these ask for; a run may end before them
         sweep%base%case%output%start_time = 0
@@ -79,7 +85,8 @@ contains
       design%is_whole = sweep%base%is_whole
       do i = 1, size(study%varied)
         if (size(study%varied(i)%list) > 0 .or. sweep%base%is_number(i)) cycle
-        call fail(error, at//'&parameter key = '''//trim(design%keys(i))//''': has no range; give values', status_case_file)
+        call fail(error, printable(path, 200)//':'//integer_text(lines(i))//': &parameter key = '''//trim(design%keys(i))// &
+          ''': has no range; give values', status_case_file)
         return
       end do
       call check_values(sweep, error)
@@ -241,7 +248,8 @@ contains
         do k = 1, size(study%varied(i)%list)
           call sweep%base%convert(i, study%varied(i)%list(k)%text, error)
           if (.not. allocated(error)) cycle
-          error%message = printable(study%file, 200)//': &parameter key = '''//study%varied(i)%key//''', values = '// &
+          error%message = printable(study%file, 200)//':'//integer_text(study%varied(i)%values_line)// &
+            ': &parameter key = '''//study%varied(i)%key//''', values = '// &
             printable(study%varied(i)%list(k)%text, 48)//': '//error%message
           return
         end do
