@@ -93,6 +93,16 @@ def same_rows(page: Page, run: gudgeon.Run, name: str) -> bool:
     return len(shown) > 100 and (np.array_equal(shown, rows) or set(shown) <= set(rows))
 
 
+def check_notes(browser: Browser, checks: Assertions) -> None:
+    """Notes are seen without a turn of the wheel, those on results before those on keys, however many answers and kept runs there are."""
+    with served(Explorer(gudgeon.template("compressor").set({"mechanism.piston_mass": 30.0}))) as server:
+        page = Page(browser, server.address)
+        checks.check(page.settled(60), "a run with notes is shown", page.failure())
+        browser.run("document.getElementById('keep').click()")
+        said = browser.run("const top = document.getElementById('top').getBoundingClientRect(); return [...document.querySelectorAll('#notes p')].map(p => [p.textContent, p.getBoundingClientRect().bottom <= top.bottom])")
+        checks.check(len(said) > 1 and said[0][0].startswith("piston pin: a film of") and said[0][1], "its first note is on its results, and in sight", str(said))
+
+
 def check_pages(browser: Browser, checks: Assertions) -> None:
     """Each template and the README's case are drawn, and the console says nothing."""
     for case in [*(gudgeon.template(kind) for kind in TEMPLATES), case_of_readme()]:
@@ -452,6 +462,7 @@ def main() -> int:
             check_memory(browser, checks, options.changes or 60)
             if options.changes:
                 return checks.report()
+            check_notes(browser, checks)
             check_pages(browser, checks)
             check_keyboard(browser, checks)
             check_sliders(browser, checks, (options.program or release_program()).resolve())
