@@ -12,7 +12,7 @@ cd "$(dirname "$0")/.." || exit 1
 . scripts/setup.sh || exit 1
 profile=@release
 [ "$1" = --native ] && profile=@native && shift
-folder=
+folder= found=
 [ $# -gt 0 ] && folder=scripts/bench/
 
 build() {
@@ -25,6 +25,9 @@ build() {
 build "$@" && echo "$found" && exit 0
 if printf '%s\n' "$said" | grep -q -e 'multiple definition of' -e 'Mismatch in components of derived type'; then
   rm -rf build/gfortran_* scripts/bench/build/gfortran_*   # objects of earlier sources are in the way
+  build "$@" && echo "$found" && exit 0
+elif [ -n "$found" ] && [ -f "$found" ] && [ ! -x "$found" ]; then
+  rm -f "$found"   # what a link left that was interrupted, and that fpm takes for the program
   build "$@" && echo "$found" && exit 0
 fi
 printf '%s\n' "$said" >&2

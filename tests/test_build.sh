@@ -36,6 +36,9 @@ check "a source file moved and changed" [ "$("$work/$program")" = 2 ]
 source_with one 1
 program=$(cd "$work" && scripts/build.sh)
 check "a source file moved back unchanged" [ "$("$work/$program")" = 1 ]
+chmod -x "$work/$program" && : >"$work/$program"
+program=$(cd "$work" && scripts/build.sh)
+check "a link that was interrupted" [ "$("$work/$program")" = 1 ]
 portable=$program
 program=$(cd "$work" && scripts/build.sh --native)
 check "a program for this processor, $program" [ "$("$work/$program")" = 1 ]
