@@ -469,7 +469,7 @@ class OnePage(unittest.TestCase):
         angle = np.radians(np.arange(0, 721, 2.0))
         columns = {"time": angle / 100, "crank_angle": angle, "film_thickness": 3e-6 + 1e-6 * np.sin(angle), "pin_force_x": 2e3 * np.cos(angle), "pin_force_y": 0 * angle,
                    "cylinder_pressure": 1e5 + angle, "crank_moment": np.sin(angle), "crank_speed": 300 + angle}
-        rows = {"min_film_thickness": "2e-6", "cycle_start": "0", "cycle_duration": str(angle[-1] / 100), "cycle_revolutions": "2", "cycle_min_film_thickness": "2e-6",
+        rows = {"status": "done", "min_film_thickness": "2e-6", "cycle_start": "0", "cycle_duration": str(angle[-1] / 100), "cycle_revolutions": "2", "cycle_min_film_thickness": "2e-6",
                 "cycle_min_film_thickness_angle": "270", "cycle_max_film_pressure": "5e7", "cycle_wear_depth_100h_bore": "2.5e-6", "cycle_mean_film_power": "40",
                 "cycle_imep": "1e6", "cycle_bmep": "9.8e5", "cycle_fmep": "2e4", "cycle_work_gas": "200", "cycle_indicated_power": "5e3", "cycle_joint_fmep": "8e3",
                 "cycle_ring_1_fmep": "1.2e4", "cycle_ring_fmep": "1.2e4", "cycle_work_guide": "-2.4"}
@@ -814,10 +814,16 @@ class Certified(unittest.TestCase):
         """In a unit that suits the time, without an exponent."""
         for until, text in (("12.345", "12.35 s"), ("1.13", "1.13 s"), ("0.0421", "42.1 ms")):
             made = replace(run({"time": [0.0, 20.0], "crank_angle": [0.0, 20.0]}), summary={"certified_until": (until, "s"), "status": ("done", "")})
-            (said,) = report_page.warnings(made)
+            (said,) = report_page.warnings(made, language.Language())
             self.assertTrue(said.startswith(f"The run is certified up to {text}: beyond"), said)
-            portuguese = language.Language("pt")
-            self.assertIn(f"certificada até {text.replace('.', ',')}: além", portuguese.say(said))
+            (said,) = report_page.warnings(made, language.Language("pt"))
+            self.assertIn(f"certificada até {text.replace('.', ',')}: além", said)
+
+    def test_a_status_is_a_message(self) -> None:
+        """It stays as the program says it, also in Portuguese, and is not reported as untranslated."""
+        portuguese, status = language.Language("pt"), "limit of evaluations reached at t = 0.1078 s, phase film"
+        made = replace(run({"time": [0.0, 20.0], "crank_angle": [0.0, 20.0]}), summary={"status": (status, "")})
+        self.assertEqual((report_page.warnings(made, portuguese), portuguese.unknown), ([f"A simulação não terminou como pedido: {status}."], set()))
 
     def test_from_the_certified_time_to_the_end(self) -> None:
         ((begin, end),) = self.shaded("0.1", held=False)

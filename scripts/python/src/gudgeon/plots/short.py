@@ -146,7 +146,7 @@ def draw(run: Run, name: str) -> Drawing:
 def lines_of_notes(run: Run, room: float) -> list[tuple[str, list[str]]]:
     """What a reader of the answers has to know, as the page of a run has it: as much as there is room for [inch], with the number of others."""
     say, keep = language.current.say, language.current.keep
-    said = [*(keep(say(text)) for text in warnings(run)), *map(keep, notes(run))]
+    said = [keep(text) for text in (*warnings(run, language.current), *notes(run))]
     shown = said if len(said) * 2.35 * LINE < room else said[: max(int(room / (2.35 * LINE)) - 1, 1)]   # of up to two lines each
     more = [keep(say(f"{len(said) - len(shown)} more: gudgeon-plot report"))] if len(shown) < len(said) else []
     return [("Note", [text]) for text in (*shown, *more)]

@@ -233,7 +233,7 @@ class Explorer:
 
         whole, say = drawable(run), self.language.say
         scene, data = scene_of(of_cycle(whole), None, None, self.language, MOST_ROWS, self.is_shown)
-        notes = [*(say(text) for text in warnings(whole)), *sorted(run.notes, key=lambda note: note.startswith("&"))]   # on results before those on keys
+        notes = [*warnings(whole, self.language), *sorted(run.notes, key=lambda note: note.startswith("&"))]   # on results before those on keys
         if run.certificate is not None:
             notes.insert(0, say(f"Certified: {run.certificate.digits:.3g} digits until {1e3 * run.certificate.until:.4g} ms"))
         elif scene["contacts"]:

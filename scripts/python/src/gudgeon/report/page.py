@@ -48,7 +48,7 @@ def page(
     say = language.say
     scene, data = scene_of(run, ideal, fields, language)
     scene |= spoken(language, "drawing", "page")
-    said = [*(say(text) for text in warnings(run)), *notes(run)]
+    said = [*warnings(run, language), *notes(run)]
     known = defaults()
     left_out = say("Keys that have their defaults are left out." if known is not None else "Keys that are empty, 0 or no are left out.")
     case = "".join(rows_html(rows, f"&{group}") for group, rows in case_rows(run, known, language))
@@ -103,7 +103,7 @@ def packed(data: bytes) -> str:
     return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode("ascii")
 
 
-def warnings(run: Run) -> list[str]:
+def warnings(run: Run, language: Language) -> list[str]:
     """What a reader has to know of a run besides its notes: how far it is certified, why it ended early, what its answers lack."""
     found = answers.warnings(run)
     if (until := run.certified_until) is not None:
@@ -113,8 +113,8 @@ def warnings(run: Run) -> list[str]:
         )
     status = run.summary.get("status", ("unknown", ""))[0]
     if status != "done":
-        found.append(f"The run did not end as requested: {status}.")
-    return found
+        found.append(f"The run did not end as requested: {language.keep(status)}.")
+    return [language.say(text) for text in found]
 
 
 def notes(run: Run) -> list[str]:
