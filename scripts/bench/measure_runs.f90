@@ -39,7 +39,7 @@ program measure_runs
   overrides = [character(len=60) :: 'integrator.method=auto', 'integrator.relative_tolerance=1e-4']
   if (.not. allocated(error)) call read_case_values(study%case, overrides, values, error)
   if (.not. allocated(error)) call new_design(study, 10, design, error)
-  if (.not. allocated(error)) call base%prepare(values, study%case, design%keys, '', error)
+  if (.not. allocated(error)) call base%prepare(values, study%case, design%keys, error)
   if (allocated(error)) error stop 'measure_runs: no such study'
   allocate (cases(design%runs))
   call make_cases(design, base, cases)

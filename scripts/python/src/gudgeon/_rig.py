@@ -11,8 +11,8 @@ import numpy as np
 import pandas as pd
 
 #: Units of pressures in Pa.
-PRESSURES = {"pa": 1.0, "hpa": 1e2, "mbar": 1e2, "kpa": 1e3, "bar": 1e5, "mpa": 1e6, "atm": 101325.0}
-PRESSURES |= dict.fromkeys(("psi", "lbf/in2", "lbf/in²", "lb/in2", "lb/in²"), 6894.757293168361) | dict.fromkeys(("kgf/cm2", "kgf/cm²"), 98066.5)
+PRESSURES = {"pa": 1.0, "hpa": 1e2, "mbar": 1e2, "kpa": 1e3, "bar": 1e5, "mpa": 1e6, "atm": 101325.0,
+             **dict.fromkeys(("psi", "lbf/in2", "lbf/in²", "lb/in2", "lb/in²"), 6894.757293168361), **dict.fromkeys(("kgf/cm2", "kgf/cm²"), 98066.5)}  # fmt: skip
 #: A unit of pressures, what says that they are absolute, and what that they are gauge pressures: bar, bar(a), kPa abs, psia, psig, barü.
 PRESSURE = re.compile(rf"({'|'.join(PRESSURES)})[ _,]*[\[(]? *((?:abs\.?|absolute?|a)|(gauge|gage|g|ü|ue|rel\.?|relativ))? *[\])]?", re.IGNORECASE)
 #: From so many usual steps of the angle on, rows are missing.
@@ -108,19 +108,24 @@ def _decoded(raw: bytes) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
+#: A table read one way: how many numbers it has, its first row of numbers alone, the decimal mark, fields of all rows, those of rows of the usual
+#: width, their numbers.
+_Reading = tuple[int, int, str, list[list[str]], pd.DataFrame, np.ndarray]
+
+
 def _table(text: str, path: str, decimal: str | None = None) -> tuple[list[str], list[str], np.ndarray]:
     """Names, units and rows of the table of a text, with the separator and the decimal mark that give the most numbers."""
     lines = [line.strip() for line in text.split("\n") if line.strip()]
-    found: list[tuple[int, int, str, list[list[str]], pd.DataFrame, np.ndarray]] = []   # numbers, first row of numbers alone, decimal mark, rows
+    found: list[_Reading] = []
     for separator in (";", "\t", ",", " "):
         rows = [re.split(r"\s+", line) for line in lines] if separator == " " else list(csv.reader((line.rstrip(separator) for line in lines), delimiter=separator, skipinitialspace=True))
         width = int(np.median([len(row) for row in rows]))
         if width < 2:
             continue
-        cells = pd.DataFrame([row + [""] * (width - len(row)) if len(row) <= width else [""] * width for row in rows], dtype=str).apply(lambda column: column.str.strip())
+        cells = pd.DataFrame([[field.strip() for field in row] + [""] * (width - len(row)) if len(row) <= width else [""] * width for row in rows], dtype=str)
         for mark in (",", "."):
             if mark == decimal or decimal is None and (mark != separator or '"' in text):
-                numbers = np.array([_numbers(cells[i], mark) for i in range(width)]).T
+                numbers = np.array([_numbers(cells.iloc[:, i], mark) for i in range(width)]).T
                 several = np.isfinite(numbers).sum(axis=1) > 1
                 if (whole := several & (np.isfinite(numbers) | (cells == "").to_numpy()).all(axis=1)).any():
                     found.append((int(several.sum()) * width, int(np.argmax(whole)), mark, rows, cells, numbers))
@@ -151,21 +156,21 @@ def _numbers(cells: pd.Series, decimal: str) -> np.ndarray:
     parts = f"[{other} '\u00a0\u202f]"
     good = cells.str.fullmatch(rf"[-+]?(?:\d+|[1-9]\d{{0,2}}(?:{parts}\d{{3}})+|(?=[.,]\d))(?:[{decimal}]\d*)?(?:[eE][-+]?\d+)?")
     plain = cells.where(good, "").str.replace(parts, "", regex=True).str.replace(decimal, ".", regex=False)
-    return pd.to_numeric(plain, errors="coerce").to_numpy(dtype=float)
+    return np.asarray(pd.to_numeric(plain, errors="coerce"), dtype=float)
 
 
-def _clear(readings: list[tuple], path: str) -> tuple:
+def _clear(readings: list[_Reading], path: str) -> _Reading:
     """The first of some readings of equal size. Raises RigFileError where a mark may be that of decimals and of thousands: some numbers of a
     column have it, always before three digits, and others have none."""
     first, second = (readings + readings[:1])[:2]
     if second is first or second[3] is not first[3]:
         return first
     for i in np.flatnonzero((~((first[5] == second[5]) | (np.isnan(first[5]) & np.isnan(second[5])))).any(axis=0)):
-        cells = first[4][i][np.isfinite(first[5][:, i]) & np.isfinite(second[5][:, i])]
-        mark = next(mark for mark in ",." if cells.str.contains(mark, regex=False).any())
-        marked = cells.str.contains(mark, regex=False)
-        if not marked.all():
-            text = cells[marked].iloc[0]
+        cells = [str(cell) for cell, known in zip(first[4].iloc[:, i], np.isfinite(first[5][:, i]) & np.isfinite(second[5][:, i])) if known]
+        mark = next(mark for mark in ",." if any(mark in cell for cell in cells))
+        marked = [cell for cell in cells if mark in cell]
+        if len(marked) < len(cells):
+            text = marked[0]
             raise RigFileError(f"{path}: is {text} {text.replace(mark, '')} or {text.replace(mark, '.')}? decimal='.' or decimal=',' says it")
         return first if mark == first[2] else second
     return first
