@@ -148,7 +148,8 @@ def test_reversals(program: Path, work: Path) -> None:
     pressed, _ = run(program, work, case, "initial.crank_speed=1", "mechanism.gravity=9.80665")   # its weight is 200 times m R w^2
     check(pressed["cycle_load_reversals"] == 0 == pressed["cycle_degrees_under_reversed_load"] == pressed["cycle_reversed_load"],
           "a slow piston always presses", str({name: value for name, value in pressed.items() if "revers" in name}))
-    for name in ("joints/both_pins_lubricated", "pin/engine", "flores/dry_0100um", "gas/compressor"):
+    for name in ("joints/both_pins_lubricated", "pin/engine", "flores/dry_0100um", "joints/both_pins", "gas/compressor"):
+        is_dry = name in ("flores/dry_0100um", "joints/both_pins")
         pins = prefixes(program, work, name)
         summary, rows = run(program, work, ROOT / "cases" / f"{name}.nml", "output.samples_per_revolution=36000", "output.sampling=crank_angle",
                             "output.ideal_twin=F", "integrator.revolutions=2",
@@ -164,10 +165,12 @@ def test_reversals(program: Path, work: Path) -> None:
             degrees = sum(0.01 for value in loads[1:] if value*sense > 0)
             largest = max(0.0, *(value*sense for value in loads))
             found = {word: summary[f"{place}cycle_{word}"] for word in ("load_reversals", "reversed_load", "degrees_under_reversed_load")}
-            # of a dry contact, rows 0.01 degrees apart miss the shortest impacts; at the kink of an ideal valve no slope shows the peak
-            check(abs(found["load_reversals"] - number_of) <= (0 if "dry" not in name else 0.05*number_of), f"{name}: {place}load_reversals against the rows",
+            # of a dry contact, rows 0.01 degrees apart miss the shortest impacts; at the kink of an ideal valve no slope shows the peak; rows
+            # and peaks are from polynomials of degrees of their own
+            short = 1e-4 if name == "gas/compressor" else 1e-7
+            check(abs(found["load_reversals"] - number_of) <= (0.05*number_of if is_dry else 0), f"{name}: {place}load_reversals against the rows",
                   f"{found['load_reversals']}, not {number_of}")
-            check(largest*(1 - 1e-4) <= found["reversed_load"] <= largest*(1.001 if "dry" not in name else 1.05), f"{name}: {place}reversed_load against the rows",
+            check(largest*(1 - short) <= found["reversed_load"] <= largest*(1.05 if is_dry else 1.001), f"{name}: {place}reversed_load against the rows",
                   f"{found['reversed_load']}, not {largest}")
             # each reversal lies somewhere between two rows
             check(abs(found["degrees_under_reversed_load"] - degrees) <= 0.011*(number_of + 1), f"{name}: {place}degrees under reversed load against the rows",
