@@ -281,6 +281,18 @@ def test_stops(gudgeon: Gudgeon, work: Path) -> None:
         check(status == 5 and "No space left" in error and not left, "a full disk is named, and no part of a state is left", error)
 
 
+def test_deep_folder(gudgeon: Gudgeon, work: Path) -> None:
+    """States in a folder whose path is longer than what messages show of it are told apart."""
+    folder = work / Path(*["of-a-long-path" * 4] * 5)
+    folder.mkdir(parents=True)
+    for name in ("one", "other"):
+        shutil.copy(CASES / "flores" / "ideal.nml", folder / f"{name}.nml")
+        status, _, error = gudgeon.run("-q", "-o", folder, *settings("integrator.revolutions=1"), folder / f"{name}.nml")
+        check(not status, f"{name}: a run in a deep folder", error)
+    status, _, error = gudgeon.run("-o", folder, "--from", folder / "one.state.nml", *settings("integrator.revolutions=2"), folder / "other.nml")
+    check(not status and "from which it goes on" not in error, "a run goes on from another one's state in a deep folder", error)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--program", type=Path)
@@ -289,7 +301,7 @@ def main() -> int:
         work = Path(folder)
         for case, (length, part, tolerance) in HALVES.items():
             test_halves(gudgeon, work / case.replace("/", "_"), case, length, part, tolerance)
-        for test in (test_settled, test_pressed, test_study, test_refusals, test_stops, test_dear_evaluations):
+        for test in (test_settled, test_pressed, test_study, test_refusals, test_stops, test_deep_folder, test_dear_evaluations):
             (work / test.__name__).mkdir()
             test(gudgeon, work / test.__name__)
     return assertions.report()

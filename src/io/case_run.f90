@@ -127,7 +127,7 @@ contains
     integer :: status, ignored
     path = self%base//state_suffix
     starts_from_it = .false.
-    if (allocated(self%case%initial%state)) starts_from_it = self%case%initial%state%file == printable(absolute_path(path), 200)
+    if (allocated(self%case%initial%state)) starts_from_it = self%case%initial%state%file == absolute_path(path)
     call read_whole(self%base//'.summary.csv', summary, status)
     what = ''
     if (starts_from_it .and. status == 0) then

@@ -79,13 +79,13 @@ contains
     place = values%place_of('initial', 'from')
     values%values(place)%text = path
     if (allocated(into%initial%state)) then
-      if (into%initial%state%file == printable(path, 200)) return
+      if (into%initial%state%file == path) return
     end if
     call read_text_file(path, largest_file, 'file of a state', text, error)
     if (.not. allocated(error)) call read_namelist(text, path, list, error)
     if (.not. allocated(error)) then
       allocate (state)
-      state%file = printable(path, 200)
+      state%file = path
       call read_state(list, state, error)
     end if
     if (allocated(error)) then

@@ -23,7 +23,7 @@ module run_state
   real(dp), parameter :: largest = 1e9_dp   !! angle [rad], beyond which turns are lost in rounding, and speed [rad/s], [m/s]
 
   type :: run_state_t
-    character(len=:), allocatable :: file      !! where it comes from, for messages
+    character(len=:), allocatable :: file      !! absolute path of the file that it is from
     type(state_number_t), allocatable :: numbers(:)
     logical :: sets = .false.                  !! gives values to the parts; else it records them
     logical :: goes_on = .true.                !! it gives them the totals too
