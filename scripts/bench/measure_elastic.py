@@ -65,10 +65,7 @@ def main() -> int:
         if options.write:
             print(write_table(options.what, title, f"scripts/bench/measure_elastic.py {options.what} --write", text))
         stem = options.what if language.current.is_english else f"{options.what}_pt"
-        paths = style.save(drawing, shipped if options.write else options.out, stem, options.format or style.KEPT[: 1 + options.write])
-        if options.write:
-            style.fewer_colours(paths[0])
-        print(*paths)
+        print(*(style.keep(drawing, shipped / f"{stem}.png") if options.write else style.save(drawing, options.out, stem, options.format or style.KEPT[:1])))
     except OSError as failure:
         print(f"measure_elastic.py: {failure}", file=sys.stderr)
         return 1

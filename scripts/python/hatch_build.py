@@ -17,7 +17,7 @@ import build_library
 
 
 class Commands(MetadataHookInterface):
-    """As scripts that pip writes, which start also in a folder whose name has a blank."""
+    """The commands of the package. As entry points: pip writes the scripts, which start also in a folder whose name has a blank."""
 
     def update(self, metadata):
         metadata["scripts"] = {"gudgeon-fmu": "gudgeon._fmu:main", "gudgeon-plot": "gudgeon.cli:main"}

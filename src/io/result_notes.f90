@@ -11,7 +11,7 @@ module result_notes
   use number_text, only: short_text, quantity_text
   implicit none
   private
-  public :: notes_on_results, history_remarks, relative_residual, energy_warning, no_exponent, &
+  public :: notes_on_results, history_remarks, relative_residual, energy_warning, no_exponent, most_change, &
     pin_is_undecided, undecided_pin
 
   character(len=*), parameter :: undecided_pin = 'the friction of both dry bearings of the floating pin has the same moment: '// &
@@ -24,7 +24,7 @@ module result_notes
   real(dp), parameter :: least_period_tolerance = 10   !! of a periodic motion, over the relative tolerance of its integration
   real(dp), parameter :: largest_pressure = 5e9_dp     !! beyond the strength of every bearing [Pa]
   real(dp), parameter :: most_energy_change = 0.02_dp  !! in a cycle, of the work of the gas: more is no settled motion
-  real(dp), parameter :: most_change = 0.05_dp         !! of a flow from cycle to cycle, as of films in the line of a run
+  real(dp), parameter :: most_change = 0.05_dp         !! of a flow or a film thickness from cycle to cycle, of a settled run
   character(len=*), parameter :: too_much = ': no bearing carries it'
 
 contains

@@ -10,7 +10,7 @@ module run_line
   use joint_places, only: places, n_places, in_order, name_prefix, spot_title
   use case_definition, only: case_t
   use joint_case, only: joint_case_t
-  use result_notes, only: notes_on_results, relative_residual
+  use result_notes, only: notes_on_results, relative_residual, most_change
   use number_text, only: short_text, quantity_text
   use text_tools, only: integer_text, counted, printable, replaced
   implicit none
@@ -153,10 +153,10 @@ contains
     type(joint_case_t), intent(in) :: joint
     type(pin_figures_t), intent(in) :: pin
     character(len=:), allocatable :: text
-    real(dp), parameter :: most = 0.05_dp   !! change from cycle to cycle
     text = ''
-    if (allocated(joint%film) .and. abs(pin%film_change) > most) text = ', not settled: the film thickness still changes by '// &
-      short_text(100*abs(pin%film_change), 2)//' % from cycle to cycle (--set run.until=periodic)'
+    if (allocated(joint%film) .and. abs(pin%film_change) > most_change) text = &
+      ', not settled: the film thickness still changes by '//short_text(100*abs(pin%film_change), 2)// &
+      ' % from cycle to cycle (--set run.until=periodic)'
   end function settling_text
 
   !> Text about the contacts of a pin to which the theory of their law does not apply; empty if there are none.

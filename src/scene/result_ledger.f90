@@ -305,7 +305,7 @@ contains
       integer :: group
       known = self%present(k)%most(i)
       if (self%touches(k)) known = min(known, self%episode(k)%most(i))
-      if (self%has_senses(k)) known = max(known, 0.0_dp)   ! a largest value in a sense that it does not have is none
+      if (self%has_senses(k)) known = max(known, 0.0_dp)   ! below 0 it is not in this sense
       if (.not. self%has_rate(k)) then
         if (has_samples) then
           call search_samples(k, sense, known)

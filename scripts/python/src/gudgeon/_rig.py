@@ -17,7 +17,7 @@ PRESSURES = {"pa": 1.0, "hpa": 1e2, "mbar": 1e2, "kpa": 1e3, "bar": 1e5, "mpa": 
 PRESSURE = re.compile(rf"({'|'.join(PRESSURES)})[ _,]*[\[(]? *((?:abs\.?|absolute?|a)|(gauge|gage|g|ü|ue|rel\.?|relativ))? *[\])]?", re.IGNORECASE)
 #: From so many usual steps of the angle on, rows are missing.
 GAP = 5.0
-#: Words in units of crank angles, with °; and what says that they are counted before the dead centre.
+#: Words in the unit of a crank angle (° is read as deg); those that say from which dead centre it is counted; and what says that it is counted before it.
 ANGLE_WORDS = {"deg", "degree", "degrees", "grad", "graus", "ca", "cad", "degca", "kw", "rad"}
 OF_DEAD_CENTRE = {"crank", "after", "before", "tdc", "atdc", "btdc", "tdcf", "atdcf", "btdcf", "ot", "zot", "n", "nach", "v", "vor", "not", "vot", "pms", "apms", "dpms", "antes", "depois", "do"}
 BEFORE = re.compile(r"btdc|before (?:tdc|top)|\bv(?:or|\.)? ?z?ot\b|\bapms\b|antes do pms", re.IGNORECASE)
@@ -160,8 +160,8 @@ def _numbers(cells: pd.Series, decimal: str) -> np.ndarray:
 
 
 def _clear(readings: list[_Reading], path: str) -> _Reading:
-    """The first of some readings of equal size. Raises RigFileError where a mark may be that of decimals and of thousands: some numbers of a
-    column have it, always before three digits, and others have none."""
+    """The right one of readings with equally many numbers, of which one takes a comma or a point for the decimal mark, the other for that of
+    thousands: it is the decimal mark of a column in which all numbers have it. Raises RigFileError where only some have it, each before three digits."""
     first, second = (readings + readings[:1])[:2]
     if second is first or second[3] is not first[3]:
         return first

@@ -131,13 +131,13 @@ def readable(unit: str, value: float) -> tuple[str, float]:
     return prefixed("Pa" if unit == "bar" else unit, np.array([value], dtype=float))
 
 
-#: Units of axes, and what a value has without their factor.
+#: Units of axes, each with the SI unit of its values.
 OF_AXES = {"kN": "N", "N": "N", "µm": "m", "MPa": "Pa", "mJ": "J", "J": "J", "W": "W", "N m": "N m", "mPa s": "Pa s", "cm³/s": "m^3/s", "10³ m/s²": "m/s²", "10³ rad/s²": "rad/s²"}
 
 
 def suited(unit: str, factor: float, values: np.ndarray) -> tuple[str, float]:
-    """The unit of an axis and the factor to it, of a column without unit and factor of its own: those given, but for the sizes of very small and very
-    large machines, where the axis would end below 0.1 or beyond 1e4, a prefix that suits these."""
+    """The unit of an axis and the factor from SI to it: those given, unless the largest of the values were below 0.1 or at least 1e4 in this unit, as
+    in very small and very large machines; then the unit with the prefix that suits it."""
     largest = np.abs(values[np.isfinite(values)]).max(initial=0.0)
     if 0.1 <= factor * largest < 1e4 or not largest or unit not in (*OF_AXES, "cm³"):
         return unit, factor

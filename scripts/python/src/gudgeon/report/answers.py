@@ -146,6 +146,9 @@ def slap(rows: Answers) -> str:
     return f"{speed} at {rows.figure('cycle_slap_angle', form='.1f')}°, corner {corner}, {energy}; {impacts} impacts"
 
 
+#: Change from cycle to cycle up to which a run is called settled, as the program does.
+MOST_CHANGE = 0.05
+
 #: Lines of bearings: name, and the text for the rows with a prefix.
 Lines = tuple[tuple[str, Callable[[Answers, str], str]], ...]
 OF_BEARINGS: Lines = (
@@ -231,7 +234,7 @@ def machine(rows: Answers) -> list[tuple[str, str]]:
         mean = rows.shown("cycle_work_drive", "N m", 1 / (2 * math.pi * (rows("cycle_revolutions") or 1)))
         found.append(("Drive torque", " to ".join(torques) + (f", mean {mean}" if mean else "")))
     found += shaft(rows)
-    scattered = (rows("recent_mass_flow_scatter") or 0.0) > 0.05   # from cycle to cycle: a run that has not settled, or valves that flutter
+    scattered = (rows("recent_mass_flow_scatter") or 0.0) > MOST_CHANGE   # from cycle to cycle: a run that has not settled, or valves that flutter
     gas = [f"{name} {text}" for name, text in (
         ("up to", rows.shown("cycle_max_gas_temperature", "°C", 1, -273.15)), ("to the walls", rows.shown("cycle_heat_to_walls", "J")),
         ("to the walls", rows.shown("cycle_wall_heat_flow", "W")), ("leak", rows.shown("cycle_leak_share", "%", 100)),
@@ -330,7 +333,7 @@ def warnings(run: Run) -> list[str]:
     rows, found, said = Answers(run), [], ""
     for pre, name in PLACES.values():
         change = rows(f"{pre}film_thickness_change")
-        if change is not None and abs(change) > 0.05:
+        if change is not None and abs(change) > MOST_CHANGE:
             said = f": the film thickness at the {name} changes by {100 * abs(change):.2g} % from cycle to cycle"
         for row, what in (("impacts", "faster"), ("contacts", "deeper")):
             if beyond := rows(f"{pre}{row}_beyond_validity"):
